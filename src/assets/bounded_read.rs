@@ -6,20 +6,20 @@ use std::path::Path;
 
 use crate::error::{Error, one_line};
 
-/// Reads a file of at most `most` bytes. Pipes, devices and folders are refused. `kind` names the expected file type in
+/// Reads a file of at most `max_bytes` bytes. Pipes, devices and folders are refused. `kind` names the expected file type in
 /// errors.
 ///
 /// # Errors
 /// [`Error::Io`], which names what was found and what is expected.
-pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
+pub fn read(path: &Path, kind: &str, max_bytes: u64) -> Result<Vec<u8>, Error> {
     let io = |error| Error::Io { path: path.into(), error };
     let refuse = |found: String| {
-        let reason = format!("{found}; expected a {kind} of at most {most} bytes ({} MiB)", most >> 20);
+        let reason = format!("{found}; expected a {kind} of at most {max_bytes} bytes ({} MiB)", max_bytes >> 20);
         io(io::Error::new(ErrorKind::InvalidData, reason))
     };
     let check = |found: &Metadata| match found {
         found if !found.is_file() => Err(refuse(format!("{}, not a file", kind_of(found)))),
-        found if found.len() > most => Err(refuse(format!("{} bytes", found.len()))),
+        found if found.len() > max_bytes => Err(refuse(format!("{} bytes", found.len()))),
         _ => Ok(()),
     };
     // Checked by path first, and again on the open file in case the path was replaced in between.
@@ -34,10 +34,10 @@ pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
     let file = open(path).map_err(io)?;
     check(&file.metadata().map_err(io)?)?;
     let mut bytes = Vec::new();
-    file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
+    file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(io)?;
     // The file may have grown since the check, or report no length.
-    if bytes.len() as u64 > most {
-        return Err(refuse(format!("more than {most} bytes")));
+    if bytes.len() as u64 > max_bytes {
+        return Err(refuse(format!("more than {max_bytes} bytes")));
     }
     Ok(bytes)
 }

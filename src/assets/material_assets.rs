@@ -46,17 +46,17 @@ pub struct MaterialAssets {
 
 impl MaterialAssets {
     /// True if both share the memory of every image. Cheap, unlike `==`.
-    pub fn shares(&self, other: &Self) -> bool {
+    pub fn shares_memory(&self, other: &Self) -> bool {
         let sprite = |a: &Option<Sprite>, b: &Option<Sprite>| match (a, b) {
-            (Some(a), Some(b)) => a.shares(b),
+            (Some(a), Some(b)) => a.shares_memory(b),
             (None, None) => true,
             _ => false,
         };
-        self.sprite.shares(&other.sprite)
+        self.sprite.shares_memory(&other.sprite)
             && sprite(&self.detail, &other.detail)
             && sprite(&self.six_way, &other.six_way)
-            && self.noise.shares(&other.noise)
-            && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares(b))
+            && self.noise.shares_memory(&other.noise)
+            && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares_memory(b))
     }
 
     fn ramps(&self) -> [&Ramp; 7] {

@@ -3,7 +3,7 @@
 use std::sync::{LazyLock, Mutex, PoisonError};
 
 /// Returns the number of processors available to this process. Cached: on Linux the query reads several files.
-pub fn threads() -> usize {
+pub fn thread_count() -> usize {
     static THREADS: LazyLock<usize> = LazyLock::new(|| std::thread::available_parallelism().map_or(1, usize::from));
     *THREADS
 }
@@ -19,7 +19,7 @@ pub fn parallel_for_each<T>(items: impl Iterator<Item = T> + Send, f: impl Fn(T)
     };
     std::thread::scope(|scope| {
         // The calling thread works too, so all items are processed even if no thread can be spawned.
-        for _ in 1..threads() {
+        for _ in 1..thread_count() {
             if std::thread::Builder::new().spawn_scoped(scope, work).is_err() {
                 break;
             }

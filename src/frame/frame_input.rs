@@ -8,7 +8,7 @@ use super::light::Light;
 use super::material::Material;
 use super::particle::Particle;
 use super::view::View;
-use crate::settings::{DebugView, Order, Settings};
+use crate::settings::{BlendOrder, DebugView, Settings};
 
 /// Input of [`Renderer::prepare`](crate::Renderer::prepare) for one frame.
 #[derive(Clone, Copy, Debug)]
@@ -27,14 +27,14 @@ pub struct Frame<'a> {
     pub up: Vec3,
     /// Debug views that may be shown of this frame; [`DebugView::Final`] for a normal image. All of them share one
     /// accumulation, except [`DebugView::Overdraw`], which needs a pass of its own.
-    pub stages: &'a [DebugView],
+    pub debug_views: &'a [DebugView],
 }
 
 impl<'a> Frame<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
-        let stages = &[DebugView::Final];
-        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, stages }
+        let debug_views = &[DebugView::Final];
+        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, debug_views }
     }
 }
 
@@ -82,7 +82,7 @@ pub struct System<'a> {
     pub key: u64,
     /// The sprites, in any order.
     pub particles: Particles<'a>,
-    /// World-space box that contains every sprite with its corners: [`Settings::reach`] radii around each particle. It
+    /// World-space box that contains every sprite with its corners: [`Settings::sprite_extent`] radii around each particle. It
     /// decides which pixels are lit, which lights reach the smoke, and whether the system is visible. Sprites outside
     /// the box may be cut off; a box that is too large costs time. `None` measures a slice with
     /// [`particle_bounds`](crate::frame::particle_bounds).
@@ -143,6 +143,6 @@ impl Particles<'_> {
 
     /// True for a buffer that is not sorted although its order matters.
     pub fn need_sorting(&self, settings: &Settings) -> bool {
-        matches!(self, Self::Buffer { is_sorted: false, .. }) && settings.order() == Order::Sorted
+        matches!(self, Self::Buffer { is_sorted: false, .. }) && settings.order() == BlendOrder::Sorted
     }
 }

@@ -15,5 +15,5 @@ pub use emitter_snapshot::EmitterSnapshot;
 pub use frame_input::{Frame, Particles, SceneDepth, System};
 pub use light::{Light, LightKind, MAX_LIGHTS};
 pub use material::Material;
-pub use particle::{LARGEST, Particle, particle_bounds};
+pub use particle::{MAX_MAGNITUDE, Particle, particle_bounds};
 pub use view::View;

@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 
 use super::preset_file::{Preset, PresetSystem};
 use crate::frame::Light;
-use crate::settings::{Step, Value, for_each_field};
+use crate::settings::{FieldValue, PathStep, for_each_field};
 
 /// Fields that are always written, because they say what the file is.
 const ALWAYS: &[&str] = &["version", "name", "kind"];
@@ -20,16 +20,16 @@ impl Preset {
     pub fn to_text(&self, old: &str) -> String {
         let old = serde_json::from_str(old).unwrap_or_default();
         let lists = (vec![Light::default()], vec![PresetSystem::default()]);
-        let mut usual = Self { lights: lists.0, systems: lists.1, ..Self::default() };
+        let mut default_preset = Self { lights: lists.0, systems: lists.1, ..Self::default() };
         let mut defaults = HashMap::new();
-        for_each_field(&mut usual, &mut |path, leaf| {
-            defaults.insert(plain(path), leaf.value());
+        for_each_field(&mut default_preset, &mut |path, leaf| {
+            defaults.insert(names_without_indices(path), leaf.value());
         });
         let mut root = Vec::new();
         for_each_field(&mut self.clone(), &mut |path, leaf| {
             let value = leaf.value();
             let is_always = path.last().is_some_and(|(name, _)| ALWAYS.contains(name));
-            if is_always || is_present_in(&old, path) || defaults.get(&plain(path)) != Some(&value) {
+            if is_always || is_present_in(&old, path) || defaults.get(&names_without_indices(path)) != Some(&value) {
                 insert(&mut root, path, finite(value));
             }
         });
@@ -39,11 +39,11 @@ impl Preset {
 }
 
 /// Names without list indices, because every light has the same defaults.
-fn plain(path: &[Step<'static>]) -> Vec<&'static str> {
+fn names_without_indices(path: &[PathStep<'static>]) -> Vec<&'static str> {
     path.iter().map(|step| step.0).collect()
 }
 
-fn is_present_in(old: &serde_json::Value, path: &[Step<'static>]) -> bool {
+fn is_present_in(old: &serde_json::Value, path: &[PathStep<'static>]) -> bool {
     let mut at = Some(old);
     for (name, index) in path {
         at = at.and_then(|old| old.get(name));
@@ -54,16 +54,16 @@ fn is_present_in(old: &serde_json::Value, path: &[Step<'static>]) -> bool {
     at.is_some()
 }
 
-fn finite(value: Value) -> Value {
+fn finite(value: FieldValue) -> FieldValue {
     match value {
-        Value::Number(number) => Value::Number(number.clamp(f32::MIN, f32::MAX)),
+        FieldValue::Number(number) => FieldValue::Number(number.clamp(f32::MIN, f32::MAX)),
         value => value,
     }
 }
 
 /// JSON that keeps the order of its fields.
 enum Node {
-    Value(Value),
+    FieldValue(FieldValue),
     Object(Vec<(&'static str, Node)>),
     List(Vec<Node>),
 }
@@ -71,17 +71,17 @@ enum Node {
 impl Serialize for Node {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
-            Self::Value(value) => value.serialize(serializer),
+            Self::FieldValue(value) => value.serialize(serializer),
             Self::Object(fields) => serializer.collect_map(fields.iter().map(|(name, node)| (name, node))),
             Self::List(nodes) => serializer.collect_seq(nodes),
         }
     }
 }
 
-fn insert(fields: &mut Vec<(&'static str, Node)>, path: &[Step<'static>], value: Value) {
+fn insert(fields: &mut Vec<(&'static str, Node)>, path: &[PathStep<'static>], value: FieldValue) {
     let [(name, index), rest @ ..] = path else { return };
     if rest.is_empty() {
-        fields.push((name, Node::Value(value)));
+        fields.push((name, Node::FieldValue(value)));
         return;
     }
     // Fields come in order, so a name that is not the last one is new.
@@ -110,7 +110,7 @@ mod tests {
 
     use super::*;
     use crate::assets::{builtin, json};
-    use crate::settings::Leaf;
+    use crate::settings::FieldRef;
 
     #[test]
     fn shipped_presets_are_formatted_as_they_are_written() {
@@ -127,22 +127,22 @@ mod tests {
 
     #[test]
     fn every_field_is_written_and_read_back() {
-        let mut usual = Preset::load("column").unwrap();
-        usual.lights.push(Light::default());
-        usual.systems.push(PresetSystem::default());
+        let mut default_preset = Preset::load("column").unwrap();
+        default_preset.lights.push(Light::default());
+        default_preset.systems.push(PresetSystem::default());
         let mut count = 0;
-        for_each_field(&mut usual.clone(), &mut |_, _| count += 1);
+        for_each_field(&mut default_preset.clone(), &mut |_, _| count += 1);
         for moved in 0..count {
-            let (mut preset, mut at) = (usual.clone(), 0);
+            let (mut preset, mut at) = (default_preset.clone(), 0);
             for_each_field(&mut preset, &mut |path, leaf| {
                 if at == moved && path[0].0 != "version" {
                     match leaf {
-                        Leaf::Number(value) => *value = 0.1234567,
-                        Leaf::Whole(value) => *value = u32::MAX,
-                        Leaf::Vector(value) => value.z = -1.0e-7,
-                        Leaf::Flag(value) => *value = !*value,
-                        Leaf::Choice(value) => value.set_index((value.index() + 1) % value.names().len()),
-                        Leaf::Text(value) => value.push_str("\"\\\n\u{1}ü"),
+                        FieldRef::Number(value) => *value = 0.1234567,
+                        FieldRef::Whole(value) => *value = u32::MAX,
+                        FieldRef::Vector(value) => value.z = -1.0e-7,
+                        FieldRef::Flag(value) => *value = !*value,
+                        FieldRef::Choice(value) => value.set_index((value.index() + 1) % value.names().len()),
+                        FieldRef::Text(value) => value.push_str("\"\\\n\u{1}ü"),
                     }
                 }
                 at += 1;
@@ -151,9 +151,9 @@ mod tests {
             let read: Preset = json::parse(Path::new("a.json"), &text).unwrap();
             assert_eq!(read, preset, "field {moved}");
             // Fields of the old text stay, even if they are at their default again.
-            let kept = usual.to_text(&text);
+            let kept = default_preset.to_text(&text);
             assert!(kept.lines().count() >= text.lines().count(), "field {moved}: {kept}");
-            assert_eq!(Preset::parse(Path::new("a.json"), &kept).unwrap(), usual);
+            assert_eq!(Preset::parse(Path::new("a.json"), &kept).unwrap(), default_preset);
         }
         assert!(count > 100, "{count}");
     }

@@ -19,4 +19,4 @@ pub use particle_source::{EndBehaviour, ParticleFiles, UpAxis, particle_file_pat
 #[doc(hidden)]
 pub use preset_file::with_system_context;
 pub use preset_file::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
-pub use sequence::{Sequence, frame_files, is_there, places};
+pub use sequence::{Sequence, exists, frame_files, watched_paths};

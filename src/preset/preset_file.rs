@@ -11,7 +11,7 @@ use super::particle_source::ParticleFiles;
 use crate::assets::material_assets::MaterialAssets;
 use crate::assets::{builtin, json};
 use crate::emitter::{Emitter, MAX_PARTICLES};
-use crate::error::{Error, FieldError, name};
+use crate::error::{Error, FieldError, display_path};
 use crate::frame::validate_input::validate_lights;
 use crate::frame::{EmitterSnapshot, Light};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
@@ -230,7 +230,7 @@ pub fn with_system_context(path: &Path, index: usize, error: Error) -> Error {
             Error::JsonField { path: path.into(), error }
         }
         Error::Asset { named_by, error } => {
-            Error::Asset { named_by: format!("{}: systems[{index}].{named_by}", name(path)), error }
+            Error::Asset { named_by: format!("{}: systems[{index}].{named_by}", display_path(path)), error }
         }
         other => other,
     }
@@ -238,9 +238,9 @@ pub fn with_system_context(path: &Path, index: usize, error: Error) -> Error {
 
 impl PresetSystem {
     /// Unevaluated particles of the emitter at `time`, seconds.
-    pub fn emission(&self, time: f32) -> EmitterSnapshot {
+    pub fn emitter_snapshot(&self, time: f32) -> EmitterSnapshot {
         let frame_rate = if self.settings.sprite.freeze_animation { 0.0 } else { self.emitter.frame_rate };
-        Emitter { frame_rate, ..self.emitter }.at(time)
+        Emitter { frame_rate, ..self.emitter }.snapshot(time)
     }
 
     /// Flipbook frames per second, of the emitter or the files.
@@ -249,7 +249,7 @@ impl PresetSystem {
     }
 
     /// Settings for a picture of this height. Pixel sizes in presets refer to [`DESIGN_HEIGHT`].
-    pub fn settings_for(&self, height: u32) -> Settings {
+    pub fn settings_at_height(&self, height: u32) -> Settings {
         let mut settings = self.settings;
         settings.specular_scatter.size = (settings.specular_scatter.size * height as f32 / DESIGN_HEIGHT).max(1.0);
         settings

@@ -99,14 +99,14 @@ pub(crate) fn create_material(
 
 /// Refuses images that are too large for the device, and six-way maps that do not fit the sprite.
 fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), FieldError> {
-    let check = |name: &str, side: u32, most: u32| {
-        if side <= most {
+    let check = |name: &str, side: u32, max: u32| {
+        if side <= max {
             return Ok(());
         }
         Err(FieldError::new(
             format!("material.{name}"),
             format!("{side} texels"),
-            format!("at most {most} on this device"),
+            format!("at most {max} on this device"),
         ))
     };
     let flat = limits.max_texture_dimension_2d;
@@ -134,8 +134,8 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         }
         let layers = array_layers(assets.sprite.frame_count() + maps.frame_count());
         if layers > limits.max_texture_array_layers {
-            let most = limits.max_texture_array_layers;
-            let expected = format!("at most {most} on this device, with the sprite's own");
+            let max = limits.max_texture_array_layers;
+            let expected = format!("at most {max} on this device, with the sprite's own");
             return Err(FieldError::new("material.six_way", format!("{} frames", maps.frame_count()), expected));
         }
     }

@@ -11,12 +11,12 @@ use super::pass::light_target::{self, LightingKey};
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
 use super::plan::Plan;
-use super::tiled::Tiled;
+use super::tiled::TiledPipelines;
 use crate::error::Error;
 
 /// Shaders and pipelines of all passes, independent of size and view.
 #[derive(Debug)]
-pub(crate) struct Passes {
+pub(crate) struct Pipelines {
     depth_downsample: PipelineVariants<DepthDownsampleKey>,
     diffuse_bake: PipelineVariants<DiffuseBakeKey>,
     accumulate: PipelineVariants<AccumulateKey>,
@@ -25,10 +25,10 @@ pub(crate) struct Passes {
     specular_scatter: PipelineVariants<SpecularScatterKey>,
     forward: PipelineVariants<ForwardKey>,
     /// `None` if the device does not support the path `tiled`.
-    pub tiled: Option<Tiled>,
+    pub tiled: Option<TiledPipelines>,
 }
 
-impl Passes {
+impl Pipelines {
     /// Creates the shader modules and pipeline layouts. `shader` returns the shader of a pass by name; `cache` is the
     /// host's pipeline cache, if the backend supports one.
     pub fn new<E>(
@@ -56,7 +56,7 @@ impl Passes {
             specular_scatter: variants!(specular_scatter, &transfer),
             forward: variants!(forward, &material),
             tiled: match tiles_are_supported(device) {
-                true => Some(Tiled::new(device, layouts, cache, &shader)?),
+                true => Some(TiledPipelines::new(device, layouts, cache, &shader)?),
                 false => None,
             },
         })
@@ -71,13 +71,13 @@ impl Passes {
             + self.transfer.len()
             + self.specular_scatter.len()
             + self.forward.len()
-            + self.tiled.as_ref().map_or(0, Tiled::pipeline_count)
+            + self.tiled.as_ref().map_or(0, TiledPipelines::pipeline_count)
     }
 
     /// Compiles the pipelines of a plan, or returns the shader error.
     pub fn compile(&self, device: &wgpu::Device, plan: &Plan<'_>) -> Result<(), Error> {
         match plan {
-            Plan::Nothing => Ok(()),
+            Plan::Skip => Ok(()),
             Plan::Forward(plan) => {
                 self.compile_depth_sort(device)?;
                 self.forward.check(device, plan.key)

@@ -2,7 +2,7 @@
 //! `sprite_fragment.wgsl`.
 
 use crate::frame::Particle;
-use crate::renderer::gpu::pipeline::{Constant, switch, variant};
+use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use crate::settings::{FadeCurve, Settings, SpriteAnimation, Technique};
 
 /// Layout of the instance buffer: one [`Particle`] per sprite.
@@ -47,14 +47,14 @@ impl SpriteKey {
     /// Returns the override constants of the shared files, followed by the pass's own.
     pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
         let shared = [
-            variant!("TECHNIQUE", self.technique),
-            variant!("SPRITE_ANIMATION", self.animation),
-            switch("DEBUG_SPRITE", self.debug_sprite),
-            switch("SIX_WAY", self.six_way),
-            switch("MOTION", self.motion),
-            variant!("FADE_CURVE", self.curve),
-            switch("LINEAR_DEPTH", self.linear_depth),
-            switch("EXACT_FILTERING", self.exact_filtering),
+            enum_constant!("TECHNIQUE", self.technique),
+            enum_constant!("SPRITE_ANIMATION", self.animation),
+            bool_constant("DEBUG_SPRITE", self.debug_sprite),
+            bool_constant("SIX_WAY", self.six_way),
+            bool_constant("MOTION", self.motion),
+            enum_constant!("FADE_CURVE", self.curve),
+            bool_constant("LINEAR_DEPTH", self.linear_depth),
+            bool_constant("EXACT_FILTERING", self.exact_filtering),
         ];
         shared.into_iter().chain(of_pass).collect()
     }

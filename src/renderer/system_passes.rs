@@ -17,7 +17,7 @@ use super::pass::forward::Forward;
 use super::pass::light_target::LightTarget;
 use super::pass::specular_scatter::SpecularScatter;
 use super::pass::transfer::Transfer;
-use super::pipelines::Passes;
+use super::pipelines::Pipelines;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::sprite_instances::Sprites;
 use super::system_targets::ReadyTargets;
@@ -27,7 +27,7 @@ use crate::view_setup::SystemSetup;
 
 /// Pass that produces a system's particles on the GPU, if their buffer cannot be drawn as is.
 #[derive(Debug)]
-#[allow(clippy::large_enum_variant, reason = "as Draw")]
+#[allow(clippy::large_enum_variant, reason = "as SystemPasses")]
 pub(crate) enum ParticlePass {
     /// Evaluates an emitter.
     Emit(Emit),
@@ -50,14 +50,14 @@ impl ParticlePass {
     clippy::large_enum_variant,
     reason = "one per system, built in place; a box would cost an allocation per frame"
 )]
-pub(crate) enum Draw {
+pub(crate) enum SystemPasses {
     Forward(Forward),
-    Deferred(Deferred),
+    Deferred(DeferredPasses),
 }
 
 /// Passes of the deferred path, in execution order.
 #[derive(Debug)]
-pub(crate) struct Deferred {
+pub(crate) struct DeferredPasses {
     pub depth_downsample: Option<Downsample>,
     pub depth_copy: Option<Downsample>,
     pub diffuse_bake: Option<DiffuseBake>,
@@ -71,7 +71,7 @@ pub(crate) struct Deferred {
 
 /// Accumulation by either path.
 #[derive(Debug)]
-#[allow(clippy::large_enum_variant, reason = "as Draw")]
+#[allow(clippy::large_enum_variant, reason = "as SystemPasses")]
 pub(crate) enum AccumulatePasses {
     Raster(Accumulate),
     Tiled(TiledPasses),
@@ -93,7 +93,7 @@ impl AccumulatePasses {
 /// Resources from which a system's passes are built.
 pub(crate) struct PassBuilder<'a> {
     pub gpu: Gpu<'a>,
-    pub passes: &'a Passes,
+    pub pipelines: &'a Pipelines,
     pub groups: Groups,
     pub sprites: Sprites,
 }
@@ -101,13 +101,13 @@ pub(crate) struct PassBuilder<'a> {
 /// State of the path `tiled` that a system keeps between frames, and its workload.
 pub(crate) struct TiledContext<'a> {
     pub system: &'a mut TiledSystem,
-    pub load: Option<&'a PathWorkload>,
+    pub workload: Option<&'a PathWorkload>,
 }
 
 impl PassBuilder<'_> {
-    pub fn forward(self, plan: &ForwardPlan) -> Draw {
-        let pipeline = self.passes.forward(self.gpu.device, plan.key);
-        Draw::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
+    pub fn forward(self, plan: &ForwardPlan) -> SystemPasses {
+        let pipeline = self.pipelines.forward(self.gpu.device, plan.key);
+        SystemPasses::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
     }
 
     /// `depth`: the host depth that the plan reads. `host_depth`: the host's depth buffer, for a hardware depth test
@@ -120,14 +120,14 @@ impl PassBuilder<'_> {
         setup: &SystemSetup,
         depth: &DepthBindings,
         host_depth: Option<&wgpu::TextureView>,
-    ) -> Draw {
-        let Self { gpu, passes, groups, sprites } = self;
+    ) -> SystemPasses {
+        let Self { gpu, pipelines, groups, sprites } = self;
         let device = gpu.device;
         let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
         let size = setup.rect.size;
         let downsample = |key: Option<DepthDownsampleKey>, target: &Option<wgpu::TextureView>| {
             Some(Downsample {
-                pipeline: passes.depth_downsample(device, key?),
+                pipeline: pipelines.depth_downsample(device, key?),
                 target: target.clone()?,
                 size,
                 frame: groups.frame.clone(),
@@ -135,7 +135,7 @@ impl PassBuilder<'_> {
             })
         };
         let accumulate = |key: AccumulateKey, targets: &Arc<[wgpu::TextureView]>| Accumulate {
-            pipeline: passes.accumulate(device, key),
+            pipeline: pipelines.accumulate(device, key),
             targets: targets.clone(),
             tested_depth: match key.depth_test {
                 DepthTest::InShader => None,
@@ -148,20 +148,20 @@ impl PassBuilder<'_> {
             inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
             sprites: sprites.clone(),
         };
-        let mut pipelines = [const { None }; DebugView::ALL.len()];
+        let mut transfer_pipelines = [const { None }; DebugView::ALL.len()];
         for key in plan.transfers() {
-            pipelines[key.debug_view as usize] = Some(passes.transfer(device, key));
+            transfer_pipelines[key.debug_view as usize] = Some(pipelines.transfer(device, key));
         }
         let lights = setup.uniform.light_count;
-        Draw::Deferred(Deferred {
+        SystemPasses::Deferred(DeferredPasses {
             depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
             depth_copy: downsample(plan.depth_copy, &accumulation.depth_copy),
             diffuse_bake: plan.diffuse_bake.map(|key| DiffuseBake {
-                pipeline: passes.diffuse_bake(device, key),
+                pipeline: pipelines.diffuse_bake(device, key),
                 faces: baked_diffuse.faces.clone(),
                 groups: groups.clone(),
             }),
-            accumulate: match (plan.tiled, &passes.tiled) {
+            accumulate: match (plan.tiled, &pipelines.tiled) {
                 (Some(keys), Some(tiled)) => {
                     let inputs = TiledInputs {
                         sprites: &sprites,
@@ -170,7 +170,7 @@ impl PassBuilder<'_> {
                         extra_attachment: keys.accumulate.extra_attachment,
                         attachments: &accumulation.attachments,
                         depth: accumulation.reduced_depth.as_ref().unwrap_or(&depth.depth),
-                        load: tiles.load,
+                        workload: tiles.workload,
                     };
                     AccumulatePasses::Tiled(tiles.system.write(&gpu, tiled, keys, &groups, &inputs))
                 }
@@ -178,21 +178,21 @@ impl PassBuilder<'_> {
             },
             overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
             light_target: plan.light_target.zip(accumulation.lit.as_ref()).map(|(key, target)| LightTarget {
-                pipeline: passes.light_target(device, key),
+                pipeline: pipelines.light_target(device, key),
                 target: target.clone(),
                 size,
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
             }),
             transfer: Transfer {
-                pipelines,
+                pipelines: transfer_pipelines,
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
                 overdraw_inputs: inputs.overdraw.clone(),
                 lit_inputs: inputs.lit.clone(),
             },
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
-                pipeline: passes.specular_scatter(device, key),
+                pipeline: pipelines.specular_scatter(device, key),
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
                 lights,

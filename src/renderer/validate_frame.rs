@@ -5,7 +5,7 @@ use glam::UVec2;
 use super::auto::PathReason;
 use super::context::Shared;
 use super::gpu::host_pass::HostPass;
-use super::plan::reads_linear;
+use super::plan::reads_linear_target;
 use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::error::FieldError;
 use crate::frame::validate_input::{
@@ -111,7 +111,7 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
             let texture = buffer.texture();
             texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT) && !texture.format().has_stencil_aspect()
         });
-        let is_read = !reads_linear(frame.scene_depth.kind(), shared.read_only_depth, system.settings);
+        let is_read = !reads_linear_target(frame.scene_depth.kind(), shared.read_only_depth, system.settings);
         if !attachable || (is_read && !shared.read_only_depth) {
             let expected = "\"reduced\", or a scene_depth that has a depth buffer without stencil, with \
                             RENDER_ATTACHMENT usage, and on OpenGL a linear target as well";
@@ -123,7 +123,7 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
 
 /// Returns the reason why the path `auto` cannot choose `tiled` for a system; `None` if it can.
 pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &System<'_>) -> Option<PathReason> {
-    let Some(tiled) = &shared.passes.tiled else { return Some(PathReason::TiledUnsupported) };
+    let Some(tiled) = &shared.pipelines.tiled else { return Some(PathReason::TiledUnsupported) };
     let (count, is_readable) = match system.particles {
         Particles::Slice(particles) => (particles.len() as u64, true),
         Particles::Buffer { buffer, offset, count, .. } => {
@@ -142,23 +142,23 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
     let size = size_of::<Particle>() as u64;
     let is_tiled = system.settings.path == RenderPath::Tiled;
     let needs_sorting = system.particles.need_sorting(system.settings);
-    if needs_sorting && shared.passes.tiled.is_none() {
+    if needs_sorting && shared.pipelines.tiled.is_none() {
         let expected = "true, the order \"weighted\", or a slice: sorting a buffer needs compute shaders and \
                         WebGPU's default limits; OpenGL is not supported";
         return Err(FieldError::new(field("particles.is_sorted"), false, expected));
     }
     let limits = shared.device.limits();
-    let mut most = limits.max_buffer_size / size;
+    let mut max_count = limits.max_buffer_size / size;
     if is_tiled {
-        most = most.min(limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES);
+        max_count = max_count.min(limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES);
     } else if needs_sorting {
-        most = most.min(limits.max_storage_buffer_binding_size / size);
+        max_count = max_count.min(limits.max_storage_buffer_binding_size / size);
     }
     match system.particles {
-        Particles::Slice(particles) => validate_count(particles.len() as u64, most, field)?,
+        Particles::Slice(particles) => validate_count(particles.len() as u64, max_count, field)?,
         Particles::Emitter(emission) => {
-            validate_count(u64::from(emission.count()), most, field)?;
-            let bounds = emission.bounds(system.settings.reach());
+            validate_count(u64::from(emission.count()), max_count, field)?;
+            let bounds = emission.bounds(system.settings.sprite_extent());
             let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
             if !bounds.is_empty() && !is_finite {
                 let expected = "an emission of an emitter that Emitter::validate accepts";
@@ -166,7 +166,7 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
             }
         }
         Particles::Buffer { buffer, offset, count, .. } => {
-            validate_count(u64::from(count), most, field)?;
+            validate_count(u64::from(count), max_count, field)?;
             if system.bounds.is_none() {
                 let expected = "the bounding box of the particles: the CPU does not read a GPU buffer";
                 return Err(FieldError::new(field("bounds"), "None", expected));
@@ -190,10 +190,10 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
     Ok(())
 }
 
-fn validate_count(count: u64, most: u64, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
-    if count > most {
+fn validate_count(count: u64, max_count: u64, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
+    if count > max_count {
         let value = format!("{count} particles");
-        return Err(FieldError::new(field("particles"), value, format!("at most {most} on this device")));
+        return Err(FieldError::new(field("particles"), value, format!("at most {max_count} on this device")));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::fields::Fields;
-use super::traversal::{Leaf, Step, for_each_field};
+use super::traversal::{FieldRef, PathStep, for_each_field};
 use crate::error::FieldError;
 
 /// Sets the fields that `path` names to `value`. Returns their name without list indices.
@@ -21,12 +21,12 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
     let mut names = Names::default();
     for_each_field(&mut changed, &mut |path, _| {
         let of_kind = if is_wanted(path, &wanted) { &mut names.wanted } else { &mut names.others };
-        of_kind.insert(plain(path));
+        of_kind.insert(names_without_indices(path));
     });
-    let name = names.the_one(path, &wanted)?;
+    let name = names.resolve(path, &wanted)?;
     let mut error = None;
     for_each_field(&mut changed, &mut |path, leaf| {
-        if is_wanted(path, &wanted) && plain(path) == name {
+        if is_wanted(path, &wanted) && names_without_indices(path) == name {
             error = error.take().or(assign(leaf, value).err());
         }
     });
@@ -39,26 +39,27 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
     }
 }
 
-fn parse_path(path: &str) -> Result<Vec<Step<'_>>, FieldError> {
+fn parse_path(path: &str) -> Result<Vec<PathStep<'_>>, FieldError> {
     let step = |text| match str::strip_suffix(text, ']') {
         None => Some((text, None)),
         Some(text) => text.split_once('[').and_then(|(name, index)| Some((name, Some(index.parse().ok()?)))),
     };
-    let is_name = |(name, _): &Step<'_>| !name.is_empty() && !name.contains(['[', ']']);
+    let is_name = |(name, _): &PathStep<'_>| !name.is_empty() && !name.contains(['[', ']']);
     let steps: Option<Vec<_>> = path.split('.').map(|text| step(text).filter(is_name)).collect();
     let expected = "names separated by dots, such as systems[0].settings.boost";
     steps.ok_or_else(|| FieldError::new("field", format!("{path:?}"), expected))
 }
 
 /// True if the path of a field ends with the wanted steps.
-fn is_wanted(path: &[Step<'_>], wanted: &[Step<'_>]) -> bool {
+fn is_wanted(path: &[PathStep<'_>], wanted: &[PathStep<'_>]) -> bool {
     let tail = path.len().checked_sub(wanted.len()).map(|start| &path[start..]);
-    let fits = |(at, wanted): (&Step<'_>, &Step<'_>)| at.0 == wanted.0 && (wanted.1.is_none() || at.1 == wanted.1);
+    let fits =
+        |(at, wanted): (&PathStep<'_>, &PathStep<'_>)| at.0 == wanted.0 && (wanted.1.is_none() || at.1 == wanted.1);
     tail.is_some_and(|tail| tail.iter().zip(wanted).all(fits))
 }
 
 /// Path without list indices.
-fn plain(path: &[Step<'_>]) -> String {
+fn names_without_indices(path: &[PathStep<'_>]) -> String {
     path.iter().map(|step| step.0).collect::<Vec<_>>().join(".")
 }
 
@@ -71,8 +72,8 @@ struct Names {
 
 impl Names {
     /// The name that matches: in full, or as the only one.
-    fn the_one(mut self, path: &str, wanted: &[Step<'_>]) -> Result<String, FieldError> {
-        if let Some(name) = self.wanted.take(&plain(wanted)) {
+    fn resolve(mut self, path: &str, wanted: &[PathStep<'_>]) -> Result<String, FieldError> {
+        if let Some(name) = self.wanted.take(&names_without_indices(wanted)) {
             return Ok(name);
         }
         match (self.wanted.len(), self.wanted.pop_first()) {
@@ -99,20 +100,20 @@ impl Names {
 }
 
 /// Parses and assigns a value. The error says which value is expected.
-fn assign(leaf: Leaf<'_>, text: &str) -> Result<(), String> {
+fn assign(leaf: FieldRef<'_>, text: &str) -> Result<(), String> {
     fn parse<T: std::str::FromStr>(text: &str, expected: &str) -> Result<T, String> {
         text.trim().parse().map_err(|_| expected.into())
     }
     match leaf {
-        Leaf::Number(value) => *value = parse(text, "a number")?,
-        Leaf::Whole(value) => *value = parse(text, "a whole number, 0 or more")?,
-        Leaf::Flag(value) => *value = parse(text, "true or false")?,
-        Leaf::Text(value) => text.clone_into(value),
-        Leaf::Choice(value) => {
+        FieldRef::Number(value) => *value = parse(text, "a number")?,
+        FieldRef::Whole(value) => *value = parse(text, "a whole number, 0 or more")?,
+        FieldRef::Flag(value) => *value = parse(text, "true or false")?,
+        FieldRef::Text(value) => text.clone_into(value),
+        FieldRef::Choice(value) => {
             let index = value.names().iter().position(|name| *name == text);
             value.set_index(index.ok_or_else(|| format!("one of {}", value.names().join(", ")))?);
         }
-        Leaf::Vector(value) => {
+        FieldRef::Vector(value) => {
             let expected = "three numbers, such as 0.5,1,2";
             let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| parse(number, expected)).collect();
             let numbers: [f32; 3] = numbers?.try_into().map_err(|_| String::from(expected))?;

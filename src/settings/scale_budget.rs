@@ -1,6 +1,6 @@
 //! Choice of the accumulation target's scale by a budget of GPU time.
 
-use super::accumulate::COARSEST;
+use super::accumulate::MAX_SCALE;
 use super::settings_macro::settings;
 
 settings! {
@@ -10,15 +10,15 @@ settings! {
         /// GPU time of the smoke per frame. Lower: cheaper and less sharp. It is kept as far as the scales allow.
         milliseconds: f32 = 2.0, number(0.05..=100.0, "ms");
         /// Finest scale that may be chosen. Lower: sharper smoke when there is time for it.
-        min_scale: u32 = 1, integer(1..=COARSEST, "pixels");
+        min_scale: u32 = 1, integer(1..=MAX_SCALE, "pixels");
         /// Coarsest scale that may be chosen. It is used even if it takes longer than the budget.
-        max_scale: u32 = 8, integer(|this| this.min_scale..=COARSEST, "pixels");
+        max_scale: u32 = 8, integer(|this| this.min_scale..=MAX_SCALE, "pixels");
     }
 }
 
 /// Share of the budget that the expected cost of a finer scale must stay below. The rest is a margin for the error of
 /// the estimate: if measurements are off by 20 %, the mean of a block is off by up to 5 %.
-const ROOM: f32 = 0.85;
+const FINER_SCALE_SHARE: f32 = 0.85;
 
 /// A median above this multiple of the budget makes the scale coarser at once. Noise of 20 % on a load at the budget
 /// stays below it.
@@ -28,14 +28,14 @@ const OVERLOAD: f32 = 1.25;
 const MEDIAN: usize = 5;
 
 /// Number of measurements to skip after a change of scale, because they may belong to frames in flight.
-const LATE: u32 = 8;
+const STALE_MEASUREMENTS: u32 = 8;
 
 /// Number of measurements in a block, of which the mean is taken: one second.
 const BLOCK: u32 = 64;
 
 /// Number of blocks between attempts at a finer scale, at first and at most: two seconds and 17.
-const PATIENCE: u32 = 2;
-const MAX_PATIENCE: u32 = 16;
+const FINER_INTERVAL: u32 = 2;
+const MAX_FINER_INTERVAL: u32 = 16;
 
 /// Picks [`Accumulate::scale`](super::Accumulate::scale) from measured GPU time, so that a [`Budget`] is kept. Plain
 /// data, without a clock or a device.
@@ -65,13 +65,13 @@ pub struct ScaleBudget {
     /// True if the current scale is finer than the previous one.
     is_finer: bool,
     /// Blocks between attempts at a finer scale.
-    patience: u32,
-    seen: Seen,
+    finer_interval: u32,
+    statistics: ScaleStatistics,
 }
 
 /// Measurements at the current scale.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Seen {
+struct ScaleStatistics {
     measurements: u32,
     last: [f32; MEDIAN],
     /// Medians in the current block, which is not full yet.
@@ -93,8 +93,8 @@ impl ScaleBudget {
             share: None,
             before: None,
             is_finer: false,
-            patience: PATIENCE,
-            seen: Seen::default(),
+            finer_interval: FINER_INTERVAL,
+            statistics: ScaleStatistics::default(),
         };
         new.keep_within_limits();
         new
@@ -111,7 +111,7 @@ impl ScaleBudget {
         self.keep_within_limits();
         if measured_ms > 0.0
             && measured_ms.is_finite()
-            && let Some(median) = self.seen.median(measured_ms)
+            && let Some(median) = self.statistics.median(measured_ms)
         {
             self.decide(median);
         }
@@ -122,26 +122,27 @@ impl ScaleBudget {
         let limit = self.budget.milliseconds;
         let may_be_coarser = self.scale < self.limits().1;
         if median > OVERLOAD * limit && may_be_coarser {
-            return self.coarser(median);
+            return self.go_coarser(median);
         }
-        let before = self.seen.mean;
-        let Some(mean) = self.seen.block(median) else { return };
-        self.learn(mean);
+        let before = self.statistics.mean;
+        let Some(mean) = self.statistics.block(median) else { return };
+        self.learn_share(mean);
         // Two blocks in a row: noise does not end a scale that just fits.
         if mean.min(before) > limit && may_be_coarser {
-            self.coarser(mean);
-        } else if self.seen.blocks.is_multiple_of(self.patience) {
-            self.finer(mean);
+            self.go_coarser(mean);
+        } else if self.statistics.blocks.is_multiple_of(self.finer_interval) {
+            self.try_finer(mean);
         }
     }
 
     /// Goes to the finest scale that is expected to fit, but to twice the current one at most, because the learned
     /// share may not hold beyond.
-    fn coarser(&mut self, ms: f32) {
-        self.learn(ms);
+    fn go_coarser(&mut self, ms: f32) {
+        self.learn_share(ms);
         if self.is_finer {
-            let did_last = self.seen.blocks >= MAX_PATIENCE;
-            self.patience = if did_last { PATIENCE } else { MAX_PATIENCE.min(2 * self.patience) };
+            let did_last = self.statistics.blocks >= MAX_FINER_INTERVAL;
+            self.finer_interval =
+                if did_last { FINER_INTERVAL } else { MAX_FINER_INTERVAL.min(2 * self.finer_interval) };
         }
         let last = self.limits().1.min(2 * self.scale);
         // If the share is unknown, all of the cost is taken to fall with the scale.
@@ -152,11 +153,13 @@ impl ScaleBudget {
 
     /// Goes to the finest scale that is expected to leave a margin, but to half of the current one at most. Stays if
     /// there is none.
-    fn finer(&mut self, ms: f32) {
-        let peak = std::mem::take(&mut self.seen.peak);
+    fn try_finer(&mut self, ms: f32) {
+        let peak = std::mem::take(&mut self.statistics.peak);
         // If the share is unknown, a finer scale is taken to be free, and a single step measures it.
         let (share, first) = self.share.map_or((0.0, self.scale - 1), |share| (share, self.scale.div_ceil(2)));
-        let fits = |scale: &u32| peak * relative_cost(share, self.scale, *scale) <= ROOM * self.budget.milliseconds;
+        let fits = |scale: &u32| {
+            peak * relative_cost(share, self.scale, *scale) <= FINER_SCALE_SHARE * self.budget.milliseconds
+        };
         if let Some(scale) = (first.max(self.limits().0)..self.scale).find(fits) {
             self.go_to(scale, ms);
         }
@@ -166,12 +169,12 @@ impl ScaleBudget {
         self.before = Some((self.scale, ms));
         self.is_finer = scale < self.scale;
         self.scale = scale;
-        self.seen = Seen::default();
+        self.statistics = ScaleStatistics::default();
     }
 
     /// Learns the share of the cost that falls with the scale, from the costs of the previous scale and the current
     /// one.
-    fn learn(&mut self, ms: f32) {
+    fn learn_share(&mut self, ms: f32) {
         let Some((scale, ms_before)) = self.before.take() else { return };
         let [before, now] = [scale, self.scale].map(|scale| 1.0 / (scale * scale) as f32);
         // Between no dependence on the scale and full dependence.
@@ -181,20 +184,21 @@ impl ScaleBudget {
 
     /// Scale limits of the budget, made valid.
     fn limits(&self) -> (u32, u32) {
-        let min = self.budget.min_scale.clamp(1, COARSEST);
-        (min, self.budget.max_scale.clamp(min, COARSEST))
+        let min = self.budget.min_scale.clamp(1, MAX_SCALE);
+        (min, self.budget.max_scale.clamp(min, MAX_SCALE))
     }
 
     fn keep_within_limits(&mut self) {
         let (min, max) = self.limits();
         let scale = self.scale.clamp(min, max);
         if scale != self.scale {
-            (self.scale, self.before, self.is_finer, self.seen) = (scale, None, false, Seen::default());
+            (self.scale, self.before, self.is_finer, self.statistics) =
+                (scale, None, false, ScaleStatistics::default());
         }
     }
 }
 
-impl Seen {
+impl ScaleStatistics {
     /// Takes a measurement. Returns the median of the last ones, or `None` while they may belong to another scale.
     fn median(&mut self, ms: f32) -> Option<f32> {
         self.last.rotate_left(1);
@@ -202,7 +206,7 @@ impl Seen {
         self.measurements = self.measurements.saturating_add(1);
         let mut sorted = self.last;
         sorted.sort_by(f32::total_cmp);
-        (self.measurements >= LATE + MEDIAN as u32).then_some(sorted[MEDIAN / 2])
+        (self.measurements >= STALE_MEASUREMENTS + MEDIAN as u32).then_some(sorted[MEDIAN / 2])
     }
 
     /// Takes a median. Returns the mean of the block if this one completes it.

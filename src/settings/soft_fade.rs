@@ -43,7 +43,7 @@ settings! {
 
 impl SoftFade {
     /// Distance beyond which the scene behind a sprite has no effect on it, metres.
-    pub fn reach(&self) -> f32 {
+    pub fn max_distance(&self) -> f32 {
         (1.0 / self.fade_scale).max(self.epsilon)
     }
 }

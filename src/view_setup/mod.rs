@@ -11,8 +11,8 @@ mod view_geometry;
 mod view_lights;
 
 pub use optical_depth::optical_depth;
-pub use particle_sort::{SortScratch, in_order};
-pub use sprite_projector::{Grid, ProjectedSprite, SpriteProjector, SpriteTrim};
+pub use particle_sort::{SortScratch, write_in_drawing_order};
+pub use sprite_projector::{ProjectedSprite, SpriteProjector, SpriteTrim, TexelGrid};
 pub use system_setup::{SystemInput, SystemSetup, system_setup};
 pub use view_geometry::ViewGeometry;
 pub use view_lights::light_uniforms;

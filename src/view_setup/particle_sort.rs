@@ -22,21 +22,22 @@ impl SortScratch {
 }
 
 /// Bits of the key that one round of the sort uses.
-const DIGIT: u32 = 11;
+const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 3;
 /// Minimum number of keys for the radix sort; for fewer, its tables cost more than they save.
-const MANY: usize = 512;
+const MIN_RADIX_KEYS: usize = 512;
 
 impl SortScratch {
     /// Sorts by key, and by index for equal keys: a radix sort from the lowest digit up, each round stable.
     fn sort(&mut self) {
         let Self { keys, sorted } = self;
-        if keys.len() < MANY {
+        if keys.len() < MIN_RADIX_KEYS {
             keys.sort_unstable();
             return;
         }
-        let digit = |key: u64, round: usize| (key >> (32 + DIGIT * round as u32)) as usize & ((1 << DIGIT) - 1);
-        let mut places = [[0_usize; 1 << DIGIT]; DIGITS];
+        let digit =
+            |key: u64, round: usize| (key >> (32 + DIGIT_BITS * round as u32)) as usize & ((1 << DIGIT_BITS) - 1);
+        let mut places = [[0_usize; 1 << DIGIT_BITS]; DIGITS];
         for &key in keys.iter() {
             (0..DIGITS).for_each(|round| places[round][digit(key, round)] += 1);
         }
@@ -61,7 +62,7 @@ impl SortScratch {
 }
 
 /// Writes the visible particles to `out`: farthest first if `is_sorted`, otherwise in the given order.
-pub fn in_order(
+pub fn write_in_drawing_order(
     view: &ViewGeometry,
     particles: &[Particle],
     is_sorted: bool,

@@ -19,7 +19,7 @@ pub(super) struct ProjectedBounds {
 }
 
 /// Computes the pixels and depths that `bounds` covers; `None` if it is out of sight.
-pub(super) fn bounds_in_view(bounds: &Bounds, view: &ViewGeometry) -> Option<ProjectedBounds> {
+pub(super) fn project_bounds(bounds: &Bounds, view: &ViewGeometry) -> Option<ProjectedBounds> {
     if bounds.is_empty() {
         return None;
     }
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn box_in_front_of_the_camera_covers_the_image_centre() {
-        let found = bounds_in_view(&cube(Vec3::new(0.0, 0.0, -10.0), 1.0), &view(UVec2::new(640, 360))).unwrap();
+        let found = project_bounds(&cube(Vec3::new(0.0, 0.0, -10.0), 1.0), &view(UVec2::new(640, 360))).unwrap();
         assert!((found.near - 9.0).abs() < 1e-5 && (found.far - 11.0).abs() < 1e-5);
         assert!(found.min.x > 250 && found.max.x < 390 && found.min.y > 130 && found.max.y < 230, "{found:?}");
     }
@@ -108,12 +108,12 @@ mod tests {
     #[test]
     fn box_around_the_eye_covers_the_image_and_a_box_out_of_sight_nothing() {
         let view = view(UVec2::new(641, 359));
-        let found = bounds_in_view(&cube(Vec3::ZERO, 2.0), &view).unwrap();
+        let found = project_bounds(&cube(Vec3::ZERO, 2.0), &view).unwrap();
         assert_eq!((found.min, found.max), (UVec2::ZERO, UVec2::new(641, 359)));
         assert!(found.near < 0.0);
-        assert_eq!(bounds_in_view(&cube(Vec3::new(0.0, 0.0, 5.0), 1.0), &view), None);
-        assert_eq!(bounds_in_view(&cube(Vec3::new(500.0, 0.0, -9.0), 1.0), &view), None);
-        assert_eq!(bounds_in_view(&Bounds::EMPTY, &view), None);
+        assert_eq!(project_bounds(&cube(Vec3::new(0.0, 0.0, 5.0), 1.0), &view), None);
+        assert_eq!(project_bounds(&cube(Vec3::new(500.0, 0.0, -9.0), 1.0), &view), None);
+        assert_eq!(project_bounds(&Bounds::EMPTY, &view), None);
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::settings::{Settings, SpriteAnimation, Technique};
 
 /// Texel grid that sprites are drawn on: texel (i, j) covers `scale` by `scale` pixels from (origin + (i, j)) · scale.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub struct TexelGrid {
     pub origin: Vec2,
     pub scale: f32,
     pub size: UVec2,
@@ -37,7 +37,7 @@ pub struct ProjectedSprite {
 }
 
 /// Area that a sprite covers on a grid.
-pub struct Covered<'p> {
+pub struct SpriteCoverage<'p> {
     pub texels: f64,
     /// Share of the sprite's square that is not trimmed; 1 for spheres.
     pub share: f64,
@@ -65,9 +65,10 @@ impl SpriteTrim {
     }
 
     /// Same as `trimmed_extent()` in the shader.
-    fn reach(&self, sprite: &ProjectedSprite) -> Vec4 {
-        self.first_frame
-            .map_or(Vec4::ONE, |first| self.alpha_bounds.reach(offset_frames(sprite.frames, first), sprite.lod))
+    fn trimmed_extent(&self, sprite: &ProjectedSprite) -> Vec4 {
+        self.first_frame.map_or(Vec4::ONE, |first| {
+            self.alpha_bounds.trimmed_extent(offset_frames(sprite.frames, first), sprite.lod)
+        })
     }
 }
 
@@ -77,13 +78,13 @@ pub struct SpriteProjector<'a> {
     pub view: &'a ViewUniform,
     pub system: &'a SystemUniform,
     pub technique: Technique,
-    pub pictures: &'a SpriteTrim,
+    pub trim: &'a SpriteTrim,
 }
 
 impl SpriteProjector<'_> {
     /// Same as `project_sprite()` in the shader; `None` if the sprite is hidden.
-    pub fn sprite(&self, particle: &Particle, texels_per_pixel: f32) -> Option<ProjectedSprite> {
-        let Self { view, system, technique, pictures } = *self;
+    pub fn project(&self, particle: &Particle, texels_per_pixel: f32) -> Option<ProjectedSprite> {
+        let Self { view, system, technique, trim } = *self;
         let centre = view.view_from_world.transform_point3(particle.position);
         let mut radius = particle.radius * system.size;
         if technique == Technique::SphericalBillboard {
@@ -100,24 +101,24 @@ impl SpriteProjector<'_> {
         let depth = (-centre.z).max(view.near);
         let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic);
         let diameter = 2.0 * radius * pixels * texels_per_pixel;
-        let frame = sprite_frame(pictures.animation, particle.frame, particle.age, system.frame_count);
+        let frame = sprite_frame(trim.animation, particle.frame, particle.age, system.frame_count);
         Some(ProjectedSprite {
             centre,
             radius,
             amount,
-            frames: animation_frames(pictures.animation, frame, system.frame_count),
+            frames: animation_frames(trim.animation, frame, system.frame_count),
             lod: sprite_lod(system.sprite_size, diameter),
         })
     }
 
     /// Returns the extent of a flat sprite from its centre, as fractions of half a side: left, down, right, up.
-    pub fn reach(&self, sprite: &ProjectedSprite) -> Vec4 {
-        self.pictures.reach(sprite)
+    pub fn trimmed_extent(&self, sprite: &ProjectedSprite) -> Vec4 {
+        self.trim.trimmed_extent(sprite)
     }
 
     /// Returns the position at which a sprite is drawn: a slab whose centre has passed the near plane is drawn on that
     /// plane.
-    pub fn on_screen(&self, centre: Vec3) -> Vec3 {
+    pub fn clamped_to_near_plane(&self, centre: Vec3) -> Vec3 {
         centre.with_z(centre.z.min(-self.view.near))
     }
 
@@ -143,35 +144,35 @@ impl SpriteProjector<'_> {
     /// Returns the number of texels of a grid that the sprites cover, counted once per sprite, as if nothing of the
     /// scene were in front. Uses areas, which equal the mean number of covered texel centres over all positions of a
     /// sprite. Each of these texels is shaded once, unless a depth test rejects it first.
-    pub fn fragments(&self, grid: &Grid, particles: &[Particle]) -> f64 {
-        self.covered(grid, particles.iter()).map(|covered| covered.texels).sum()
+    pub fn fragments(&self, grid: &TexelGrid, particles: &[Particle]) -> f64 {
+        self.coverages(grid, particles.iter()).map(|covered| covered.texels).sum()
     }
 
     /// Returns the coverage of each visible sprite.
-    pub fn covered<'p>(
+    pub fn coverages<'p>(
         &self,
-        grid: &Grid,
+        grid: &TexelGrid,
         particles: impl Iterator<Item = &'p Particle>,
-    ) -> impl Iterator<Item = Covered<'p>> {
+    ) -> impl Iterator<Item = SpriteCoverage<'p>> {
         let mut scratch = [Vec::with_capacity(8), Vec::with_capacity(8)];
         particles.filter_map(move |particle| {
-            let sprite = self.sprite(particle, grid.scale.recip())?;
+            let sprite = self.project(particle, grid.scale.recip())?;
             let (corners, share) = if self.technique.is_sphere() {
                 let (min, max) = self.sphere_rectangle(&sprite, grid.scale.recip());
                 ([min, Vec2::new(max.x, min.y), max, Vec2::new(min.x, max.y)], 1.0)
             } else {
-                let reach = self.reach(&sprite);
+                let reach = self.trimmed_extent(&sprite);
                 let share = 0.25 * (reach.x + reach.z) * (reach.y + reach.w);
                 (self.corners(&sprite, reach, particle.rotation), f64::from(share))
             };
             let texels = corners.map(|pixel| pixel / grid.scale - grid.origin);
-            Some(Covered { texels: area_within(texels, grid.size.as_vec2(), &mut scratch), share, particle })
+            Some(SpriteCoverage { texels: area_within(texels, grid.size.as_vec2(), &mut scratch), share, particle })
         })
     }
 
     /// Returns the corners of the trimmed square of a flat sprite, in pixels, in order around it.
     fn corners(&self, sprite: &ProjectedSprite, reach: Vec4, rotation: f32) -> [Vec2; 4] {
-        let centre = self.on_screen(sprite.centre);
+        let centre = self.clamped_to_near_plane(sprite.centre);
         let along = if self.view.orthographic > 0.5 { 1.0 } else { -centre.z };
         let turn = Vec2::from_angle(rotation) * sprite.radius;
         [Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)].map(|corner| {

@@ -3,9 +3,9 @@
 use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 
 use super::optical_depth::optical_depths;
-use super::projected_bounds::{TargetRect, bounds_in_view, target_rect};
+use super::projected_bounds::{TargetRect, project_bounds, target_rect};
 use super::smoke_extent::SmokeExtent;
-use super::sprite_projector::Grid;
+use super::sprite_projector::TexelGrid;
 use super::view_geometry::ViewGeometry;
 use crate::assets::material_assets::MaterialInfo;
 use crate::formula::depth::SKY_VIEW_DEPTH;
@@ -13,7 +13,7 @@ use crate::formula::diffuse_bake::add_light;
 use crate::formula::lighting::{backlight_weight, direction_to_viewer, sample_light};
 use crate::formula::uniforms::{LightUniform, SystemUniform};
 use crate::frame::{Bounds, Particle};
-use crate::settings::{Backlight, DepthSource, DiffuseMode, Order, Settings};
+use crate::settings::{Backlight, BlendOrder, DepthSource, DiffuseMode, Settings};
 
 /// Properties of a system before it is placed in a view.
 #[derive(Clone, Copy, Debug)]
@@ -53,8 +53,8 @@ pub struct SystemSetup {
 
 impl SystemSetup {
     /// Returns the texel grid of the system's target.
-    pub fn grid(&self) -> Grid {
-        Grid { origin: self.rect.origin.as_vec2(), scale: self.uniform.scale, size: self.rect.size }
+    pub fn grid(&self) -> TexelGrid {
+        TexelGrid { origin: self.rect.origin.as_vec2(), scale: self.uniform.scale, size: self.rect.size }
     }
 }
 
@@ -62,10 +62,10 @@ impl SystemSetup {
 /// may be a part of them.
 pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
     let SystemInput { bounds, depth, particles, particles_per_sample, settings, material, lights, up, time } = *system;
-    let setup = bounds_in_view(bounds, view)?;
-    let middle = SmokeExtent::new(view, particles, settings.sprite.size, bounds, &setup, depth);
+    let setup = project_bounds(bounds, view)?;
+    let extent = SmokeExtent::new(view, particles, settings.sprite.size, bounds, &setup, depth);
     // A sample does not include the farthest particle.
-    let farthest = if particles_per_sample == 1 { middle.farthest } else { setup.far };
+    let farthest = if particles_per_sample == 1 { extent.farthest } else { setup.far };
     let accumulate = &settings.accumulate;
     let scale = accumulate.effective_scale(view.size);
     let rect = match accumulate.depth_source {
@@ -78,9 +78,9 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         bounds_min: bounds.min,
         bounds_near: setup.near,
         bounds_max: bounds.max,
-        smoke_near: middle.near,
-        centre: middle.centre,
-        smoke_far: middle.far,
+        smoke_near: extent.near,
+        centre: extent.centre,
+        smoke_far: extent.far,
         opacity: accumulate.opacity,
         scatter_colour: settings.soft_scatter.scatter_colour,
         scatter_amount: settings.soft_scatter.scatter_amount,
@@ -90,8 +90,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         target_origin: rect.origin.as_vec2(),
         target_size: rect.size.as_vec2(),
         scale: scale as f32,
-        depth_limit: (setup.far + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
-        smoke_depth_limit: (farthest.min(setup.far) + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
+        depth_limit: (setup.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
+        smoke_depth_limit: (farthest.min(setup.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         padding: [0.0; 3],
         six_way_colour: settings.diffuse.six_way_colour,
         six_way_anisotropy: settings.diffuse.six_way_anisotropy,
@@ -123,8 +123,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         show_through_distance: settings.show_through_distance(),
         depth_weight: accumulate.depth_weight,
         front_knots: match settings.order() {
-            Order::Sorted => [Vec4::ZERO; 4],
-            Order::Weighted => optical_depths(view, particles, particles_per_sample, settings, &middle),
+            BlendOrder::Sorted => [Vec4::ZERO; 4],
+            BlendOrder::Weighted => optical_depths(view, particles, particles_per_sample, settings, &extent),
         },
         spherical_harmonics: [Vec4::ZERO; 9],
     };

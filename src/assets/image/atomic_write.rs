@@ -21,15 +21,15 @@ use crate::error::Error;
 /// # Errors
 /// [`Error::Io`] if the file cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    put(&followed(path), bytes).map_err(|error| Error::Io { path: path.into(), error })
+    write_atomically(&resolve_links(path), bytes).map_err(|error| Error::Io { path: path.into(), error })
 }
 
 /// Checks that [`write_file`] could start now, for callers with long work before the write. Changes nothing.
 ///
 /// # Errors
 /// The system's error, if the write could not start.
-pub fn check_file(path: &Path) -> io::Result<()> {
-    let target = followed(path);
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    let target = resolve_links(path);
     match OpenOptions::new().write(true).open(&target) {
         Err(error) if error.kind() == ErrorKind::NotFound => {
             create_partial(&target).and_then(|(partial, _)| fs::remove_file(partial))
@@ -58,7 +58,7 @@ impl FileIdentity {
             use std::os::unix::fs::MetadataExt;
             return Self(Identity::Inode(found.dev(), found.ino()));
         }
-        let target = followed(path);
+        let target = resolve_links(path);
         let folder = folder_of(&target);
         let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.into());
         Self(Identity::Place(folder.join(target.file_name().unwrap_or_default())))
@@ -66,31 +66,31 @@ impl FileIdentity {
 }
 
 /// Maximum number of symbolic links to follow; the limit of Linux.
-const MOST_LINKS: u32 = 40;
+const MAX_LINKS: u32 = 40;
 
 /// Follows symbolic links. The target need not exist.
-fn followed(path: &Path) -> PathBuf {
+fn resolve_links(path: &Path) -> PathBuf {
     let mut path = path.to_path_buf();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         let Ok(target) = fs::read_link(&path) else { break };
         path = path.parent().unwrap_or(Path::new("")).join(target);
     }
     path
 }
 
-fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let old = match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         found => Some(found?),
     };
-    if old.as_ref().is_some_and(has_other_names) {
+    if old.as_ref().is_some_and(has_hard_links) {
         return overwrite(path, bytes);
     }
     let (partial, mut file) = match create_partial(path) {
         Err(_) if old.is_some() => return overwrite(path, bytes),
         made => made?,
     };
-    sweep(folder_of(path));
+    remove_stale_partials(folder_of(path));
     let write = || {
         file.write_all(bytes)?;
         if let Some(old) = old {
@@ -123,7 +123,7 @@ const PARTIAL: (&str, &str) = (".haze-", ".partial");
 
 /// Removes temporary files that killed processes left in a folder, once per folder and process. Running processes hold
 /// a lock on their file.
-fn sweep(folder: &Path) {
+fn remove_stale_partials(folder: &Path) {
     static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     if !SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.into()) {
         return;
@@ -142,12 +142,12 @@ fn sweep(folder: &Path) {
 }
 
 #[cfg(unix)]
-fn has_other_names(file: &Metadata) -> bool {
+fn has_hard_links(file: &Metadata) -> bool {
     std::os::unix::fs::MetadataExt::nlink(file) > 1
 }
 
 #[cfg(not(unix))]
-fn has_other_names(_: &Metadata) -> bool {
+fn has_hard_links(_: &Metadata) -> bool {
     false
 }
 
@@ -163,7 +163,7 @@ fn create_partial(path: &Path) -> io::Result<(PathBuf, File)> {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
             made => made?,
         };
-        // If the file system has no locks, `sweep` removes nothing.
+        // If the file system has no locks, `remove_stale_partials` removes nothing.
         let _ = file.lock();
         // Another process may have removed it before it was locked.
         if partial.exists() {
@@ -206,12 +206,14 @@ mod tests {
     fn checking_a_file_changes_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        check_file(&path).unwrap();
+        check_writable(&path).unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         fs::write(&path, "old").unwrap();
-        check_file(&path).unwrap();
+        check_writable(&path).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
-        assert!(check_file(&folder.path().join("missing/a.png")).is_err() && check_file(folder.path()).is_err());
+        assert!(
+            check_writable(&folder.path().join("missing/a.png")).is_err() && check_writable(folder.path()).is_err()
+        );
     }
 
     #[test]
@@ -265,6 +267,6 @@ mod tests {
         assert_eq!((read("c.png"), read("d.png")), ("both".into(), "both".into()));
 
         symlink("loop.png", path("loop.png")).unwrap();
-        assert!(write_file(&path("loop.png"), b"").is_err() && check_file(&path("loop.png")).is_err());
+        assert!(write_file(&path("loop.png"), b"").is_err() && check_writable(&path("loop.png")).is_err());
     }
 }

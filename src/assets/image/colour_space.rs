@@ -9,7 +9,7 @@ use super::icc_profile::is_srgb;
 use super::png::{MAX_BYTES, decode_with_profile, is_png};
 use super::png_chunks::{ColourTags, colour_tags};
 use crate::assets::bounded_read;
-use crate::error::{Error, name};
+use crate::error::{Error, display_path};
 use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 
 /// Decodes a PNG of colours, such as a ramp or a motif. The result is sRGB and opaque.
@@ -125,7 +125,7 @@ impl ColourTags {
             return Ok(Space { transfer, srgb_from_linear: from_primaries(primaries)? });
         }
         if let Some(profile_name) = &self.profile {
-            let found = || format!("the colour profile \"{}\"", name(Path::new(profile_name)));
+            let found = || format!("the colour profile \"{}\"", display_path(Path::new(profile_name)));
             return if profile.is_some_and(is_srgb) { Ok(srgb) } else { Err(found()) };
         }
         if self.srgb {

@@ -25,7 +25,7 @@ pub struct NoiseVolume {
 
 impl NoiseVolume {
     /// True if both share the same memory.
-    pub(crate) fn shares(&self, other: &Self) -> bool {
+    pub(crate) fn shares_memory(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.texels, &other.texels)
     }
 

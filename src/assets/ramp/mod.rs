@@ -3,7 +3,7 @@
 
 mod ramp_role;
 
-pub use ramp_role::Role;
+pub use ramp_role::RampRole;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ impl Ramp {
     }
 
     /// True if both share the same memory.
-    pub fn shares(&self, other: &Self) -> bool {
+    pub fn shares_memory(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.texels, &other.texels)
     }
 

@@ -4,7 +4,7 @@ use crate::settings::choice;
 
 choice! {
     /// Use of a ramp; `ramps/README.md` describes the axes.
-    Role {
+    RampRole {
         /// Diffuse light by the angle between normal and light.
         #[default]
         Diffuse = "diffuse",
@@ -21,7 +21,7 @@ choice! {
     }
 }
 
-impl Role {
+impl RampRole {
     /// Returns the role from a file name: `specular_moon.png` is a specular ramp.
     pub fn of_name(name: &str) -> Option<Self> {
         let first = name.split(['_', '.', '-']).next().unwrap_or_default();

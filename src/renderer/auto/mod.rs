@@ -8,5 +8,5 @@ pub use path_choice::{PathChoice, PathReason};
 pub use path_model::{PathCosts, PathModel, PathModelSource};
 pub use workload::PathWorkload;
 
-pub(crate) use path_choice::Chooser;
-pub(crate) use workload::load;
+pub(crate) use path_choice::PathChooser;
+pub(crate) use workload::estimate_workload;

@@ -7,7 +7,7 @@ use super::workload::PathWorkload;
 use crate::settings::RenderPath;
 
 /// Frames for which the other path must look better before a switch: 0.5 s at 60 frames per second.
-const PATIENCE: u32 = 30;
+const SWITCH_DELAY_FRAMES: u32 = 30;
 /// The other path looks better if its expected time is below this fraction of the current path's.
 const SWITCH_RATIO: f32 = 0.95;
 
@@ -44,10 +44,10 @@ pub enum PathReason {
 }
 
 impl PathChoice {
-    /// Returns the path with the lower expected time for a load, regardless of earlier choices.
-    pub fn new(model: &PathModel, load: &PathWorkload) -> Self {
-        let [raster_ms, tiled_ms] = model.milliseconds(load);
-        let layers = (!load.is_assumed).then(|| load.layers() as f32);
+    /// Returns the path with the lower expected time for a workload, regardless of earlier choices.
+    pub fn new(model: &PathModel, workload: &PathWorkload) -> Self {
+        let [raster_ms, tiled_ms] = model.milliseconds(workload);
+        let layers = (!workload.is_assumed).then(|| workload.layers() as f32);
         Self {
             path: if tiled_ms < raster_ms { RenderPath::Tiled } else { RenderPath::Raster },
             reason: PathReason::Expected { raster_ms, tiled_ms, layers, source: model.source },
@@ -89,21 +89,21 @@ fn digits(ms: f32) -> String {
 /// Switches paths only after the other has looked better for a while, so that pipelines and targets are not recreated
 /// every few frames.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Chooser {
+pub(crate) struct PathChooser {
     taken: Option<RenderPath>,
     /// Consecutive frames for which the other path has looked better.
-    other: u32,
+    frames_other_better: u32,
 }
 
-impl Chooser {
-    pub fn choose(&mut self, model: &PathModel, load: &PathWorkload) -> PathChoice {
-        let best = PathChoice::new(model, load);
+impl PathChooser {
+    pub fn choose(&mut self, model: &PathModel, workload: &PathWorkload) -> PathChoice {
+        let best = PathChoice::new(model, workload);
         let taken = *self.taken.get_or_insert(best.path);
         let PathReason::Expected { raster_ms, tiled_ms, .. } = best.reason else { return best };
         let is_worth_it = raster_ms.min(tiled_ms) < SWITCH_RATIO * raster_ms.max(tiled_ms);
-        self.other = if best.path != taken && is_worth_it { self.other + 1 } else { 0 };
-        if self.other > PATIENCE {
-            *self = Self { taken: Some(best.path), other: 0 };
+        self.frames_other_better = if best.path != taken && is_worth_it { self.frames_other_better + 1 } else { 0 };
+        if self.frames_other_better > SWITCH_DELAY_FRAMES {
+            *self = Self { taken: Some(best.path), frames_other_better: 0 };
         }
         PathChoice { path: self.taken.unwrap_or(best.path), ..best }
     }
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::settings::Technique;
 
-    fn load(layers: f64) -> PathWorkload {
+    fn workload(layers: f64) -> PathWorkload {
         PathWorkload {
             technique: Technique::Soft,
             sprites: 100.0,
@@ -142,27 +142,27 @@ mod tests {
     #[test]
     fn first_choice_is_immediate_and_a_switch_is_delayed() {
         let model = PathModel::of_class(wgpu::DeviceType::Cpu);
-        let [few, many] = [load(2.0), load(2000.0)];
-        let mut chooser = Chooser::default();
+        let [few, many] = [workload(2.0), workload(2000.0)];
+        let mut chooser = PathChooser::default();
         assert_eq!(chooser.choose(&model, &few).path, RenderPath::Raster);
         // A short advantage does not cause a switch.
         for _ in 0..10 {
-            assert!((0..PATIENCE).all(|_| chooser.choose(&model, &many).path == RenderPath::Raster));
+            assert!((0..SWITCH_DELAY_FRAMES).all(|_| chooser.choose(&model, &many).path == RenderPath::Raster));
             assert_eq!(chooser.choose(&model, &few).path, RenderPath::Raster);
         }
-        assert!((0..PATIENCE).all(|_| chooser.choose(&model, &many).path == RenderPath::Raster));
+        assert!((0..SWITCH_DELAY_FRAMES).all(|_| chooser.choose(&model, &many).path == RenderPath::Raster));
         assert_eq!(chooser.choose(&model, &many).path, RenderPath::Tiled);
-        assert_eq!(Chooser::default().choose(&model, &many).path, RenderPath::Tiled);
+        assert_eq!(PathChooser::default().choose(&model, &many).path, RenderPath::Tiled);
     }
 
     #[test]
     fn small_gain_does_not_cause_a_switch() {
         let mut model = PathModel::of_class(wgpu::DeviceType::Cpu);
-        let mut chooser = Chooser::default();
-        model.tiled = model.raster.times(2.0);
-        let load = PathWorkload { optical_depth: 0.0, ..load(10.0) };
-        assert_eq!(chooser.choose(&model, &load).path, RenderPath::Raster);
-        model.tiled = model.raster.times(0.97);
-        assert!((0..4 * PATIENCE).all(|_| chooser.choose(&model, &load).path == RenderPath::Raster));
+        let mut chooser = PathChooser::default();
+        model.tiled = model.raster.scaled(2.0);
+        let workload = PathWorkload { optical_depth: 0.0, ..workload(10.0) };
+        assert_eq!(chooser.choose(&model, &workload).path, RenderPath::Raster);
+        model.tiled = model.raster.scaled(0.97);
+        assert!((0..4 * SWITCH_DELAY_FRAMES).all(|_| chooser.choose(&model, &workload).path == RenderPath::Raster));
     }
 }

@@ -9,11 +9,11 @@ use crate::settings::Technique;
 /// Side of the squares that [`PathCosts::entry`] counts, texels.
 const BIN: f64 = 32.0;
 /// Side of the squares that a CPU's cores rasterize, one core per square, texels.
-const SQUARE: u32 = 64;
+const RASTER_SQUARE: u32 = 64;
 /// Optical depth at which a traversal stops: `OPAQUE` in `shaders/tile_accumulate.wgsl`, doubled because texels that
 /// are traversed together wait for the last of them.
-const OPAQUE_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
-/// Fraction of the traversals that never stop: those at the borders of the smoke. With this value and `OPAQUE_DEPTH`,
+const STOP_OPTICAL_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
+/// Fraction of the traversals that never stop: those at the borders of the smoke. With this value and `STOP_OPTICAL_DEPTH`,
 /// the model is within 5 % of an H200 for large sprites.
 const NEVER_OPAQUE_SHARE: f64 = 0.5;
 /// Tolerance of a probe on a CPU: if the measured ratio of the two paths differs from the class's by less than this
@@ -152,15 +152,15 @@ impl PathModel {
 
     /// Scales this class's model to a device. `times`: the probe's time divided by this model's expectation, for
     /// `raster` and `tiled`.
-    pub(crate) fn probed(self, times: [f32; 2]) -> Self {
-        let finds = self.probe_bias();
-        let [raster, tiled] = [times[0] / finds[0], times[1] / finds[1]];
-        let doubt = if self.source == PathModelSource::Cpu { CPU_PROBE_TOLERANCE } else { 1.0 };
+    pub(crate) fn scaled_by_probe(self, times: [f32; 2]) -> Self {
+        let bias = self.probe_bias();
+        let [raster, tiled] = [times[0] / bias[0], times[1] / bias[1]];
+        let tolerance = if self.source == PathModelSource::Cpu { CPU_PROBE_TOLERANCE } else { 1.0 };
         let apart = tiled / raster;
-        let (both, apart) = ((raster * tiled).sqrt(), (apart / apart.clamp(doubt.recip(), doubt)).sqrt());
+        let (both, apart) = ((raster * tiled).sqrt(), (apart / apart.clamp(tolerance.recip(), tolerance)).sqrt());
         Self {
-            raster: self.raster.times(both / apart),
-            tiled: self.tiled.times(both * apart),
+            raster: self.raster.scaled(both / apart),
+            tiled: self.tiled.scaled(both * apart),
             source: PathModelSource::Probe,
             ..self
         }
@@ -199,32 +199,32 @@ impl PathModel {
     }
 
     /// Returns the expected milliseconds of `raster` and of `tiled`.
-    pub fn milliseconds(&self, load: &PathWorkload) -> [f32; 2] {
-        let share = load.visited_share();
-        [(&self.raster, load.busiest(self.cores)), (&self.tiled, share)]
-            .map(|(costs, share)| costs.milliseconds(load, share))
+    pub fn milliseconds(&self, workload: &PathWorkload) -> [f32; 2] {
+        let share = workload.visited_share();
+        [(&self.raster, workload.busiest_core_share(self.cores)), (&self.tiled, share)]
+            .map(|(costs, share)| costs.milliseconds(workload, share))
     }
 }
 
 impl PathCosts {
     /// Returns the expected milliseconds. `share`: fraction of the sprites' texels that are shaded; above 1 if the pass
     /// waits for the busiest core.
-    pub(crate) fn milliseconds(&self, load: &PathWorkload, share: f64) -> f32 {
-        let of_fragment = match load.technique {
+    pub(crate) fn milliseconds(&self, workload: &PathWorkload, share: f64) -> f32 {
+        let of_fragment = match workload.technique {
             Technique::SphericalBillboard => f64::from(self.sphere),
-            technique if technique.is_volumetric() => f64::from(self.march) * load.lookups,
+            technique if technique.is_volumetric() => f64::from(self.march) * workload.lookups,
             _ => f64::from(self.fragment),
         };
         let nanoseconds = f64::from(self.frame)
-            + f64::from(self.texel) * load.texels()
-            + f64::from(self.sprite) * load.sprites
-            + f64::from(self.layer) * load.layers()
-            + (f64::from(self.entry) * load.entries() + of_fragment * load.drawn(self.block)) * share;
+            + f64::from(self.texel) * workload.texels()
+            + f64::from(self.sprite) * workload.sprites
+            + f64::from(self.layer) * workload.layers()
+            + (f64::from(self.entry) * workload.entries() + of_fragment * workload.texels_shaded(self.block)) * share;
         (nanoseconds * 1.0e-6) as f32
     }
 
     /// Returns all costs multiplied by a factor.
-    pub(crate) fn times(self, factor: f32) -> Self {
+    pub(crate) fn scaled(self, factor: f32) -> Self {
         Self {
             frame: self.frame * factor,
             texel: self.texel * factor,
@@ -252,37 +252,37 @@ impl PathWorkload {
 
     /// Returns the work of the core with the largest square, relative to an even share: 1 if there are enough squares
     /// for all cores.
-    fn busiest(&self, cores: u32) -> f64 {
-        let largest = self.size.min(UVec2::splat(SQUARE)).as_dvec2().element_product();
+    fn busiest_core_share(&self, cores: u32) -> f64 {
+        let largest = self.size.min(UVec2::splat(RASTER_SQUARE)).as_dvec2().element_product();
         (f64::from(cores) * largest / self.texels().max(1.0)).max(1.0)
     }
 
     /// Returns the number of squares of 32 by 32 texels that sprites touch, summed over all sprites.
     fn entries(&self) -> f64 {
-        self.sprites * self.touched(BIN, BIN)
+        self.sprites * self.rectangles_touched(BIN, BIN)
     }
 
     /// Returns the mean number of rectangles of `width` by `height` texels that a sprite touches.
-    pub(crate) fn touched(&self, width: f64, height: f64) -> f64 {
-        let side = self.side();
+    pub(crate) fn rectangles_touched(&self, width: f64, height: f64) -> f64 {
+        let side = self.mean_sprite_side();
         ((side / width + 1.0) * (side / height + 1.0)).min((self.texels() / (width * height)).max(1.0))
     }
 
     /// Returns the side of a mean sprite's screen box, texels; the factor 1.2 accounts for rotated squares.
-    fn side(&self) -> f64 {
+    fn mean_sprite_side(&self) -> f64 {
         1.2 * (self.fragments / self.sprites.max(1.0)).sqrt()
     }
 
     /// Returns the number of texels that are shaded in blocks of these sides.
-    fn drawn(&self, [width, height]: [u32; 2]) -> f64 {
-        let side = self.side().max(1.0);
+    fn texels_shaded(&self, [width, height]: [u32; 2]) -> f64 {
+        let side = self.mean_sprite_side().max(1.0);
         self.fragments * (1.0 + f64::from(width) / side) * (1.0 + f64::from(height) / side)
     }
 
     /// Returns the mean fraction of the sprites that a traversal visits before it stops. Assumes that overdraw is
     /// distributed exponentially over the texels: most layers lie in few places.
     fn visited_share(&self) -> f64 {
-        let layers_seen = OPAQUE_DEPTH / self.optical_depth.max(1.0e-6);
+        let layers_seen = STOP_OPTICAL_DEPTH / self.optical_depth.max(1.0e-6);
         1.0 - (1.0 - NEVER_OPAQUE_SHARE) * (-layers_seen / self.layers().max(1.0e-6)).exp()
     }
 }
@@ -291,7 +291,7 @@ impl PathWorkload {
 mod tests {
     use super::*;
 
-    fn load(layers: f64) -> PathWorkload {
+    fn workload(layers: f64) -> PathWorkload {
         let size = UVec2::new(1280, 720);
         PathWorkload {
             technique: Technique::Soft,
@@ -307,12 +307,12 @@ mod tests {
     #[test]
     fn early_stop_limits_the_cost_of_tiled_but_not_of_raster() {
         let model = PathModel::of_class(wgpu::DeviceType::Cpu);
-        let [raster, tiled] = model.milliseconds(&load(4.0));
+        let [raster, tiled] = model.milliseconds(&workload(4.0));
         assert!(raster < tiled, "{raster} {tiled}");
-        let [deep_raster, deep_tiled] = model.milliseconds(&load(4000.0));
+        let [deep_raster, deep_tiled] = model.milliseconds(&workload(4000.0));
         assert!(deep_raster > 500.0 * raster && deep_tiled < 500.0 * tiled, "{deep_raster} {deep_tiled}");
         // A traversal that does not stop visits all layers.
-        let [_, all] = model.milliseconds(&PathWorkload { optical_depth: 0.0, ..load(4000.0) });
+        let [_, all] = model.milliseconds(&PathWorkload { optical_depth: 0.0, ..workload(4000.0) });
         assert!(all > 1.7 * deep_tiled);
     }
 
@@ -320,7 +320,7 @@ mod tests {
     fn small_deviations_of_a_cpu_probe_are_ignored() {
         let apart = |class: PathModel, for_each_field: f32| {
             let [raster, tiled] = class.probe_bias();
-            let probed = class.probed([3.0 * raster, 3.0 * for_each_field * tiled]);
+            let probed = class.scaled_by_probe([3.0 * raster, 3.0 * for_each_field * tiled]);
             let [raster, tiled] = [probed.raster.march / class.raster.march, probed.tiled.march / class.tiled.march];
             assert!((raster * tiled / (9.0 * for_each_field) - 1.0).abs() < 1.0e-4, "{raster} {tiled}");
             tiled / raster
@@ -340,7 +340,7 @@ mod tests {
         let raster = |width, height| {
             let size = UVec2::new(width, height);
             let fragments = 100.0 * size.as_dvec2().element_product();
-            let [raster, _] = model.milliseconds(&PathWorkload { size, fragments, sprites: 0.0, ..load(1.0) });
+            let [raster, _] = model.milliseconds(&PathWorkload { size, fragments, sprites: 0.0, ..workload(1.0) });
             f64::from(raster - 1.0e-6 * model.raster.frame) / size.as_dvec2().element_product()
         };
         let alike = |a: f64, b: f64| (a / b - 1.0).abs() < 0.05;
@@ -352,12 +352,13 @@ mod tests {
     fn gpu_model_prefers_tiled_unless_the_load_is_small() {
         let model = PathModel::of_class(wgpu::DeviceType::DiscreteGpu);
         let small = UVec2::splat(128);
-        let size = load(1.0).size;
-        for (size, layers, walks) in [(small, 0.2, false), (size, 16.0, true), (size, 64.0, true), (size, 1024.0, true)]
+        let size = workload(1.0).size;
+        for (size, layers, prefers_tiled) in
+            [(small, 0.2, false), (size, 16.0, true), (size, 64.0, true), (size, 1024.0, true)]
         {
             let fragments = layers * size.as_dvec2().element_product();
-            let [raster, tiled] = model.milliseconds(&PathWorkload { size, fragments, ..load(layers) });
-            assert_eq!(tiled < raster, walks, "{layers}: {tiled} {raster}");
+            let [raster, tiled] = model.milliseconds(&PathWorkload { size, fragments, ..workload(layers) });
+            assert_eq!(tiled < raster, prefers_tiled, "{layers}: {tiled} {raster}");
         }
     }
 }

@@ -3,8 +3,8 @@
 use glam::UVec2;
 
 use crate::frame::Particle;
-use crate::settings::{Layers, Order, Settings, Technique};
-use crate::view_setup::{Grid, SpriteProjector, optical_depth};
+use crate::settings::{BlendOrder, Layers, Settings, Technique};
+use crate::view_setup::{SpriteProjector, TexelGrid, optical_depth};
 
 /// Maximum number of sprites sampled; the estimate takes about ten microseconds.
 const SAMPLE: usize = 256;
@@ -33,9 +33,9 @@ pub struct PathWorkload {
 
 /// Estimates the workload of `sprites` sprites on a target. `known`: particles that stand for all, and the number of
 /// sprites that each represents.
-pub(crate) fn load(
+pub(crate) fn estimate_workload(
     projector: &SpriteProjector<'_>,
-    grid: &Grid,
+    grid: &TexelGrid,
     sprites: u32,
     known: Option<(&[Particle], u32)>,
     settings: &Settings,
@@ -47,7 +47,7 @@ pub(crate) fn load(
         Some((particles, each)) => {
             let step = particles.len().div_ceil(SAMPLE).max(1);
             let sample = particles.iter().step_by(step).filter(|particle: &&Particle| particle.is_visible());
-            let (areas, depths) = projector.covered(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
+            let (areas, depths) = projector.coverages(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
                 // `optical_depth` is the mean over the whole square; only the share that is not trimmed is covered.
                 let depth = f64::from(optical_depth(sprite.particle, settings)) / sprite.share.max(1.0e-6);
                 (areas + sprite.texels, depths + sprite.texels * depth)
@@ -55,7 +55,7 @@ pub(crate) fn load(
             (areas * step as f64 * f64::from(each), depths / f64::max(areas, 1.0e-9))
         }
     };
-    let stops = settings.accumulate.layers == Layers::Visible && settings.order() == Order::Sorted;
+    let stops = settings.accumulate.layers == Layers::Visible && settings.order() == BlendOrder::Sorted;
     PathWorkload {
         technique: settings.technique,
         sprites: f64::from(sprites) * loops,

@@ -3,10 +3,10 @@
 use std::convert::Infallible;
 
 use super::compose::Composed;
-use super::naga_messages::{plain, pointed_at};
+use super::naga_messages::{marked_location, to_wgsl_terms};
 use super::sources::Sources;
 use crate::error::Error;
-use crate::renderer::gpu::error_scopes::{answer, checked};
+use crate::renderer::gpu::error_scopes::{poll_once, with_error_scopes};
 use crate::renderer::gpu::pipeline::Shader;
 
 /// Creates the embedded shader of a pass.
@@ -24,21 +24,21 @@ pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Resu
 pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources: &Sources) -> Result<Shader, Error> {
     let composed = sources.compose(&file_of(name))?;
     let mut module = None;
-    let created = checked(device, || module.insert(create(device, name, &composed)).clone());
+    let created = with_error_scopes(device, || module.insert(create(device, name, &composed)).clone());
     match created {
         Ok(module) => Ok(Shader { module, path: composed.path }),
         Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
-            let info = module.and_then(|module| answer(module.get_compilation_info()));
+            let info = module.and_then(|module| poll_once(module.get_compilation_info()));
             match info.and_then(|info| info.messages.into_iter().next()) {
                 Some(wgpu::CompilationMessage { message, location: Some(place), .. }) => {
-                    let of_naga = || {
+                    let naga_location = || {
                         let line = place.line_number as usize;
                         (line, composed.column(line, place.line_position as usize))
                     };
-                    let (line, column) = pointed_at(&message, &composed.text).unwrap_or_else(of_naga);
-                    composed.mistake(line, column, &plain(&message))
+                    let (line, column) = marked_location(&message, &composed.text).unwrap_or_else(naga_location);
+                    composed.error_at(line, column, &to_wgsl_terms(&message))
                 }
-                _ => composed.mistake(1, 1, &reason),
+                _ => composed.error_at(1, 1, &reason),
             }
         })),
     }

@@ -83,7 +83,7 @@ impl Sources {
                     continue;
                 }
                 if files.len() + imported.len() == MAX_FILES {
-                    return Err(file.mistake(line, IMPORT_COLUMN, format!("more than {MAX_FILES} files")));
+                    return Err(file.error_at(line, IMPORT_COLUMN, format!("more than {MAX_FILES} files")));
                 }
                 match File::read(folder, name)? {
                     Some(file) => imported.push(file),
@@ -107,7 +107,7 @@ impl Sources {
     pub(super) fn find_unclosed_bracket(&self) -> Option<Error> {
         let own = self.files.iter().filter(|file| !file.is_embedded);
         own.filter_map(|file| Some((file, find_unclosed_bracket(&file.text)?)))
-            .map(|(file, (line, column, bracket))| file.mistake(line, column, format!("`{bracket}` is never closed")))
+            .map(|(file, (line, column, bracket))| file.error_at(line, column, format!("`{bracket}` is never closed")))
             .next()
     }
 
@@ -141,7 +141,7 @@ impl File {
     }
 
     /// Creates an error in this file.
-    pub fn mistake(&self, line: usize, column: usize, reason: String) -> Error {
+    pub fn error_at(&self, line: usize, column: usize, reason: String) -> Error {
         Error::Shader { path: self.path.to_path_buf(), line, column, reason: one_line(reason) }
     }
 }

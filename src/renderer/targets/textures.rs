@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 /// Creates textures and counts their bytes.
-pub(super) struct Textures<'a> {
+pub(super) struct TextureAllocator<'a> {
     pub device: &'a wgpu::Device,
     pub bytes: u64,
     /// True if compute shaders write the textures. They are then not render attachments, because not every device can
@@ -11,7 +11,7 @@ pub(super) struct Textures<'a> {
     pub storage: bool,
 }
 
-impl Textures<'_> {
+impl TextureAllocator<'_> {
     pub fn create(&mut self, label: &str, format: wgpu::TextureFormat, size: UVec2, layers: u32) -> wgpu::Texture {
         let texel = u64::from(format.block_copy_size(None).unwrap_or(16));
         self.bytes += texel * u64::from(size.x) * u64::from(size.y) * u64::from(layers);
@@ -43,5 +43,5 @@ pub(crate) fn storage_target(
     format: wgpu::TextureFormat,
     size: UVec2,
 ) -> wgpu::TextureView {
-    Textures { device, bytes: 0, storage: true }.create_whole(label, format, size)
+    TextureAllocator { device, bytes: 0, storage: true }.create_whole(label, format, size)
 }

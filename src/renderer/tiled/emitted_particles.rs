@@ -1,7 +1,7 @@
 //! Evaluation of an emitter's particles on the GPU.
 
 use super::storage_buffers::bind;
-use super::tiled_pipelines::Tiled;
+use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{EmitterSnapshot, Particle};
 use crate::renderer::gpu::Gpu;
@@ -12,38 +12,38 @@ use crate::renderer::sprite_instances::Sprites;
 
 /// Buffer for the particles of one system, kept between frames.
 #[derive(Debug, Default)]
-pub(crate) struct Emitted {
-    buffers: Option<EmissionBuffers>,
-    spare: IdleCounter,
+pub(crate) struct EmittedParticles {
+    buffers: Option<EmitterBuffers>,
+    idle: IdleCounter,
 }
 
 #[derive(Debug)]
-struct EmissionBuffers {
+struct EmitterBuffers {
     uniform: wgpu::Buffer,
     particles: wgpu::Buffer,
     inputs: wgpu::BindGroup,
 }
 
-impl Emitted {
+impl EmittedParticles {
     /// Prepares the buffer and the pass that fills it. Returns `None` if there is nothing to draw.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
-        tiled: &Tiled,
+        tiled: &TiledPipelines,
         emission: &EmitterSnapshot,
         loops: u32,
     ) -> Option<(Sprites, Emit)> {
         let count = emission.count();
         let needed = u64::from(count.next_power_of_two()) * size_of::<Particle>() as u64;
         let buffers = self.buffers.as_ref().map_or(0, |buffers| buffers.particles.size());
-        let gives_back = self.spare.tick(needed * 4 <= buffers);
-        if needed > buffers || gives_back || count == 0 {
+        let should_release = self.idle.tick(needed * 4 <= buffers);
+        if needed > buffers || should_release || count == 0 {
             self.buffers = None;
         }
         if count == 0 {
             return None;
         }
-        let buffers = self.buffers.get_or_insert_with(|| EmissionBuffers::new(gpu.device, tiled, needed));
+        let buffers = self.buffers.get_or_insert_with(|| EmitterBuffers::new(gpu.device, tiled, needed));
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&emission.uniform));
         let buffer = buffers.particles.clone();
         let sprites = Sprites { buffer, offset: 0, count, loops, is_sorted: false, by_view_depth: false };
@@ -56,8 +56,8 @@ impl Emitted {
     }
 }
 
-impl EmissionBuffers {
-    fn new(device: &wgpu::Device, tiled: &Tiled, size: u64) -> Self {
+impl EmitterBuffers {
+    fn new(device: &wgpu::Device, tiled: &TiledPipelines, size: u64) -> Self {
         let uniform = uniform_buffer(device, "haze emitter", size_of::<EmitterUniform>() as u64);
         let particles = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("haze emitted particles"),

@@ -9,9 +9,9 @@ mod tiled_passes;
 mod tiled_pipelines;
 mod tiled_system;
 
-pub(crate) use emitted_particles::Emitted;
+pub(crate) use emitted_particles::EmittedParticles;
 pub(crate) use sorted_particles::SortedParticles;
 pub(crate) use tile_buffers::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 pub(crate) use tiled_passes::TiledPasses;
-pub(crate) use tiled_pipelines::{Tiled, TiledKeys};
+pub(crate) use tiled_pipelines::{TiledKeys, TiledPipelines};
 pub(crate) use tiled_system::{TiledInputs, TiledSystem};

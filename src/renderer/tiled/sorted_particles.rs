@@ -2,8 +2,8 @@
 
 use super::sort_buffers::SortBuffers;
 use super::storage_buffers::bind;
-use super::tile_buffers::Part;
-use super::tiled_pipelines::Tiled;
+use super::tile_buffers::ParticleRange;
+use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::TilesUniform;
 use crate::frame::Particle;
 use crate::renderer::gpu::Gpu;
@@ -18,33 +18,33 @@ use crate::renderer::sprite_instances::Sprites;
 #[derive(Debug, Default)]
 pub(crate) struct SortedParticles {
     buffers: Option<DepthSortBuffers>,
-    spare: IdleCounter,
+    idle: IdleCounter,
 }
 
 #[derive(Debug)]
 struct DepthSortBuffers {
-    most: u32,
+    capacity: u32,
     uniform: wgpu::Buffer,
     sort: SortBuffers,
     particles: wgpu::Buffer,
     /// Bind group with the host's own buffer; recreated when that is another.
-    inputs: Option<(Part, wgpu::BindGroup)>,
+    inputs: Option<(ParticleRange, wgpu::BindGroup)>,
 }
 
 impl SortedParticles {
     /// Prepares the buffers and the pass that sorts `sprites` into them. Returns the sorted sprites and the pass.
-    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, sprites: &Sprites) -> (Sprites, DepthSort) {
+    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, sprites: &Sprites) -> (Sprites, DepthSort) {
         let count = sprites.count;
-        let buffers = self.buffers.as_ref().map_or(0, |buffers| buffers.most);
-        let gives_back = self.spare.tick(count.next_power_of_two() <= buffers / 4);
-        if count > buffers || gives_back {
+        let buffers = self.buffers.as_ref().map_or(0, |buffers| buffers.capacity);
+        let should_release = self.idle.tick(count.next_power_of_two() <= buffers / 4);
+        if count > buffers || should_release {
             self.buffers = None;
         }
         let buffers =
             self.buffers.get_or_insert_with(|| DepthSortBuffers::new(gpu.device, tiled, count.next_power_of_two()));
-        let part = Part::new(&tiled.limits, sprites);
+        let range = ParticleRange::new(&tiled.limits, sprites);
         let uniform =
-            TilesUniform { count, first: part.first, blocks: count.div_ceil(BLOCK), ..TilesUniform::default() };
+            TilesUniform { count, first: range.first, blocks: count.div_ceil(BLOCK), ..TilesUniform::default() };
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
         let buffer = buffers.particles.clone();
         let sorted = Sprites { buffer, offset: 0, is_sorted: true, by_view_depth: true, ..*sprites };
@@ -56,7 +56,7 @@ impl SortedParticles {
                 keys: count,
             },
             gather_particles: tiled.depth_sort(gpu.device, DepthSortKey::GatherParticles),
-            inputs: buffers.bind(gpu.device, tiled, part),
+            inputs: buffers.bind(gpu.device, tiled, range),
             particles: count,
         };
         (sorted, sort)
@@ -77,26 +77,26 @@ impl SortedParticles {
 }
 
 impl DepthSortBuffers {
-    fn new(device: &wgpu::Device, tiled: &Tiled, most: u32) -> Self {
+    fn new(device: &wgpu::Device, tiled: &TiledPipelines, capacity: u32) -> Self {
         let uniform = uniform_buffer(device, "haze depth_sort", size_of::<TilesUniform>() as u64);
         let particles = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("haze sorted particles"),
-            size: u64::from(most) * size_of::<Particle>() as u64,
+            size: u64::from(capacity) * size_of::<Particle>() as u64,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
             mapped_at_creation: false,
         });
-        Self { most, sort: SortBuffers::new(device, tiled, &uniform, most), uniform, particles, inputs: None }
+        Self { capacity, sort: SortBuffers::new(device, tiled, &uniform, capacity), uniform, particles, inputs: None }
     }
 
-    fn bind(&mut self, device: &wgpu::Device, tiled: &Tiled, part: Part) -> wgpu::BindGroup {
+    fn bind(&mut self, device: &wgpu::Device, tiled: &TiledPipelines, range: ParticleRange) -> wgpu::BindGroup {
         match &self.inputs {
-            Some((bound, group)) if *bound == part => group.clone(),
+            Some((bound, group)) if *bound == range => group.clone(),
             _ => {
-                let own = [self.sort.keys(), self.sort.numbers(), &self.particles];
-                let resources = [self.uniform.as_entire_binding(), part.binding()];
+                let own = [self.sort.keys(), self.sort.indices(), &self.particles];
+                let resources = [self.uniform.as_entire_binding(), range.binding()];
                 let resources = resources.into_iter().chain(own.map(wgpu::Buffer::as_entire_binding));
                 let group = bind(device, &tiled.layouts.depth_sort, resources);
-                self.inputs = Some((part, group.clone()));
+                self.inputs = Some((range, group.clone()));
                 group
             }
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::sort_buffers::SortBuffers;
 use super::storage_buffers::{WORD_BYTES, bind, storage, workgroups};
-use super::tiled_pipelines::Tiled;
+use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
@@ -25,7 +25,7 @@ pub(crate) const PARTICLE_ALIGNMENT: u64 = 16;
 pub(super) struct TileBuffers {
     pub capacity: Capacity,
     pub uniform: wgpu::Buffer,
-    pub tally: wgpu::Buffer,
+    pub counters: wgpu::Buffer,
     /// Indirect dispatch size for the visible sprites.
     pub workgroups: wgpu::Buffer,
     sprites: wgpu::Buffer,
@@ -39,14 +39,14 @@ pub(super) struct TileBuffers {
     pub gather: wgpu::BindGroup,
     pub bin: wgpu::BindGroup,
     /// Bind groups that include resources from outside, next to those resources; recreated when the resources change.
-    project: Option<(Part, wgpu::BindGroup)>,
+    project: Option<(ParticleRange, wgpu::BindGroup)>,
     refine: Option<(wgpu::TextureView, wgpu::BindGroup)>,
     accumulate: Option<(Vec<wgpu::TextureView>, wgpu::BindGroup)>,
 }
 
 /// Range of a buffer that has a system's particles. It starts at an offset that can be bound.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct ParticleRange {
     buffer: wgpu::Buffer,
     offset: u64,
     size: u64,
@@ -65,14 +65,14 @@ pub(super) struct Capacity {
 }
 
 impl Capacity {
-    /// Rounds up to leave room for growth. `most`: words of the largest buffer. Lists that do not fit into it are
+    /// Rounds up to leave room for growth. `max_words`: words of the largest buffer. Lists that do not fit into it are
     /// dropped; their bins read all sprites instead.
-    pub fn rounded_up(self, most: u32) -> Self {
+    pub fn rounded_up(self, max_words: u32) -> Self {
         Self {
             particles: self.particles.next_power_of_two(),
             bins: self.bins.next_power_of_two(),
-            runs: self.runs.next_power_of_two().min(most),
-            entries: self.entries.min(1 << 31).next_power_of_two().min(most),
+            runs: self.runs.next_power_of_two().min(max_words),
+            entries: self.entries.min(1 << 31).next_power_of_two().min(max_words),
         }
     }
 
@@ -90,11 +90,11 @@ impl Capacity {
 }
 
 impl TileBuffers {
-    pub fn new(device: &wgpu::Device, tiled: &Tiled, capacity: Capacity) -> Self {
+    pub fn new(device: &wgpu::Device, tiled: &TiledPipelines, capacity: Capacity) -> Self {
         let storage = |name, count, bytes| storage(device, name, count, bytes);
         let Capacity { particles, bins, runs, entries } = capacity;
         let uniform = uniform_buffer(device, "haze tiles", size_of::<TilesUniform>() as u64);
-        let tally = storage("haze tally", 2, WORD_BYTES);
+        let counters = storage("haze tile counters", 2, WORD_BYTES);
         let rects = storage("haze sprite rectangles", particles, RECT_BYTES);
         let sort = SortBuffers::new(device, tiled, &uniform, particles);
         let sorted_rects = storage("haze sorted rectangles", particles, RECT_BYTES);
@@ -102,15 +102,15 @@ impl TileBuffers {
         let lists = storage("haze bin lists", entries, WORD_BYTES);
         let bins = storage("haze bins", bins, RECT_BYTES);
         let read_back = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("haze tally"),
+            label: Some("haze tile counters"),
             size: 2 * WORD_BYTES,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
         let workgroups = workgroups(device, "haze bin workgroups");
-        let gather = [&uniform, sort.keys(), sort.numbers(), &rects, &sorted_rects, &tally, &workgroups];
+        let gather = [&uniform, sort.keys(), sort.indices(), &rects, &sorted_rects, &counters, &workgroups];
         let gather = bind(device, &tiled.layouts.gather, gather.map(wgpu::Buffer::as_entire_binding));
-        let bin = [&uniform, sort.numbers(), &sorted_rects, &bin_counts, &lists, &bins, &tally];
+        let bin = [&uniform, sort.indices(), &sorted_rects, &bin_counts, &lists, &bins, &counters];
         let bin = bind(device, &tiled.layouts.bin, bin.map(wgpu::Buffer::as_entire_binding));
         Self {
             capacity,
@@ -122,7 +122,7 @@ impl TileBuffers {
             refine: None,
             accumulate: None,
             uniform,
-            tally,
+            counters,
             workgroups,
             rects,
             sort,
@@ -139,18 +139,18 @@ impl TileBuffers {
         TiledMemory {
             sprites: bytes(&[&self.uniform, &self.sprites, &self.rects, &self.sorted_rects]),
             keys,
-            counts: counts + bytes(&[&self.bin_counts, &self.tally, &self.workgroups, &self.read_back]),
+            counts: counts + bytes(&[&self.bin_counts, &self.counters, &self.workgroups, &self.read_back]),
             lists: bytes(&[&self.lists, &self.bins]),
             ..TiledMemory::default()
         }
     }
 
-    pub fn bind_project(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, particles: Part) -> wgpu::BindGroup {
+    pub fn bind_project(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, particles: ParticleRange) -> wgpu::BindGroup {
         match &self.project {
             Some((bound, group)) if *bound == particles => group.clone(),
             _ => {
                 let Self { uniform, sprites, rects, sort, .. } = self;
-                let buffers = [&*sprites, rects, sort.keys(), sort.numbers()].map(wgpu::Buffer::as_entire_binding);
+                let buffers = [&*sprites, rects, sort.keys(), sort.indices()].map(wgpu::Buffer::as_entire_binding);
                 let own = [uniform.as_entire_binding(), particles.binding()];
                 let group = bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers));
                 self.project = Some((particles, group.clone()));
@@ -159,7 +159,7 @@ impl TileBuffers {
         }
     }
 
-    pub fn bind_refine(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, depth: &wgpu::TextureView) -> wgpu::BindGroup {
+    pub fn bind_refine(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, depth: &wgpu::TextureView) -> wgpu::BindGroup {
         match &self.refine {
             Some((bound, group)) if bound == depth => group.clone(),
             _ => {
@@ -177,7 +177,7 @@ impl TileBuffers {
     pub fn bind_accumulate(
         &mut self,
         gpu: &Gpu<'_>,
-        tiled: &Tiled,
+        tiled: &TiledPipelines,
         (format, extra_attachment): (AccumulationFormat, ExtraAttachment),
         attachments: &[wgpu::TextureView],
         depth: &wgpu::TextureView,
@@ -195,7 +195,7 @@ impl TileBuffers {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {
                 let Self { uniform, sprites, rects, sort, lists, bins, .. } = self;
-                let buffers = [&*uniform, sprites, rects, sort.numbers(), lists, bins];
+                let buffers = [&*uniform, sprites, rects, sort.indices(), lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
                 let group = bind(gpu.device, &tiled.layouts.accumulate, resources);
@@ -206,7 +206,7 @@ impl TileBuffers {
     }
 }
 
-impl Part {
+impl ParticleRange {
     pub fn new(limits: &wgpu::Limits, sprites: &Sprites) -> Self {
         let before = sprites.offset % u64::from(limits.min_storage_buffer_offset_alignment);
         let offset = sprites.offset - before;

@@ -24,14 +24,14 @@ pub(crate) struct TiledPasses {
     pub(super) bin: TileBin,
     pub(super) refine: Option<TileRefine>,
     pub(super) accumulate: TileAccumulate,
-    pub(super) tally: wgpu::Buffer,
+    pub(super) counters: wgpu::Buffer,
     pub(super) read_back: Arc<wgpu::Buffer>,
     pub(super) entries: Arc<AtomicU32>,
 }
 
 impl TiledPasses {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        encoder.clear_buffer(&self.tally, 0, None);
+        encoder.clear_buffer(&self.counters, 0, None);
         self.project.record(&mut begin_compute(encoder, "tile_project", timing), &self.groups);
         self.sort.iter().for_each(|sort| sort.record(&mut begin_compute(encoder, "sort", timing)));
         self.record_bin(&mut begin_compute(encoder, "tile_bin", timing));
@@ -52,7 +52,7 @@ impl TiledPasses {
         if Arc::strong_count(&self.read_back) > 2 {
             return;
         }
-        encoder.copy_buffer_to_buffer(&self.tally, 0, &self.read_back, 0, 2 * WORD_BYTES);
+        encoder.copy_buffer_to_buffer(&self.counters, 0, &self.read_back, 0, 2 * WORD_BYTES);
         let (read_back, entries) = (self.read_back.clone(), self.entries.clone());
         encoder.map_buffer_on_submit(&self.read_back, wgpu::MapMode::Read, .., move |mapped| {
             if mapped.is_ok() {

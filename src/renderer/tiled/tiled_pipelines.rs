@@ -20,7 +20,7 @@ use crate::renderer::targets::{storage_target, tiled_formats};
 
 /// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
 #[derive(Debug)]
-pub(crate) struct Tiled {
+pub(crate) struct TiledPipelines {
     pub layouts: TiledLayouts,
     /// True for cooperative traversal, false for per-invocation traversal; false at first on CPUs only.
     cooperative: AtomicBool,
@@ -68,20 +68,20 @@ impl TiledKeys {
 }
 
 /// Pipelines in the order of [`sort::keys`]. An array, so that a frame allocates nothing for it.
-type SortPipelines = [Option<(SortKey, wgpu::ComputePipeline)>; sort::STEPS];
+type SortPipelines = [Option<(SortKey, wgpu::ComputePipeline)>; sort::MAX_PIPELINES];
 
 /// Pipelines of one system.
-pub(crate) struct TiledPipelines {
+pub(crate) struct SystemPipelines {
     pub project: wgpu::ComputePipeline,
     pub sort: Option<SortPipelines>,
     pub gather: wgpu::ComputePipeline,
-    pub bin: [Option<(TileBinKey, wgpu::ComputePipeline)>; tile_bin::STEPS],
+    pub bin: [Option<(TileBinKey, wgpu::ComputePipeline)>; tile_bin::MAX_PIPELINES],
     /// Present for per-invocation traversal.
     pub refine: Option<wgpu::ComputePipeline>,
     pub accumulate: wgpu::ComputePipeline,
 }
 
-impl Tiled {
+impl TiledPipelines {
     /// Creates layouts and shader modules. `shader` returns the shader of a pass by name; `cache` is the host's
     /// pipeline cache, if the backend supports one.
     pub fn new<E>(
@@ -176,10 +176,10 @@ impl Tiled {
 
     /// Returns the pipelines of a system with `count` sprites. `sorts`: true if the sprites are unsorted and their
     /// order matters.
-    pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> TiledPipelines {
-        let bin_keys = tile_bin::keys(keys.accumulate.cooperative, count <= tile_bin::FEW);
+    pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> SystemPipelines {
+        let bin_keys = tile_bin::keys(keys.accumulate.cooperative, count <= tile_bin::MAX_SPRITES_SINGLE_DISPATCH);
         let mut bin = bin_keys.map(|key| (key, self.bin.get(device, key)));
-        TiledPipelines {
+        SystemPipelines {
             project: self.project.get(device, keys.project),
             sort: sorts.then(|| self.sort(device, count)),
             gather: self.gather.get(device, TileGatherKey { sorted: sorts }),

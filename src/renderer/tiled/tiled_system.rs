@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::UVec2;
 
 use super::storage_buffers::WORD_BYTES;
-use super::tile_buffers::{Capacity, Part, TileBuffers};
+use super::tile_buffers::{Capacity, ParticleRange, TileBuffers};
 use super::tiled_passes::TiledPasses;
-use super::tiled_pipelines::{Tiled, TiledKeys};
+use super::tiled_pipelines::{TiledKeys, TiledPipelines};
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::auto::PathWorkload;
 use crate::renderer::gpu::Gpu;
@@ -20,7 +20,7 @@ use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::{RUN, TileBin};
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
-use crate::renderer::pass::tile_refine::{BATCH, TileRefine};
+use crate::renderer::pass::tile_refine::{BITS_PER_WORD, TileRefine};
 use crate::renderer::sprite_instances::Sprites;
 use crate::renderer::targets::ExtraAttachment;
 use crate::settings::AccumulationFormat;
@@ -31,12 +31,12 @@ const MIN_ENTRIES: u32 = 1 << 16;
 const ENTRY_SAFETY_FACTOR: f64 = 1.5;
 
 /// Side of a bin, texels: for per-invocation traversal, tuned by how much of a bin's list each tile shows; for
-/// cooperative traversal, tuned by how much of the list touches a workgroup's tile; and for more than `MANY` particles,
+/// cooperative traversal, tuned by how much of the list touches a workgroup's tile; and for more than `LARGE_BIN_PARTICLES` particles,
 /// where counting for small bins would cost more than it saves.
 const BIN_SIDE_PER_INVOCATION: u32 = 32;
 const BIN_SIDE_COOPERATIVE: u32 = 32;
 const BIN_SIDE_LARGE: u32 = 64;
-const MANY: u32 = 1 << 16;
+const LARGE_BIN_PARTICLES: u32 = 1 << 16;
 
 /// Larger than any view depth, metres. Twice this value is still finite in f32.
 const BEYOND_ANY_DEPTH: f32 = 1.0e38;
@@ -48,7 +48,7 @@ const MAX_WORKGROUPS: u32 = 65535;
 #[derive(Debug, Default)]
 pub(crate) struct TiledSystem {
     buffers: Option<TileBuffers>,
-    spare: IdleCounter,
+    idle: IdleCounter,
     /// List entries that a frame some frames ago needed.
     entries: Arc<AtomicU32>,
 }
@@ -63,7 +63,7 @@ pub(crate) struct TiledInputs<'a> {
     pub attachments: &'a [wgpu::TextureView],
     /// Depth that sprites are compared with.
     pub depth: &'a wgpu::TextureView,
-    pub load: Option<&'a PathWorkload>,
+    pub workload: Option<&'a PathWorkload>,
 }
 
 impl TiledSystem {
@@ -71,22 +71,22 @@ impl TiledSystem {
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
-        tiled: &Tiled,
+        tiled: &TiledPipelines,
         keys: TiledKeys,
         groups: &Groups,
         inputs: &TiledInputs<'_>,
     ) -> TiledPasses {
-        let TiledInputs { sprites, size, format, extra_attachment, attachments, depth, load } = *inputs;
-        let most = max_storage_words(&tiled.limits);
+        let TiledInputs { sprites, size, format, extra_attachment, attachments, depth, workload } = *inputs;
+        let max_words = max_storage_words(&tiled.limits);
         let cooperative = keys.accumulate.cooperative;
         let runs = sprites.count.div_ceil(RUN);
-        let mut bin_side = match (cooperative, sprites.count > MANY) {
+        let mut bin_side = match (cooperative, sprites.count > LARGE_BIN_PARTICLES) {
             (false, _) => BIN_SIDE_PER_INVOCATION,
             (true, false) => BIN_SIDE_COOPERATIVE,
             (true, true) => BIN_SIDE_LARGE,
         };
         let bins_of = |side| bins_along(size, side).element_product();
-        while runs.saturating_mul(bins_of(bin_side)) > most || bins_of(bin_side) > MAX_WORKGROUPS {
+        while runs.saturating_mul(bins_of(bin_side)) > max_words || bins_of(bin_side) > MAX_WORKGROUPS {
             bin_side *= 2;
         }
         let UVec2 { x: columns, y: rows } = bins_along(size, bin_side);
@@ -94,15 +94,16 @@ impl TiledSystem {
         let wanted = self.entries.load(Ordering::Relaxed);
         // If the lists do not fit, the image is still correct, but bins without a list iterate over all sprites, which
         // is slow.
-        let touched = load.map_or(0.0, |load| load.touched(f64::from(bin_side), f64::from(bin_side)));
+        let touched =
+            workload.map_or(0.0, |workload| workload.rectangles_touched(f64::from(bin_side), f64::from(bin_side)));
         let expected = (ENTRY_SAFETY_FACTOR * touched * f64::from(sprites.count)) as u32;
         // tile_refine needs as many words again, in whole batches per bin.
-        let expected = if cooperative { expected } else { 2 * expected + BATCH * bins };
+        let expected = if cooperative { expected } else { 2 * expected + BITS_PER_WORD * bins };
         let entries = wanted.max(expected).max(MIN_ENTRIES);
         let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, entries };
-        let buffers = self.fit(gpu, tiled, needed.rounded_up(most));
+        let buffers = self.ensure(gpu, tiled, needed.rounded_up(max_words));
         let capacity = buffers.capacity.entries;
-        let particles = Part::new(&tiled.limits, sprites);
+        let particles = ParticleRange::new(&tiled.limits, sprites);
         let sorts = !keys.project.weighted && !sprites.is_sorted;
         let in_order = keys.project.sprite.is_flat() && (sorts || sprites.by_view_depth) && sprites.loops == 1;
         let uniform = TilesUniform {
@@ -144,7 +145,7 @@ impl TiledSystem {
             },
             refine,
             accumulate: TileAccumulate { pipeline: pipelines.accumulate, inputs: accumulate, size, cooperative },
-            tally: buffers.tally.clone(),
+            counters: buffers.counters.clone(),
             read_back: buffers.read_back.clone(),
             entries: self.entries.clone(),
         }
@@ -155,10 +156,10 @@ impl TiledSystem {
         self.buffers.as_ref().map_or(TiledMemory::default(), TileBuffers::memory)
     }
 
-    fn fit(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, needed: Capacity) -> &mut TileBuffers {
-        let is_to_spare = self.buffers.as_ref().is_some_and(|buffers| buffers.capacity.is_oversized_for(&needed));
-        let gives_back = self.spare.tick(is_to_spare);
-        if gives_back || !self.buffers.as_ref().is_some_and(|buffers| buffers.capacity.holds(&needed)) {
+    fn ensure(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, needed: Capacity) -> &mut TileBuffers {
+        let is_idle = self.buffers.as_ref().is_some_and(|buffers| buffers.capacity.is_oversized_for(&needed));
+        let should_release = self.idle.tick(is_idle);
+        if should_release || !self.buffers.as_ref().is_some_and(|buffers| buffers.capacity.holds(&needed)) {
             // Drops the old buffers before it creates new ones.
             self.buffers = None;
         }

@@ -70,7 +70,7 @@ impl Performance {
         let times = self.figures.times.take().filter(|times| self.seen.replace(times.frame) != Some(times.frame));
         self.waiting = if is_drawn || is_second_drawn { LATE } else { self.waiting.saturating_sub(1) };
         if let Some(times) = &times {
-            self.remember(times.passes.iter().filter(|pass| !pass.of_host).map(|pass| (pass.name, pass.ms)));
+            self.remember(times.passes.iter().filter(|pass| !pass.is_host).map(|pass| (pass.name, pass.ms)));
         } else if !self.figures.is_timed && is_drawn {
             self.remember(cpu_seconds.map(|seconds| (CPU_TIME, 1.0e3 * seconds)).into_iter());
         }

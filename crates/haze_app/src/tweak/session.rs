@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use glam::UVec2;
 use haze::preset::{AssetFolders, Preset};
-use haze::settings::{DebugView, Value, values};
+use haze::settings::{DebugView, FieldValue, field_values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 use haze_author::particle_files::ParticleFrames;
@@ -85,7 +85,7 @@ struct Changed {
 
 /// Values of the second image's settings that differ, by path, and the two presets that were compared.
 struct SecondDiff {
-    apart: HashMap<String, Value>,
+    apart: HashMap<String, FieldValue>,
     settings: Preset,
     preset: Preset,
 }
@@ -200,7 +200,7 @@ impl Session {
     }
 
     /// Returns the values of the second image's settings that differ, by path; `None` if it has no settings of its own.
-    pub fn second(&self) -> Option<&HashMap<String, Value>> {
+    pub fn second(&self) -> Option<&HashMap<String, FieldValue>> {
         self.second.as_ref().map(|second| &second.apart)
     }
 
@@ -231,7 +231,7 @@ impl Session {
         let preset = &self.document.preset;
         if self.second.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
             let paths: HashSet<_> = changed_fields(settings, preset).into_iter().collect();
-            let apart = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
+            let apart = field_values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
             self.second = Some(SecondDiff { apart, settings: settings.clone(), preset: preset.clone() });
         }
     }

@@ -107,14 +107,14 @@ impl ParticleFrames {
     }
 
     /// True if both share the same memory.
-    pub fn shares(&self, other: &Self) -> bool {
+    pub fn shares_memory(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
     /// True if both lists share the same memory in every entry.
     pub fn share_all_memory(some: &[Option<Self>], others: &[Option<Self>]) -> bool {
         let shares = |(one, other): (&Option<Self>, &Option<Self>)| match (one, other) {
-            (Some(one), Some(other)) => one.shares(other),
+            (Some(one), Some(other)) => one.shares_memory(other),
             (None, None) => true,
             _ => false,
         };

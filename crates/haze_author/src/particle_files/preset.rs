@@ -78,13 +78,13 @@ pub fn particles(system: &PresetSystem, files: Option<&ParticleFrames>, time: f3
             let flipbook_rate = if is_frozen { 0.0 } else { system.cache.flipbook_rate };
             files.evaluate(&ParticleFiles { flipbook_rate, ..system.cache.clone() }, time, particles);
         }
-        None => system.emission(time).evaluate(particles),
+        None => system.emitter_snapshot(time).evaluate(particles),
     }
 }
 
 /// Unevaluated particles of the emitter; `None` if they come from `files`.
 pub fn emission(system: &PresetSystem, files: Option<&ParticleFrames>, time: f32) -> Option<EmitterSnapshot> {
-    (!system.cache.is_used() || files.is_none()).then(|| system.emission(time))
+    (!system.cache.is_used() || files.is_none()).then(|| system.emitter_snapshot(time))
 }
 
 fn load(name: &str, folders: &AssetFolders, bytes: u64) -> Result<ParticleFrames, Error> {
@@ -121,7 +121,7 @@ mod tests {
         let check = |paths: &[&str]| check_particle_files(&preset(paths), Path::new("my.json"), &folders);
         let loaded = check(&["good.csv", "", "good.csv"]).unwrap();
         let [Some(first), None, Some(second)] = &loaded[..] else { panic!("two files") };
-        assert!(first.shares(second));
+        assert!(first.shares_memory(second));
         let said: Vec<_> = check(&["", "smok_##.csv", "good.csv", "smoke_##.csv", "../good.csv"])
             .unwrap_err()
             .iter()

@@ -51,7 +51,7 @@ fn frames_are_placed_in_time_by_their_numbers() {
     assert_eq!(at(2.0), Some((2, true, 0.25)));
     assert_eq!(at(5.0), Some((3, false, 0.0)));
     assert_eq!(at(1e9), Some((3, false, 0.0)));
-    assert!(cache.shares(&cache.clone()));
+    assert!(cache.shares_memory(&cache.clone()));
     let few = |particles, bytes| {
         ParticleFrames::load(&folder.path().join("s_###.csv"), Limits { particles, bytes }).unwrap_err()
     };
