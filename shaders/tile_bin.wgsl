@@ -75,8 +75,8 @@ fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
     }
 }
 
-// One bit for every sprite that touches the workgroup's bin, 32 per word. MAX_SPRITES_SINGLE_DISPATCH in src/renderer/pass/tile_bin.rs is their
-// number.
+// One bit for every sprite that touches the workgroup's bin, 32 per word. MAX_SPRITES_SINGLE_DISPATCH in
+// src/renderer/pass/tile_bin.rs is their number.
 var<workgroup> touching: array<atomic<u32>, 1024>;
 var<workgroup> begin: u32;
 

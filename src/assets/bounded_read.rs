@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::error::{Error, one_line};
 
-/// Reads a file of at most `max_bytes` bytes. Pipes, devices and folders are refused. `kind` names the expected file type in
-/// errors.
+/// Reads a file of at most `max_bytes` bytes. Pipes, devices and folders are refused. `kind` names the expected file
+/// type in errors.
 ///
 /// # Errors
 /// [`Error::Io`], which names what was found and what is expected.

@@ -82,9 +82,9 @@ pub struct System<'a> {
     pub key: u64,
     /// The sprites, in any order.
     pub particles: Particles<'a>,
-    /// World-space box that contains every sprite with its corners: [`Settings::sprite_extent`] radii around each particle. It
-    /// decides which pixels are lit, which lights reach the smoke, and whether the system is visible. Sprites outside
-    /// the box may be cut off; a box that is too large costs time. `None` measures a slice with
+    /// World-space box that contains every sprite with its corners: [`Settings::sprite_extent`] radii around each
+    /// particle. It decides which pixels are lit, which lights reach the smoke, and whether the system is visible.
+    /// Sprites outside the box may be cut off; a box that is too large costs time. `None` measures a slice with
     /// [`particle_bounds`](crate::frame::particle_bounds).
     pub bounds: Option<Bounds>,
     /// View depth, metres, of the plane on which light is evaluated, and by which systems are drawn far to near. It
@@ -125,9 +125,9 @@ pub enum Particles<'a> {
         is_sorted: bool,
     },
     /// Particles of an emitter at one time. The path `tiled` evaluates them on the GPU, with differences from
-    /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre and
-    /// second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is [`EmitterSnapshot::bounds`].
-    /// The mean depth is taken from a sample of about a thousand.
+    /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre
+    /// and second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is
+    /// [`EmitterSnapshot::bounds`]. The mean depth is taken from a sample of about a thousand.
     Emitter(&'a EmitterSnapshot),
 }
 

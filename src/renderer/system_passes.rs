@@ -20,7 +20,7 @@ use super::pass::transfer::Transfer;
 use super::pipelines::Pipelines;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::sprite_instances::Sprites;
-use super::system_targets::ReadyTargets;
+use super::system_targets::{ReadyTargets, TargetInputs};
 use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
 use crate::settings::DebugView;
 use crate::view_setup::SystemSetup;
@@ -148,10 +148,6 @@ impl PassBuilder<'_> {
             inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
             sprites: sprites.clone(),
         };
-        let mut transfer_pipelines = [const { None }; DebugView::ALL.len()];
-        for key in plan.transfers() {
-            transfer_pipelines[key.debug_view as usize] = Some(pipelines.transfer(device, key));
-        }
         let lights = setup.uniform.light_count;
         SystemPasses::Deferred(DeferredPasses {
             depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
@@ -184,13 +180,7 @@ impl PassBuilder<'_> {
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
             }),
-            transfer: Transfer {
-                pipelines: transfer_pipelines,
-                groups: groups.clone(),
-                inputs: inputs.transfer.clone(),
-                overdraw_inputs: inputs.overdraw.clone(),
-                lit_inputs: inputs.lit.clone(),
-            },
+            transfer: transfer_pass(device, pipelines, plan, &groups, inputs),
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
                 pipeline: pipelines.specular_scatter(device, key),
                 groups: groups.clone(),
@@ -199,5 +189,25 @@ impl PassBuilder<'_> {
             }),
             sprites: sprites.clone(),
         })
+    }
+}
+
+fn transfer_pass(
+    device: &wgpu::Device,
+    pipelines: &Pipelines,
+    plan: &DeferredPlan<'_>,
+    groups: &Groups,
+    inputs: &TargetInputs,
+) -> Transfer {
+    let mut by_debug_view = [const { None }; DebugView::ALL.len()];
+    for key in plan.transfers() {
+        by_debug_view[key.debug_view as usize] = Some(pipelines.transfer(device, key));
+    }
+    Transfer {
+        pipelines: by_debug_view,
+        groups: groups.clone(),
+        inputs: inputs.transfer.clone(),
+        overdraw_inputs: inputs.overdraw.clone(),
+        lit_inputs: inputs.lit.clone(),
     }
 }

@@ -15,8 +15,8 @@ const MEAN_TO_CENTRE_RATIO: f32 = 0.375;
 /// Assumed optical depth from the near to the far side of a system whose sprites are on the GPU.
 const ASSUMED_OPTICAL_DEPTH: f32 = 4.0;
 
-/// Computes the optical depth in front of each knot of `optical_depth_in_front`. `particles_per_sample`: number of sprites that
-/// each particle represents.
+/// Computes the optical depth in front of each knot of `optical_depth_in_front`. `particles_per_sample`: number of
+/// sprites that each particle represents.
 pub(super) fn optical_depths(
     view: &ViewGeometry,
     particles: &[Particle],

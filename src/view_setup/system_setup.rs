@@ -62,21 +62,21 @@ impl SystemSetup {
 /// may be a part of them.
 pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
     let SystemInput { bounds, depth, particles, particles_per_sample, settings, material, lights, up, time } = *system;
-    let setup = project_bounds(bounds, view)?;
-    let extent = SmokeExtent::new(view, particles, settings.sprite.size, bounds, &setup, depth);
+    let projected = project_bounds(bounds, view)?;
+    let extent = SmokeExtent::new(view, particles, settings.sprite.size, bounds, &projected, depth);
     // A sample does not include the farthest particle.
-    let farthest = if particles_per_sample == 1 { extent.farthest } else { setup.far };
+    let farthest = if particles_per_sample == 1 { extent.farthest } else { projected.far };
     let accumulate = &settings.accumulate;
     let scale = accumulate.effective_scale(view.size);
     let rect = match accumulate.depth_source {
-        DepthSource::Reduced => target_rect(&setup, scale, view.size),
+        DepthSource::Reduced => target_rect(&projected, scale, view.size),
         // All attachments of a pass must have one size.
         DepthSource::Host => TargetRect { origin: -view.origin.as_ivec2(), size: targets },
     };
 
-    let mut uniform = SystemUniform {
+    let uniform = SystemUniform {
         bounds_min: bounds.min,
-        bounds_near: setup.near,
+        bounds_near: projected.near,
         bounds_max: bounds.max,
         smoke_near: extent.near,
         centre: extent.centre,
@@ -90,8 +90,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         target_origin: rect.origin.as_vec2(),
         target_size: rect.size.as_vec2(),
         scale: scale as f32,
-        depth_limit: (setup.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
-        smoke_depth_limit: (farthest.min(setup.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
+        depth_limit: (projected.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
+        smoke_depth_limit: (farthest.min(projected.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         padding: [0.0; 3],
         six_way_colour: settings.diffuse.six_way_colour,
         six_way_anisotropy: settings.diffuse.six_way_anisotropy,
@@ -126,27 +126,41 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
             BlendOrder::Sorted => [Vec4::ZERO; 4],
             BlendOrder::Weighted => optical_depths(view, particles, particles_per_sample, settings, &extent),
         },
-        spherical_harmonics: [Vec4::ZERO; 9],
+        spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
     };
-    if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {
-        let orthographic = if view.depth.orthographic { 1.0 } else { 0.0 };
-        let to_viewer = direction_to_viewer(uniform.centre, orthographic);
-        for light in lights {
-            let sample = sample_light(light, uniform.centre);
-            let colour = light.colour * sample.attenuation;
-            let against = match settings.diffuse.backlight {
-                Backlight::Same => 0.0,
-                Backlight::Ramp => backlight_weight(sample.direction, to_viewer),
-            };
-            let zonal = std::array::from_fn(|l| material.zonal[l].lerp(material.backlight_zonal[l], against));
-            add_light(&mut uniform.spherical_harmonics, &zonal, sample.direction, colour);
-        }
-    }
     // If sprites show through the scene, the scene may hide the front of the box.
-    let back_faces = setup.near <= view.depth.near || uniform.show_through_distance > 0.0;
+    let back_faces = projected.near <= view.depth.near || uniform.show_through_distance > 0.0;
     let distance = -uniform.centre.z;
-    let pixels = setup.max - setup.min;
+    let pixels = projected.max - projected.min;
     Some(SystemSetup { rect, pixels, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
+}
+
+/// Projects the diffuse ramp's response to all lights, as seen at `centre`, to spherical harmonics; zeros in other
+/// diffuse modes.
+fn spherical_harmonics(
+    view: &ViewGeometry,
+    settings: &Settings,
+    material: &MaterialInfo,
+    lights: &[LightUniform],
+    centre: Vec3,
+) -> [Vec4; 9] {
+    let mut sum = [Vec4::ZERO; 9];
+    if settings.diffuse.mode != DiffuseMode::SphericalHarmonics {
+        return sum;
+    }
+    let orthographic = if view.depth.orthographic { 1.0 } else { 0.0 };
+    let to_viewer = direction_to_viewer(centre, orthographic);
+    for light in lights {
+        let sample = sample_light(light, centre);
+        let colour = light.colour * sample.attenuation;
+        let backlight = match settings.diffuse.backlight {
+            Backlight::Same => 0.0,
+            Backlight::Ramp => backlight_weight(sample.direction, to_viewer),
+        };
+        let zonal = std::array::from_fn(|l| material.zonal[l].lerp(material.backlight_zonal[l], backlight));
+        add_light(&mut sum, &zonal, sample.direction, colour);
+    }
+    sum
 }
 
 /// Returns the position of the eye in the noise, which rises with time. The position is wrapped to one tile, so that

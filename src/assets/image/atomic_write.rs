@@ -1,4 +1,7 @@
 //! Atomic file writes: a file is written completely or left unchanged.
+//!
+//! Not by the crate `tempfile`: `persist` neither syncs nor keeps permissions and hard links, and it leaves the files of
+//! killed processes.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;

@@ -1,4 +1,7 @@
-//! Checks whether an ICC profile is sRGB. (ICC.1:2022)
+//! Comparison of an ICC profile with sRGB. (ICC.1:2022)
+//!
+//! Not by the crate `moxcms`, which `image` uses: a direct dependency, whose version must follow that of `image`, for
+//! three tags and a curve.
 
 use crate::formula::colour::srgb_from_linear;
 

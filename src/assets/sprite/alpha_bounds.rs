@@ -6,8 +6,8 @@ use glam::{UVec2, Vec4};
 use super::Sprite;
 use crate::formula::sprite::FlipbookFrames;
 
-/// Alpha bounds of a frame at a mip level, including the footprint of bilinear filtering. Read by `alpha_bounds_texel()` in
-/// `shaders/lib/sprite_vertex.wgsl`.
+/// Alpha bounds of a frame at a mip level, including the footprint of bilinear filtering. Read by
+/// `alpha_bounds_texel()` in `shaders/lib/sprite_vertex.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct AlphaBoundsTexel {

@@ -45,8 +45,8 @@ enum Step {
 /// Maximum number of pipelines of one sort.
 pub(crate) const MAX_PIPELINES: usize = 3 * DIGITS_PER_KEY as usize;
 
-/// Returns the keys of the pipelines that sort `count` keys, in order. `cooperative`: true for cooperative workgroups, as
-/// on GPUs.
+/// Returns the keys of the pipelines that sort `count` keys, in order. `cooperative`: true for cooperative workgroups,
+/// as on GPUs.
 pub(crate) fn keys(cooperative: bool, count: u32) -> impl Iterator<Item = SortKey> {
     let (variant, steps): (_, &[Step]) = match (cooperative, count) {
         (true, 0..=MAX_KEYS_SCATTER_ONLY) => (SortVariant::ScatterOnly, &[Step::Scatter]),

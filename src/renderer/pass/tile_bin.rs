@@ -30,8 +30,8 @@ enum Step {
 /// Maximum number of pipelines in one frame.
 pub(crate) const MAX_PIPELINES: usize = 3;
 
-/// Returns the keys of a frame's pipelines, in order. `cooperative`: true for cooperative workgroups. `few`: true for at
-/// most [`MAX_SPRITES_SINGLE_DISPATCH`] sprites.
+/// Returns the keys of a frame's pipelines, in order. `cooperative`: true for cooperative workgroups. `few`: true for
+/// at most [`MAX_SPRITES_SINGLE_DISPATCH`] sprites.
 pub(crate) fn keys(cooperative: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
     let steps: &[Step] = match (cooperative, few) {
         (true, true) => &[Step::BuildLists],

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::textures::TextureAllocator;
+use super::texture_allocator::TextureAllocator;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::settings::{AccumulationFormat, DepthSource, Settings};
 

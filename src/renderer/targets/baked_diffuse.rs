@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::textures::TextureAllocator;
+use super::texture_allocator::TextureAllocator;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::renderer::gpu::capabilities::array_layers;
 use crate::settings::DiffuseMode;

@@ -3,7 +3,7 @@
 mod accumulation;
 mod baked_diffuse;
 mod target_views;
-mod textures;
+mod texture_allocator;
 
 pub(crate) use accumulation::{
     AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, ExtraAttachment, LIT_FORMAT, REDUCED_DEPTH_FORMAT,
@@ -11,4 +11,4 @@ pub(crate) use accumulation::{
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};
 pub use target_views::TargetViews;
-pub(crate) use textures::storage_target;
+pub(crate) use texture_allocator::storage_target;

@@ -31,8 +31,8 @@ const MIN_ENTRIES: u32 = 1 << 16;
 const ENTRY_SAFETY_FACTOR: f64 = 1.5;
 
 /// Side of a bin, texels: for per-invocation traversal, tuned by how much of a bin's list each tile shows; for
-/// cooperative traversal, tuned by how much of the list touches a workgroup's tile; and for more than `LARGE_BIN_PARTICLES` particles,
-/// where counting for small bins would cost more than it saves.
+/// cooperative traversal, tuned by how much of the list touches a workgroup's tile; and for more than
+/// `LARGE_BIN_PARTICLES` particles, where counting for small bins would cost more than it saves.
 const BIN_SIDE_PER_INVOCATION: u32 = 32;
 const BIN_SIDE_COOPERATIVE: u32 = 32;
 const BIN_SIDE_LARGE: u32 = 64;
@@ -79,17 +79,8 @@ impl TiledSystem {
         let TiledInputs { sprites, size, format, extra_attachment, attachments, depth, workload } = *inputs;
         let max_words = max_storage_words(&tiled.limits);
         let cooperative = keys.accumulate.cooperative;
-        let runs = sprites.count.div_ceil(RUN);
-        let mut bin_side = match (cooperative, sprites.count > LARGE_BIN_PARTICLES) {
-            (false, _) => BIN_SIDE_PER_INVOCATION,
-            (true, false) => BIN_SIDE_COOPERATIVE,
-            (true, true) => BIN_SIDE_LARGE,
-        };
-        let bins_of = |side| bins_along(size, side).element_product();
-        while runs.saturating_mul(bins_of(bin_side)) > max_words || bins_of(bin_side) > MAX_WORKGROUPS {
-            bin_side *= 2;
-        }
-        let UVec2 { x: columns, y: rows } = bins_along(size, bin_side);
+        let BinLayout { side: bin_side, columns, rows, runs } =
+            BinLayout::new(size, sprites.count, cooperative, max_words);
         let bins = columns * rows;
         let wanted = self.entries.load(Ordering::Relaxed);
         // If the lists do not fit, the image is still correct, but bins without a list iterate over all sprites, which
@@ -164,6 +155,33 @@ impl TiledSystem {
             self.buffers = None;
         }
         self.buffers.get_or_insert_with(|| TileBuffers::new(gpu.device, tiled, needed))
+    }
+}
+
+/// Division of a target into bins, and of its sprites into runs.
+struct BinLayout {
+    /// Side of a bin, texels.
+    side: u32,
+    columns: u32,
+    rows: u32,
+    runs: u32,
+}
+
+impl BinLayout {
+    /// Doubles the usual side of a bin until all counts fit into a buffer of `max_words` words.
+    fn new(size: UVec2, sprites: u32, cooperative: bool, max_words: u32) -> Self {
+        let runs = sprites.div_ceil(RUN);
+        let mut side = match (cooperative, sprites > LARGE_BIN_PARTICLES) {
+            (false, _) => BIN_SIDE_PER_INVOCATION,
+            (true, false) => BIN_SIDE_COOPERATIVE,
+            (true, true) => BIN_SIDE_LARGE,
+        };
+        let bins_of = |side| bins_along(size, side).element_product();
+        while runs.saturating_mul(bins_of(side)) > max_words || bins_of(side) > MAX_WORKGROUPS {
+            side *= 2;
+        }
+        let UVec2 { x: columns, y: rows } = bins_along(size, side);
+        Self { side, columns, rows, runs }
     }
 }
 
