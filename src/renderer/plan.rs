@@ -59,7 +59,7 @@ pub(crate) struct PipelineInputs<'a> {
     pub mirrored: bool,
     /// Size of the view, pixels.
     pub size: UVec2,
-    /// Stages that may be shown.
+    /// Debug views that may be shown.
     pub debug_views: &'a [DebugView],
 }
 
@@ -67,7 +67,7 @@ pub(crate) struct PipelineInputs<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(clippy::large_enum_variant, reason = "only one exists at a time, on the stack")]
 pub(crate) enum Plan<'a> {
-    /// The path `forward` has no intermediate stages to show.
+    /// The path `forward` has no intermediate values to show.
     Skip,
     Forward(ForwardPlan),
     Deferred(DeferredPlan<'a>),
@@ -95,7 +95,7 @@ pub(crate) struct DeferredPlan<'a> {
     pub overdraw: Option<AccumulateKey>,
     /// Present if smoke is lit at the target's resolution.
     pub light_target: Option<LightingKey>,
-    /// Key of the stage `Final`; `transfers` derives the keys of all stages from it.
+    /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
     pub transfer: TransferKey,
     pub debug_views: &'a [DebugView],
     pub specular_scatter: Option<SpecularScatterKey>,
@@ -273,10 +273,10 @@ pub(crate) fn reads_linear_target(scene_depth: SceneDepthKind, read_only_depth: 
 }
 
 impl DeferredPlan<'_> {
-    /// Returns the transfer keys of all stages that draw the bounding box.
+    /// Returns the transfer keys of all debug views that draw the bounding box.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
         let drawn = self.debug_views.iter().filter(|debug_view| **debug_view != DebugView::SpecularScatter);
-        // Stages that show a part of the light compute it in transfer, not in light_target.
+        // Debug views that show a part of the light compute it in transfer, not in light_target.
         let is_lit = |debug_view: DebugView| self.light_target.is_some() && debug_view.shows_lit_smoke();
         drawn.map(move |&debug_view| TransferKey { debug_view, lit: is_lit(debug_view), ..self.transfer })
     }

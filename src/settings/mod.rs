@@ -102,17 +102,17 @@ choice! {
 }
 
 impl DebugView {
-    /// True for stages that show data instead of light, which are neither exposed nor tonemapped.
+    /// True for debug views that show data instead of light, which are neither exposed nor tonemapped.
     pub fn is_data(self) -> bool {
         matches!(self, Self::Normals | Self::Amount | Self::Overdraw | Self::ReducedDepth)
     }
 
-    /// True for stages that show lit smoke, which forward sprites show too.
+    /// True for debug views that show lit smoke, which forward sprites show too.
     pub fn shows_lit_smoke(self) -> bool {
         matches!(self, Self::Final | Self::Combined)
     }
 
-    /// True for stages that show the glow of lights.
+    /// True for debug views that show the glow of lights.
     pub fn shows_glow(self) -> bool {
         matches!(self, Self::Final | Self::SpecularScatter)
     }

@@ -67,7 +67,7 @@ pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
 /// The pass for one system, in the host's pass.
 #[derive(Debug)]
 pub(crate) struct Transfer {
-    /// Pipelines by stage; `None` for stages that are not shown.
+    /// Pipelines by debug view; `None` for those that are not shown.
     pub pipelines: [Option<wgpu::RenderPipeline>; DebugView::ALL.len()],
     pub groups: Groups,
     /// Group 3: the targets.
@@ -79,7 +79,7 @@ pub(crate) struct Transfer {
 }
 
 impl Transfer {
-    /// Draws the box for a stage. Draws nothing for a stage that was not planned.
+    /// Draws the box for a debug view. Draws nothing for one that was not planned.
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, debug_view: DebugView) {
         let Some(pipeline) = &self.pipelines[debug_view as usize] else { return };
         let inputs = match debug_view {
