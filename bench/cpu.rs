@@ -7,7 +7,7 @@ use std::path::Path;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::UVec2;
 use haze::emitter::Emitter;
-use haze::settings::Order;
+use haze::settings::BlendOrder;
 use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, wgpu};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
@@ -42,7 +42,7 @@ fn prepare(criterion: &mut Criterion) {
     let depth = gpu.target("depth", size, wgpu::TextureFormat::Depth32Float).create_view(&Default::default());
     let view = Shot::load("column", size).unwrap().preset.camera.view(size);
     let mut group = criterion.benchmark_group("prepare");
-    for order in [Order::Sorted, Order::Weighted] {
+    for order in [BlendOrder::Sorted, BlendOrder::Weighted] {
         for count in COUNTS {
             let mut settings = Settings::default();
             settings.accumulate.order = order;

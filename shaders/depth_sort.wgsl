@@ -13,19 +13,19 @@
 // Two per particle, as in Particle.
 @group(3) @binding(1) var<storage, read> particles: array<vec4f>;
 @group(3) @binding(2) var<storage, read_write> keys: array<u32>;
-@group(3) @binding(3) var<storage, read_write> numbers: array<u32>;
+@group(3) @binding(3) var<storage, read_write> indices: array<u32>;
 @group(3) @binding(4) var<storage, read_write> sorted_particles: array<vec4f>;
 
 @compute @workgroup_size(64)
 fn depth_keys(@builtin(global_invocation_id) invocation: vec3u) {
-    let number = invocation.x;
-    if number >= tiles.count {
+    let index = invocation.x;
+    if index >= tiles.count {
         return;
     }
-    let position = particles[tiles.first + 2u * number].xyz;
+    let position = particles[tiles.first + 2u * index].xyz;
     let view_z = (view.view_from_world * vec4f(position, 1.0)).z;
-    keys[number] = ~front_to_back_bits(view_z);
-    numbers[number] = number;
+    keys[index] = ~front_to_back_bits(view_z);
+    indices[index] = index;
 }
 
 @compute @workgroup_size(64)
@@ -34,7 +34,7 @@ fn gather_particles(@builtin(global_invocation_id) invocation: vec3u) {
     if place >= tiles.count {
         return;
     }
-    let at = tiles.first + 2u * numbers[place];
+    let at = tiles.first + 2u * indices[place];
     sorted_particles[2u * place] = particles[at];
     sorted_particles[2u * place + 1u] = particles[at + 1u];
 }

@@ -8,7 +8,7 @@
 #import "lib/emitter.wgsl"
 
 @group(0) @binding(0) var<uniform> emitter: Emitter;
-@group(0) @binding(1) var<storage, read_write> particles: array<Emitted>;
+@group(0) @binding(1) var<storage, read_write> particles: array<EmittedParticle>;
 
 @compute @workgroup_size(64)
 fn emit(@builtin(global_invocation_id) invocation: vec3u) {

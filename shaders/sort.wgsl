@@ -3,7 +3,7 @@
 // place. The result is the same on every device and in every run: nothing depends on subgroups or on the order of
 // atomics.
 //
-// Reads   keys and numbers (the particle indices that belong to them).
+// Reads   keys, and the particle indices that belong to them.
 // Writes  the same, sorted by one digit.
 // Source  Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
 
@@ -12,10 +12,10 @@
 
 @group(0) @binding(0) var<uniform> tiles: Tiles;
 @group(0) @binding(1) var<storage, read> keys: array<u32>;
-@group(0) @binding(2) var<storage, read> numbers: array<u32>;
+@group(0) @binding(2) var<storage, read> indices: array<u32>;
 @group(0) @binding(3) var<storage, read_write> sorted_keys: array<u32>;
-@group(0) @binding(4) var<storage, read_write> sorted_numbers: array<u32>;
-// By digit, then by block: the count, later the number of keys of that digit in earlier blocks. If FEW_BLOCKS: by
+@group(0) @binding(4) var<storage, read_write> sorted_indices: array<u32>;
+// By digit, then by block: the count, later the number of keys of that digit in earlier blocks. If WITHOUT_SCAN: by
 // block, then by digit.
 @group(0) @binding(5) var<storage, read_write> counts: array<u32>;
 // Total number of keys per digit.
@@ -24,9 +24,9 @@
 // Lowest bit of the digit.
 override SHIFT: u32 = 0u;
 // Few keys: every workgroup counts all keys itself, without `counts`.
-override FEW: bool = false;
+override SCATTER_ONLY: bool = false;
 // Few blocks: every workgroup sums up the counts of all blocks itself.
-override FEW_BLOCKS: bool = false;
+override WITHOUT_SCAN: bool = false;
 
 const DIGITS: u32 = 256u;
 // Keys of a block per invocation. BLOCK in src/renderer/pass/sort.rs is ROUNDS times the invocations of a workgroup.
@@ -51,7 +51,7 @@ fn count_digits(@builtin(local_invocation_index) local: u32, @builtin(workgroup_
         }
     }
     workgroupBarrier();
-    counts[select(local * tiles.blocks + block.x, block.x * DIGITS + local, FEW_BLOCKS)] = atomicLoad(&digit_counts[local]);
+    counts[select(local * tiles.blocks + block.x, block.x * DIGITS + local, WITHOUT_SCAN)] = atomicLoad(&digit_counts[local]);
 }
 
 // One workgroup per digit.
@@ -78,12 +78,12 @@ fn sum_counts(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id
 
 // Returns the keys of a block per invocation.
 fn rounds() -> u32 {
-    return select(ROUNDS, 1u, FEW);
+    return select(ROUNDS, 1u, SCATTER_ONLY);
 }
 
 // Returns the number of keys that have a digit, and how many of them are in earlier blocks.
 fn total_and_before(digit: u32, block: u32) -> vec2u {
-    if FEW_BLOCKS {
+    if WITHOUT_SCAN {
         var sums = vec2u(0u);
         for (var other = 0u; other < tiles.blocks; other++) {
             let count = counts[other * DIGITS + digit];
@@ -91,7 +91,7 @@ fn total_and_before(digit: u32, block: u32) -> vec2u {
         }
         return sums;
     }
-    if !FEW {
+    if !SCATTER_ONLY {
         return vec2u(totals[digit], counts[digit * tiles.blocks + block]);
     }
     for (var at = digit; at < tiles.count; at += DIGITS) {
@@ -141,7 +141,7 @@ fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) b
         workgroupBarrier();
         if is_inside {
             sorted_keys[place] = key;
-            sorted_numbers[place] = numbers[at];
+            sorted_indices[place] = indices[at];
             if rank + 1u == all {
                 next_places[digit] = place + 1u;
             }

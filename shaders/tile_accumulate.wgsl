@@ -14,7 +14,7 @@
 @group(3) @binding(0) var<uniform> tiles: Tiles;
 @group(3) @binding(1) var<storage, read> sprites: array<TileSprite>;
 @group(3) @binding(2) var<storage, read> rects: array<vec2u>;
-@group(3) @binding(3) var<storage, read> numbers: array<u32>;
+@group(3) @binding(3) var<storage, read> indices: array<u32>;
 @group(3) @binding(4) var<storage, read> lists: array<u32>;
 // Start of each bin's list, and its length.
 @group(3) @binding(5) var<storage, read> bins: array<vec2u>;
@@ -83,13 +83,13 @@ fn accumulate_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bo
 }
 
 // True if the smoke in front hides all further sprites.
-fn is_done(texel: Texel) -> bool {
+fn is_opaque(texel: Texel) -> bool {
     return STOPS && texel.transmittance <= OPAQUE;
 }
 
 // True also if the scene hides all further sprites. `front`: view depth before which no further sprite begins.
 fn is_opaque_or_occluded(texel: Texel, front: f32) -> bool {
-    return is_done(texel) || front > texel.end;
+    return is_opaque(texel) || front > texel.end;
 }
 
 fn write_texel(place: vec2u, texel: Texel) {
@@ -107,9 +107,9 @@ fn write_texel(place: vec2u, texel: Texel) {
     }
 }
 
-fn sprite_number(list: vec2u, at: u32) -> u32 {
-    if list.x == EVERYTHING {
-        return numbers[at];
+fn sprite_index(list: vec2u, at: u32) -> u32 {
+    if list.x == NO_LIST {
+        return indices[at];
     }
     return lists[list.x + at];
 }
@@ -125,7 +125,7 @@ var<workgroup> batch: array<TileSprite, BATCH>;
 // One bit for each of them.
 var<workgroup> touching: array<atomic<u32>, 2>;
 // 1 if any texel of the tile is not done.
-var<workgroup> open: atomic<u32>;
+var<workgroup> unfinished: atomic<u32>;
 // Front of the batch's first sprite, view depth.
 var<workgroup> front: f32;
 // Bits of the farthest view depth of the scene in the tile. It is positive, so that its bits order as an integer.
@@ -156,22 +156,22 @@ fn cooperative(
             atomicStore(&touching[1], 0u);
         }
         if !(is_opaque_or_occluded(a, front) && is_opaque_or_occluded(b, front)) {
-            atomicStore(&open, 1u);
+            atomicStore(&unfinished, 1u);
         }
-        if workgroupUniformLoad(&open) == 0u {
+        if workgroupUniformLoad(&unfinished) == 0u {
             break;
         }
         var sprite: TileSprite;
         var is_kept = false;
         if first + local < entries {
             // `debug_loop`: repeats the list.
-            let number = sprite_number(list, (first + local) % list.y);
+            let index = sprite_index(list, (first + local) % list.y);
             if local == 0u {
-                front = sprite_front(sprites[number].centre_radius);
+                front = sprite_front(sprites[index].centre_radius);
             }
             // Most sprites of a bin do not touch this tile: reads only the rectangle of those.
-            if rects_meet(rects[number], low, low + TILE) {
-                sprite = sprites[number];
+            if rects_meet(rects[index], low, low + TILE) {
+                sprite = sprites[index];
                 // Only texel centres count.
                 let reach = reach_in_square(sprite, 0.5 * vec2f(TILE - 1u));
                 let meets = is_sphere() || square_fills(sprite, uv_in_square(sprite, middle), reach);
@@ -189,12 +189,12 @@ fn cooperative(
             batch[before.x + before.y] = sprite;
         }
         if local == 0u {
-            atomicStore(&open, 0u);
+            atomicStore(&unfinished, 0u);
         }
         workgroupBarrier();
         let counts = countOneBits(kept);
         let count = counts.x + counts.y;
-        for (var at = 0u; at < count && !(is_done(a) && is_done(b)); at++) {
+        for (var at = 0u; at < count && !(is_opaque(a) && is_opaque(b)); at++) {
             let sprite = batch[at];
             let in_a = uv_in_square(sprite, a.place);
             let in_b = in_a + sprite.uv_from_texels.yw;
@@ -262,16 +262,16 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
         }
         var last_front = 0.0;
         for (var count = 0u; count < STRIDE && bits != 0u; count++) {
-            let sprite = sprites[sprite_number(list, batch + firstTrailingBit(bits))];
+            let sprite = sprites[sprite_index(list, batch + firstTrailingBit(bits))];
             bits &= bits - 1u;
             let in_a = uv_in_square(sprite, a.place);
             let in_b = in_a + sprite.uv_from_texels.yw;
             let in_c = in_b + sprite.uv_from_texels.yw;
             let in_d = in_c + sprite.uv_from_texels.yw;
-            a = accumulate_sprite(a, sprite, in_a, !is_done(a) && covers(in_a));
-            b = accumulate_sprite(b, sprite, in_b, !is_done(b) && covers(in_b));
-            c = accumulate_sprite(c, sprite, in_c, !is_done(c) && covers(in_c));
-            d = accumulate_sprite(d, sprite, in_d, !is_done(d) && covers(in_d));
+            a = accumulate_sprite(a, sprite, in_a, !is_opaque(a) && covers(in_a));
+            b = accumulate_sprite(b, sprite, in_b, !is_opaque(b) && covers(in_b));
+            c = accumulate_sprite(c, sprite, in_c, !is_opaque(c) && covers(in_c));
+            d = accumulate_sprite(d, sprite, in_d, !is_opaque(d) && covers(in_d));
             last_front = sprite_front(sprite.centre_radius);
         }
         if STOPS || is_flat() {
@@ -294,7 +294,7 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
 // Returns the sprites of a batch that may be visible in a part of their bin, one bit each.
 fn bits_of(list: vec2u, batch: u32, part: u32) -> u32 {
     let all = bits_below(min(list.y - batch, BITS_PER_WORD));
-    if list.x == EVERYTHING {
+    if list.x == NO_LIST {
         return all;
     }
     return lists[list.x + list.y + batch + part] & all;

@@ -9,14 +9,14 @@
 #import "lib/scan.wgsl"
 
 @group(0) @binding(0) var<uniform> tiles: Tiles;
-@group(0) @binding(1) var<storage, read> numbers: array<u32>;
+@group(0) @binding(1) var<storage, read> indices: array<u32>;
 @group(0) @binding(2) var<storage, read> sorted_rects: array<vec2u>;
 // By bin, then by run: the number of sprites, later the position in the bin's list at which the run begins.
 @group(0) @binding(3) var<storage, read_write> counts: array<u32>;
 @group(0) @binding(4) var<storage, read_write> lists: array<u32>;
 // Start of each bin's list, and its length.
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2u>;
-@group(0) @binding(6) var<storage, read_write> tally: TileCounters;
+@group(0) @binding(6) var<storage, read_write> counters: TileCounters;
 
 fn low_of_bin(bin: u32) -> vec2u {
     return vec2u(bin % tiles.columns, bin / tiles.columns) * tiles.bin_side;
@@ -30,7 +30,7 @@ fn count_sprites(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let low = low_of_bin(bin);
-    let end = min(run * RUN + RUN, tally.shown);
+    let end = min(run * RUN + RUN, counters.visible);
     var count = 0u;
     for (var at = run * RUN; at < end; at++) {
         count += u32(rects_meet(sorted_rects[at], low, low + tiles.bin_side));
@@ -46,16 +46,16 @@ fn bin_list(length: u32, more: u32) -> vec2u {
     let share = 0xffffffffu / (tiles.columns * tiles.rows);
     let is_counted = length <= share && more <= share - length;
     let size = select(0u, length + more, is_counted);
-    let first = atomicAdd(&tally.entries, size);
+    let first = atomicAdd(&counters.entries, size);
     let fits = is_counted && list_fits(first, size, tiles.capacity);
-    return select(vec2u(EVERYTHING, tally.shown), vec2u(first, length), fits);
+    return select(vec2u(NO_LIST, counters.visible), vec2u(first, length), fits);
 }
 
 // One workgroup per bin.
 @compute @workgroup_size(256)
 fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
     // Runs that count_sprites has counted.
-    let runs = run_count(tally.shown);
+    let runs = run_count(counters.visible);
     var length = 0u;
     for (var first = 0u; first < runs; first += SCAN_SIZE) {
         let at = bin.x * tiles.runs + first + local;
@@ -75,8 +75,8 @@ fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
     }
 }
 
-// One bit for every sprite that touches the workgroup's bin, 32 per word. FEW in src/renderer/pass/tile_bin.rs is their
-// number.
+// One bit for every sprite that touches the workgroup's bin, 32 per word. MAX_SPRITES_SINGLE_DISPATCH in
+// src/renderer/pass/tile_bin.rs is their number.
 var<workgroup> touching: array<atomic<u32>, 1024>;
 var<workgroup> begin: u32;
 
@@ -84,8 +84,8 @@ var<workgroup> begin: u32;
 @compute @workgroup_size(256)
 fn build_lists_in_one_dispatch(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
     let low = low_of_bin(bin.x);
-    let shown = tally.shown;
-    for (var at = local; at < shown; at += SCAN_SIZE) {
+    let visible = counters.visible;
+    for (var at = local; at < visible; at += SCAN_SIZE) {
         if rects_meet(sorted_rects[at], low, low + tiles.bin_side) {
             atomicOr(&touching[at / 32u], 1u << (at % 32u));
         }
@@ -103,13 +103,13 @@ fn build_lists_in_one_dispatch(@builtin(local_invocation_index) local: u32, @bui
         bins[bin.x] = list;
         begin = list.x;
     }
-    if workgroupUniformLoad(&begin) == EVERYTHING {
+    if workgroupUniformLoad(&begin) == NO_LIST {
         return;
     }
     var place = begin + sum - count;
     for (var word = local * each; word < local * each + each; word++) {
         for (var bits = atomicLoad(&touching[word]); bits != 0u; bits &= bits - 1u) {
-            lists[place] = numbers[word * 32u + firstTrailingBit(bits)];
+            lists[place] = indices[word * 32u + firstTrailingBit(bits)];
             place++;
         }
     }
@@ -154,7 +154,7 @@ fn count_per_run(@builtin(global_invocation_id) invocation: vec3u) {
     for (var bin = 0u; bin < tiles.columns * tiles.rows; bin++) {
         counts[bin * tiles.runs + run] = 0u;
     }
-    let end = min(run * RUN + RUN, tally.shown);
+    let end = min(run * RUN + RUN, counters.visible);
     for (var at = run * RUN; at < end; at++) {
         let touched = touched_bins(sorted_rects[at]);
         for (var row = touched.first.y; row < touched.last.y; row++) {
@@ -171,17 +171,17 @@ fn fill_per_run(@builtin(global_invocation_id) invocation: vec3u) {
     if run >= tiles.runs {
         return;
     }
-    let end = min(run * RUN + RUN, tally.shown);
+    let end = min(run * RUN + RUN, counters.visible);
     for (var at = run * RUN; at < end; at++) {
-        let number = numbers[at];
+        let index = indices[at];
         let touched = touched_bins(sorted_rects[at]);
         for (var row = touched.first.y; row < touched.last.y; row++) {
             for (var column = touched.first.x; column < touched.last.x; column++) {
                 let bin = row * tiles.columns + column;
                 let list = bins[bin].x;
-                if list != EVERYTHING {
+                if list != NO_LIST {
                     let place = counts[bin * tiles.runs + run];
-                    lists[list + place] = number;
+                    lists[list + place] = index;
                     counts[bin * tiles.runs + run] = place + 1u;
                 }
             }
@@ -197,15 +197,15 @@ fn fill(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let list = bins[bin].x;
-    if list == EVERYTHING {
+    if list == NO_LIST {
         return;
     }
     let low = low_of_bin(bin);
     var place = list + counts[bin * tiles.runs + run];
-    let end = min(run * RUN + RUN, tally.shown);
+    let end = min(run * RUN + RUN, counters.visible);
     for (var at = run * RUN; at < end; at++) {
         if rects_meet(sorted_rects[at], low, low + tiles.bin_side) {
-            lists[place] = numbers[at];
+            lists[place] = indices[at];
             place++;
         }
     }

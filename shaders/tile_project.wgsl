@@ -17,18 +17,18 @@
 @group(3) @binding(2) var<storage, read_write> sprites: array<TileSprite>;
 @group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
 @group(3) @binding(4) var<storage, read_write> keys: array<u32>;
-@group(3) @binding(5) var<storage, read_write> numbers: array<u32>;
+@group(3) @binding(5) var<storage, read_write> indices: array<u32>;
 
 // True: sprites are unsorted and their normals are weighted.
 override WEIGHTED: bool = false;
 
 @compute @workgroup_size(64)
 fn project(@builtin(global_invocation_id) invocation: vec3u) {
-    let number = invocation.x;
-    if number >= tiles.count {
+    let index = invocation.x;
+    if index >= tiles.count {
         return;
     }
-    let at = tiles.first + 2u * number;
+    let at = tiles.first + 2u * index;
     let particle = Particle(particles[at], particles[at + 1u]);
     let placed = project_sprite(particle, 1.0 / system.scale);
     let centre = placed.centre_radius.xyz;
@@ -79,15 +79,15 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         let in_front = optical_depth_in_front(system.front_knots, -centre.z, system.smoke_near, system.smoke_far);
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
-    let shown = !placed.hidden && all(first < last);
-    if shown {
-        sprites[number] = sprite;
+    let visible = !placed.hidden && all(first < last);
+    if visible {
+        sprites[index] = sprite;
     } else {
         // A sprite of zeros is invisible in bins that read all sprites.
-        sprites[number] = TileSprite();
+        sprites[index] = TileSprite();
     }
-    rects[number] = select(vec2u(0u), packed_rect(vec2u(first), vec2u(last)), shown);
-    let backwards = tiles.count - 1u - number;
-    keys[backwards] = select(HIDDEN_KEY, front_to_back_bits(centre.z), shown);
-    numbers[backwards] = number;
+    rects[index] = select(vec2u(0u), packed_rect(vec2u(first), vec2u(last)), visible);
+    let backwards = tiles.count - 1u - index;
+    keys[backwards] = select(HIDDEN_KEY, front_to_back_bits(centre.z), visible);
+    indices[backwards] = index;
 }

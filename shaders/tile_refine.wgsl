@@ -46,9 +46,9 @@ fn farthest_visible_depth(low: vec2u, high: vec2u) -> f32 {
 }
 
 // Returns the parts of a bin in which a sprite may be visible, one bit each.
-fn visible_parts(number: u32, low: vec2u, part: vec2u) -> u32 {
-    let sprite = sprites[number];
-    let rect = rects[number];
+fn visible_parts(index: u32, low: vec2u, part: vec2u) -> u32 {
+    let sprite = sprites[index];
+    let rect = rects[index];
     let front = sprite_front(sprite.centre_radius);
     let reach = reach_in_square(sprite, 0.5 * vec2f(part - 1u));
     // Steps from part to part.
@@ -75,8 +75,8 @@ fn visible_parts(number: u32, low: vec2u, part: vec2u) -> u32 {
 }
 
 // Returns the approximate amount of a sprite at a texel: puffs are thick in the centre and thin out.
-fn approximate_amount(number: u32, texel: vec2f) -> f32 {
-    let sprite = sprites[number];
+fn approximate_amount(index: u32, texel: vec2f) -> f32 {
+    let sprite = sprites[index];
     let place = 2.0 * uv_in_square(sprite, texel) - 1.0;
     let thickness = max(1.0 - dot(place, place), 0.0);
     return sprite.amount * thickness * thickness;
@@ -86,7 +86,7 @@ fn approximate_amount(number: u32, texel: vec2f) -> f32 {
 fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
     let list = bins[bin.x];
     // A bin without a list reads all sprites.
-    let count = select(list.y, 0u, list.x == EVERYTHING);
+    let count = select(list.y, 0u, list.x == NO_LIST);
     let low = vec2u(bin.x % tiles.columns, bin.x / tiles.columns) * tiles.bin_side;
     let part = tiles.bin_side / PARTS;
     let first = low + vec2u(local % PARTS.x, local / PARTS.x) * part;
@@ -107,9 +107,9 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
         let at = batch + local;
         var mark = 0u;
         if at < count {
-            let number = lists[list.x + at];
-            mark = visible_parts(number, low, part);
-            atomicAdd(&depth, u32(i32(256.0 * approximate_amount(number, vec2f(low) + 0.5 * f32(tiles.bin_side)))));
+            let index = lists[list.x + at];
+            mark = visible_parts(index, low, part);
+            atomicAdd(&depth, u32(i32(256.0 * approximate_amount(index, vec2f(low) + 0.5 * f32(tiles.bin_side)))));
         }
         marks[local] = mark;
         workgroupBarrier();

@@ -127,12 +127,12 @@ impl Emitter {
 
     /// Replaces `particles` with those alive at `time`, seconds. The same input gives the same output, to the bit.
     pub fn evaluate(&self, time: f32, particles: &mut Vec<Particle>) {
-        self.at(time).evaluate(particles);
+        self.snapshot(time).evaluate(particles);
     }
 
-    /// Particles alive at `time`, seconds, not evaluated, for [`Particles::Emitter`](crate::Particles::Emission).
-    pub fn at(&self, time: f32) -> EmitterSnapshot {
-        let (first, last) = self.births(time);
+    /// Particles alive at `time`, seconds, not evaluated, for [`Particles::Emitter`](crate::Particles::Emitter).
+    pub fn snapshot(&self, time: f32) -> EmitterSnapshot {
+        let (first, last) = self.birth_range(time);
         let up = self.up.normalize_or(Vec3::Y);
         let disc = Quat::from_rotation_arc(Vec3::Y, up);
         let uniform = EmitterUniform {
@@ -173,7 +173,7 @@ impl Emitter {
     }
 
     /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate.
-    fn births(&self, time: f32) -> (i64, i64) {
+    fn birth_range(&self, time: f32) -> (i64, i64) {
         if self.rate <= 0.0 {
             return (0, 0);
         }
@@ -192,7 +192,7 @@ impl Emitter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formula::emitter::{drag_integrals, eased};
+    use crate::formula::emitter::{drag_integrals, smoothstep_unit};
     use crate::frame::particle_bounds;
 
     fn at(emitter: &Emitter, time: f32) -> Vec<Particle> {
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn births_and_deaths_are_invisible() {
         for particle in at(&Emitter::default(), 20.0) {
-            assert!(particle.amount <= 0.3 * eased(particle.age / 0.12) + 1e-6);
+            assert!(particle.amount <= 0.3 * smoothstep_unit(particle.age / 0.12) + 1e-6);
             assert!(particle.age < 0.98 || particle.amount < 0.01);
         }
     }
@@ -298,7 +298,7 @@ mod tests {
             for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
                 let reach = std::f32::consts::SQRT_2;
                 let (measured, promised) =
-                    (particle_bounds(&at(&emitter, time), reach), emitter.at(time).bounds(reach));
+                    (particle_bounds(&at(&emitter, time), reach), emitter.snapshot(time).bounds(reach));
                 if at(&emitter, time).is_empty() {
                     continue;
                 }
@@ -313,7 +313,7 @@ mod tests {
         let emitter = Emitter { rate: 20_000.0, lifetime: 5.0, lifetime_spread: 0.0, ..Emitter::default() };
         let few = |time| {
             let mut particles = Vec::new();
-            emitter.at(time).sample(&mut particles);
+            emitter.snapshot(time).sample(&mut particles);
             particles
         };
         let (all, now, soon) = (at(&emitter, 9.0), few(9.0), few(9.0004));

@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 /// writing are escaped, and a long text is cut.
 pub fn one_line(text: impl Display) -> String {
     /// Leaves room for the expected value.
-    const MOST: usize = 200;
+    const MAX_CHARS: usize = 200;
     let text = text.to_string();
-    let mut line = escape(text.chars().take(MOST));
-    if text.chars().nth(MOST).is_some() {
+    let mut line = escape(text.chars().take(MAX_CHARS));
+    if text.chars().nth(MAX_CHARS).is_some() {
         line.push('…');
     }
     line
 }
 
 /// File name on one line, not cut.
-pub fn name(path: &Path) -> String {
+pub fn display_path(path: &Path) -> String {
     escape(path.to_string_lossy().chars())
 }
 
@@ -60,7 +60,7 @@ pub enum Error {
     Field(#[from] FieldError),
 
     /// A ramp, a sprite image or a particle file could not be used.
-    #[error("{}: {reason}", name(path))]
+    #[error("{}: {reason}", display_path(path))]
     Image {
         /// File, or `builtin:NAME`.
         path: PathBuf,
@@ -79,7 +79,7 @@ pub enum Error {
     },
 
     /// A preset, a gradient or a text file of particles could not be used.
-    #[error("{}:{line}:{column}: {reason}", name(path))]
+    #[error("{}:{line}:{column}: {reason}", display_path(path))]
     Json {
         /// File, or `builtin:NAME`.
         path: PathBuf,
@@ -92,7 +92,7 @@ pub enum Error {
     },
 
     /// A shader could not be used.
-    #[error("{}:{line}:{column}: {reason}", name(path))]
+    #[error("{}:{line}:{column}: {reason}", display_path(path))]
     Shader {
         /// File with the error, or `builtin:NAME`.
         path: PathBuf,
@@ -106,7 +106,7 @@ pub enum Error {
     },
 
     /// A value inside a preset or gradient file is out of range.
-    #[error("{}: {error}", name(path))]
+    #[error("{}: {error}", display_path(path))]
     JsonField {
         /// File, or `builtin:NAME`.
         path: PathBuf,
@@ -115,7 +115,7 @@ pub enum Error {
     },
 
     /// A file could not be read or written.
-    #[error("{}: {error}", name(path))]
+    #[error("{}: {error}", display_path(path))]
     Io {
         /// File.
         path: PathBuf,

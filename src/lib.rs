@@ -71,7 +71,7 @@ pub mod settings;
 #[doc(hidden)]
 pub mod view_setup;
 
-pub use assets::material::MaterialAssets;
+pub use assets::material_assets::MaterialAssets;
 #[doc(inline)]
 pub use assets::{builtin, image, noise, ramp, sprite};
 pub use error::{Error, FieldError};

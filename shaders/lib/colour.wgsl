@@ -24,11 +24,11 @@ fn gamma_target_colour(light: vec3f) -> vec3f {
 }
 
 // Half of the largest half float: light never becomes infinite in the target, even if a glow is added to smoke.
-const BRIGHTEST: f32 = 32752.0;
+const MAX_HALF_FLOAT_LIGHT: f32 = 32752.0;
 
 // Light, limited to what a target of half floats can store.
 fn bounded_light(light: vec3f) -> vec3f {
-    return min(light, vec3f(BRIGHTEST));
+    return min(light, vec3f(MAX_HALF_FLOAT_LIGHT));
 }
 
 // Light as the host's target stores it.

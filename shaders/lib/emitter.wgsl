@@ -48,7 +48,7 @@ const EMITTER_SHAPE_DISC: u32 = 2u;
 const TURN: f32 = 6.283185307179586;
 
 // A particle, in the layout of the instance buffer.
-struct Emitted {
+struct EmittedParticle {
     position_radius: vec4f,
     rotation_amount_frame_age: vec4f,
 }
@@ -75,7 +75,7 @@ fn drag_integrals(drag: f32, t: f32) -> vec2f {
 }
 
 // Smoothstep: 0..1 with slope 0 at both ends.
-fn eased(x: f32) -> f32 {
+fn smoothstep_unit(x: f32) -> f32 {
     let s = saturate(x);
     return s * s * (3.0 - 2.0 * s);
 }
@@ -104,7 +104,7 @@ fn birth_random(index: u32, salt: u32, seed: u32) -> vec3f {
 }
 
 // Returns the particle of a birth, counted from the first; its amount is 0 if it is not alive.
-fn emitted_particle(emitter: Emitter, number: u32) -> Emitted {
+fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let index = emitter.first + number;
     let life = birth_random(index, 0u, emitter.seed);
     let place = birth_random(index, 1u, emitter.seed);
@@ -114,7 +114,7 @@ fn emitted_particle(emitter: Emitter, number: u32) -> Emitted {
     let seconds = emitter.since_first - (f32(number) + life.y) / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
     if !(seconds >= 0.0 && seconds < lifetime) {
-        return Emitted(vec4f(0.0), vec4f(0.0));
+        return EmittedParticle(vec4f(0.0), vec4f(0.0));
     }
     let age = seconds / lifetime;
 
@@ -135,9 +135,9 @@ fn emitted_particle(emitter: Emitter, number: u32) -> Emitted {
 
     // Growth like diffusion: fast at first.
     let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * sqrt(age);
-    let fade_in = eased(age / max(emitter.fade_in, 1.0e-4));
-    let fade_out = eased((1.0 - age) / max(emitter.fade_out, 1.0e-4));
-    return Emitted(
+    let fade_in = smoothstep_unit(age / max(emitter.fade_in, 1.0e-4));
+    let fade_out = smoothstep_unit((1.0 - age) / max(emitter.fade_out, 1.0e-4));
+    return EmittedParticle(
         vec4f(position, radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
         vec4f(
             look.y * TURN + emitter.spin * (2.0 * look.z - 1.0) * reached,

@@ -15,8 +15,8 @@ struct Particle {
     @location(1) rotation_amount_frame_age: vec4f,
 }
 
-// Largest magnitude of a particle's numbers that is drawn. LARGEST in src/frame/particle.rs.
-const LARGEST: f32 = 1.0e9;
+// Largest magnitude of a particle's numbers that is drawn. MAX_MAGNITUDE in src/frame/particle.rs.
+const MAX_MAGNITUDE: f32 = 1.0e9;
 
 struct SpriteVertex {
     @builtin(position) position: vec4f,
@@ -105,9 +105,9 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
     let frame = particle.rotation_amount_frame_age.z;
     let age = particle.rotation_amount_frame_age.w;
 
-    // A host's own buffer may contain anything. The comparisons are false for NaN, and numbers beyond LARGEST are not
-    // drawn.
-    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) < LARGEST;
+    // A host's own buffer may contain anything. The comparisons are false for NaN, and numbers beyond MAX_MAGNITUDE are
+    // not drawn.
+    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) < MAX_MAGNITUDE;
     let in_view = back > view.near && view_depth - half_depth < view.far;
     let shown = finite && in_view && radius > 0.0 && amount > 0.0;
 
@@ -125,8 +125,8 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
 
 const FULL_ALPHA_BOUNDS: vec4u = vec4u(0xffffffffu);
 
-// Part of a frame that is not clear, at a sprite's mip level: a bit for each cell in xy, the extent in z. AlphaBoundsTexel in
-// src/assets/sprite/filled.rs.
+// Part of a frame that is not clear, at a sprite's mip level: a bit for each cell in xy, the extent in z.
+// AlphaBoundsTexel in src/assets/sprite/alpha_bounds.rs.
 fn alpha_bounds_texel(frame: i32, lod: f32) -> vec4u {
     if DEBUG_SPRITE || MOTION {
         return FULL_ALPHA_BOUNDS;

@@ -28,9 +28,9 @@ struct Tiles {
 // Key of hidden sprites: sorts behind all visible ones.
 const HIDDEN_KEY: u32 = 0xffffffffu;
 // Start of the list of a bin without a list: the bin reads all sprites.
-const EVERYTHING: u32 = 0xffffffffu;
+const NO_LIST: u32 = 0xffffffffu;
 
-// Texels of a tile in per-invocation traversal: one row of lanes, each with one column. ALONE in
+// Texels of a tile in per-invocation traversal: one row of lanes, each with one column. PER_INVOCATION_TILE in
 // src/renderer/pass/tile_refine.rs.
 const PER_INVOCATION_TILE: vec2u = vec2u(8u, 4u);
 // Parts of a bin. With the usual bin side of 32 texels, a part is a tile.
@@ -55,7 +55,7 @@ fn run_count(count: u32) -> u32 {
 // Counts of a frame.
 struct TileCounters {
     // Number of visible sprites: the first of the sorted ones.
-    shown: u32,
+    visible: u32,
     // Words that the lists need, without those that are too long to be counted in 32 bits.
     entries: atomic<u32>,
 }

@@ -75,7 +75,8 @@ struct GuidedFit {
     farthest: f32,
 }
 
-// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which SURFACE_DEPTH_TOLERANCE is two sigma.
+// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which SURFACE_DEPTH_TOLERANCE is
+// two sigma.
 fn guided_weight(place: vec3f, depth: f32) -> f32 {
     let tent = max(1.0 - abs(place.xy) * 0.5, vec2f(0.0));
     let sigmas = place.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));

@@ -112,7 +112,7 @@ pub const PRESETS: &[Builtin] =
     presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates", "dust_storm"]);
 
 /// Returns the built-in images for a role; empty for details and six-way maps.
-pub fn of_role(role: ImageRole) -> &'static [Builtin] {
+pub fn for_role(role: ImageRole) -> &'static [Builtin] {
     match role {
         ImageRole::Sprite => SPRITES,
         ImageRole::Ramp => RAMPS,

@@ -26,11 +26,11 @@ pub fn gamma_target_colour(light: Vec3) -> Vec3 {
 }
 
 /// Upper limit of light in half floats: half of the largest half float.
-pub const BRIGHTEST: f32 = 32752.0;
+pub const MAX_HALF_FLOAT_LIGHT: f32 = 32752.0;
 
 /// Light, limited to what a target of half floats can store.
 pub fn bounded_light(light: Vec3) -> Vec3 {
-    light.min(Vec3::splat(BRIGHTEST))
+    light.min(Vec3::splat(MAX_HALF_FLOAT_LIGHT))
 }
 
 /// Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.

@@ -13,7 +13,7 @@ const EMITTER_SHAPE_DISC: u32 = 2;
 /// Particle in the layout of the instance buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[allow(missing_docs, reason = "documented in WGSL")]
-pub struct Emitted {
+pub struct EmittedParticle {
     pub position_radius: Vec4,
     pub rotation_amount_frame_age: Vec4,
 }
@@ -40,7 +40,7 @@ pub fn drag_integrals(drag: f32, t: f32) -> Vec2 {
 }
 
 /// Smoothstep: 0..1 with zero slope at both ends.
-pub fn eased(x: f32) -> f32 {
+pub fn smoothstep_unit(x: f32) -> f32 {
     let s = x.clamp(0.0, 1.0);
     s * s * (3.0 - 2.0 * s)
 }
@@ -65,7 +65,7 @@ pub fn birth_random(index: u32, salt: u32, seed: u32) -> Vec3 {
 }
 
 /// Particle of birth `number`, counted from the emitter's first. Its amount is 0 if it is not alive.
-pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> Emitted {
+pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticle {
     let index = emitter.first.wrapping_add(number);
     let random = |salt| birth_random(index, salt, emitter.seed);
     let (life, place, motion, look) = (random(0), random(1), random(2), random(3));
@@ -73,7 +73,7 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> Emitted {
     let seconds = emitter.since_first - (number as f32 + life.y) / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
     if !(0.0..lifetime).contains(&seconds) {
-        return Emitted::default();
+        return EmittedParticle::default();
     }
     let age = seconds / lifetime;
 
@@ -94,9 +94,9 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> Emitted {
 
     // Grows with the square root of age, like diffusion.
     let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * age.sqrt();
-    let fade_in = eased(age / emitter.fade_in.max(1.0e-4));
-    let fade_out = eased((1.0 - age) / emitter.fade_out.max(1.0e-4));
-    Emitted {
+    let fade_in = smoothstep_unit(age / emitter.fade_in.max(1.0e-4));
+    let fade_out = smoothstep_unit((1.0 - age) / emitter.fade_out.max(1.0e-4));
+    EmittedParticle {
         position_radius: position.extend(radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
         rotation_amount_frame_age: Vec4::new(
             look.y * std::f32::consts::TAU + emitter.spin * (2.0 * look.z - 1.0) * reached,

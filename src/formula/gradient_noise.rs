@@ -83,7 +83,7 @@ impl CachedGradientNoise {
 
     /// Returns [`gradient_noise`] at the phases (1, 0) and (0, 1). Weighted by cos and sin of any phase, the two sum to
     /// the noise at that phase.
-    pub fn turning(&mut self, position: Vec3) -> [f32; 2] {
+    pub fn phase_components(&mut self, position: Vec3) -> [f32; 2] {
         let cell = position.floor();
         let f = position - cell;
         if cell.as_ivec3() != self.cell {
@@ -170,7 +170,7 @@ mod tests {
         let mut cell = CachedGradientNoise::new(3);
         let phase = Vec2::from_angle(0.7);
         for p in points() {
-            let [start, later] = cell.turning(p);
+            let [start, later] = cell.phase_components(p);
             let value = gradient_noise(p, phase, 3).value;
             assert!((start * phase.x + later * phase.y - value).abs() < 1e-5, "{p}");
         }

@@ -98,8 +98,8 @@ impl Default for GuidedFit {
     }
 }
 
-/// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which [`SURFACE_DEPTH_TOLERANCE`] is two
-/// sigma.
+/// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which
+/// [`SURFACE_DEPTH_TOLERANCE`] is two sigma.
 pub fn guided_weight(place: Vec3, depth: f32) -> f32 {
     let tent = (1.0 - place.xy().abs() * 0.5).max(Vec2::ZERO);
     let sigmas = place.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));

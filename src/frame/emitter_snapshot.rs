@@ -7,7 +7,8 @@ use super::particle::Particle;
 use crate::formula::emitter::{drag_integrals, emitted_particle};
 use crate::formula::uniforms::EmitterUniform;
 
-/// Particles of an emitter at one time, not yet evaluated. [`Emitter::at`](crate::emitter::Emitter::at) returns it.
+/// Particles of an emitter at one time, not yet evaluated. [`Emitter::snapshot`](crate::emitter::Emitter::snapshot)
+/// returns it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmitterSnapshot {
     pub(crate) uniform: EmitterUniform,

@@ -1,6 +1,6 @@
 //! Images of a particle system on the GPU.
 
-use crate::assets::material::MaterialInfo;
+use crate::assets::material_assets::MaterialInfo;
 
 /// Ramps and sprite images on the GPU. Cheap to clone and to share between systems, renderers and frames.
 /// [`Renderer::create_material`](crate::Renderer::create_material) creates it.

@@ -23,7 +23,7 @@ pub struct Particle {
 }
 
 /// Largest magnitude of a particle's numbers that is drawn: far beyond any scene, and far below the limits of f32.
-pub const LARGEST: f32 = 1.0e9;
+pub const MAX_MAGNITUDE: f32 = 1.0e9;
 
 impl Default for Particle {
     fn default() -> Self {
@@ -32,12 +32,12 @@ impl Default for Particle {
 }
 
 impl Particle {
-    /// True if every number is finite, in range and at most [`LARGEST`]. Sprites that are not valid are skipped.
+    /// True if every number is finite, in range and at most [`MAX_MAGNITUDE`]. Sprites that are not valid are skipped.
     pub fn is_valid(&self) -> bool {
         let [x, y, z] = self.position.to_array();
         let numbers = [x, y, z, self.rotation, self.amount, self.frame, self.age];
         // Both comparisons are false for NaN.
-        numbers.iter().all(|number| number.abs() <= LARGEST) && (0.0..=LARGEST).contains(&self.radius)
+        numbers.iter().all(|number| number.abs() <= MAX_MAGNITUDE) && (0.0..=MAX_MAGNITUDE).contains(&self.radius)
     }
 
     /// True if the particle is valid, and its radius and amount are above 0.
@@ -52,7 +52,7 @@ impl Particle {
 }
 
 /// Box that contains the sprites of all visible particles. `reach` is the distance of a sprite's corners from its
-/// centre, in radii; see [`Settings::reach`](crate::Settings::reach).
+/// centre, in radii; see [`Settings::sprite_extent`](crate::Settings::sprite_extent).
 pub fn particle_bounds(particles: &[Particle], reach: f32) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for particle in particles.iter().filter(|particle| particle.is_visible()) {

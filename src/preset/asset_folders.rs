@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use super::sequence::is_there;
+use super::sequence::exists;
 use crate::assets::builtin;
 use crate::error::Error;
 
@@ -18,7 +18,7 @@ pub struct AssetFolders {
 const BUILT_IN: [&[builtin::Builtin]; 4] = [builtin::RAMPS, builtin::MOTIFS, builtin::SPRITES, builtin::NOISES];
 
 /// Maximum number of names in a folder that are compared with a missing one.
-const MOST_NAMES: usize = 10_000;
+const MAX_FOLDER_ENTRIES: usize = 10_000;
 
 /// Minimum similarity of a name to a missing one, to be suggested.
 pub(super) const MIN_SIMILARITY: f64 = 0.75;
@@ -40,7 +40,7 @@ impl AssetFolders {
     }
 
     /// All paths that a file may have. The first that exists is used.
-    pub fn places(&self, file: &Path) -> impl Iterator<Item = PathBuf> {
+    pub fn candidate_paths(&self, file: &Path) -> impl Iterator<Item = PathBuf> {
         self.all().map(move |folder| folder.join(file))
     }
 
@@ -50,7 +50,7 @@ impl AssetFolders {
     /// # Errors
     /// [`Error::Image`] if no folder has it, with the folders and the most similar name.
     pub fn find(&self, file: &Path) -> Result<PathBuf, Error> {
-        self.places(file).find(|place| is_there(place)).ok_or_else(|| self.missing(file))
+        self.candidate_paths(file).find(|place| exists(place)).ok_or_else(|| self.missing(file))
     }
 
     fn all(&self) -> impl Iterator<Item = &Path> {
@@ -78,8 +78,10 @@ fn nearest(file: &Path) -> Option<(f64, String)> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let ending = file.extension()?;
     let is_kind = |name: &String| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
-    let names =
-        std::fs::read_dir(folder).ok()?.take(MOST_NAMES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let names = std::fs::read_dir(folder)
+        .ok()?
+        .take(MAX_FOLDER_ENTRIES)
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let alike = names.filter(is_kind).map(|other| (strsim::jaro_winkler(name, &other), other));
     // Among equally similar frames the first by name, in whatever order the folder lists them.
     alike.filter(|(alike, _)| *alike >= MIN_SIMILARITY).max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)))

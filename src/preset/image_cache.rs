@@ -34,7 +34,7 @@ impl ImageCache {
     pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, Error> {
         self.count(field, 0)?;
         let folders = &self.folders;
-        let ramp = once(&mut self.ramps, file.into(), |file: &PathBuf| Ramp::load(&folders.find(file)?));
+        let ramp = get_or_load(&mut self.ramps, file.into(), |file: &PathBuf| Ramp::load(&folders.find(file)?));
         let ramp = ramp.map_err(|error| named_by(field, error))?;
         self.count(field, ramp.memory())?;
         Ok(ramp)
@@ -45,7 +45,8 @@ impl ImageCache {
         self.count(field, 0)?;
         let folders = &self.folders;
         let load = |(file, layout): &(PathBuf, SpriteLayout)| Sprite::load(&folders.find(file)?, *layout);
-        let sprite = once(&mut self.sprites, (file.into(), layout), load).map_err(|error| named_by(field, error))?;
+        let sprite =
+            get_or_load(&mut self.sprites, (file.into(), layout), load).map_err(|error| named_by(field, error))?;
         self.count(field, sprite.memory())?;
         Ok(sprite)
     }
@@ -54,7 +55,8 @@ impl ImageCache {
     pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, Error> {
         self.count(field, 0)?;
         let folders = &self.folders;
-        let noise = once(&mut self.noises, file.into(), |file: &PathBuf| NoiseVolume::load(&folders.find(file)?));
+        let noise =
+            get_or_load(&mut self.noises, file.into(), |file: &PathBuf| NoiseVolume::load(&folders.find(file)?));
         let noise = noise.map_err(|error| named_by(field, error))?;
         self.count(field, noise.memory())?;
         Ok(noise)
@@ -73,7 +75,7 @@ impl ImageCache {
     }
 }
 
-fn once<K: Hash + Eq, T: Clone>(
+fn get_or_load<K: Hash + Eq, T: Clone>(
     loaded: &mut HashMap<K, T>,
     key: K,
     load: impl FnOnce(&K) -> Result<T, Error>,

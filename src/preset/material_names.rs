@@ -5,7 +5,7 @@ use std::path::{Component, Path};
 use super::asset_folders::{AssetFolders, MIN_SIMILARITY};
 use super::image_cache::ImageCache;
 use crate::assets::builtin::{self, Builtin};
-use crate::assets::material::MaterialAssets;
+use crate::assets::material_assets::MaterialAssets;
 use crate::assets::sprite::{Sprite, SpriteLayout, six_way_layout};
 use crate::error::{Error, FieldError};
 use crate::settings::{ImageRole, settings};
@@ -16,13 +16,13 @@ settings! {
     pub struct MaterialNames {
         "sprite":
         /// Flipbook of normal maps: shape and outline of every puff.
-        sprite: String = "puff".into(), picture(ImageRole::Sprite);
+        sprite: String = "puff".into(), image(ImageRole::Sprite);
         /// Depth and motion of a sprite file, with the same layout; empty for none. Built-in sprites have their own.
-        detail: String = String::new(), picture(ImageRole::Detail);
+        detail: String = String::new(), image(ImageRole::Detail);
         /// The sprite under light from six sides, with the same layout but twice as high: right, top and front above;
         /// left, bottom and back below. A file, for built-in sprites too; empty for none. `haze sprite bake --six-way`
         /// makes it.
-        six_way: String = String::new(), picture(ImageRole::SixWay);
+        six_way: String = String::new(), image(ImageRole::SixWay);
         /// Number of frames side by side in a sprite file. Built-in sprites have their own.
         columns: u32 = 1, integer(1..=256, "frames");
         /// Number of frames one below the other in a sprite file.
@@ -33,21 +33,21 @@ settings! {
         "ramps and noise":
         /// Light by dot(n, l) and, if it has rows, by amount times boost: the colours of shade, terminator and lit
         /// side.
-        diffuse_ramp: String = "diffuse_soft".into(), picture(ImageRole::Ramp);
+        diffuse_ramp: String = "diffuse_soft".into(), image(ImageRole::Ramp);
         /// The same for light from behind: a glowing rim, a dark middle.
-        backlight_ramp: String = "backlight_traced_ash".into(), picture(ImageRole::Ramp);
+        backlight_ramp: String = "backlight_traced_ash".into(), image(ImageRole::Ramp);
         /// Light by amount: the colours of thin and thick smoke, independent of the lights.
-        soft_scatter_ramp: String = "scatter_mist".into(), picture(ImageRole::Ramp);
+        soft_scatter_ramp: String = "scatter_mist".into(), image(ImageRole::Ramp);
         /// Glow by distance² and amount: the look of a light that shines through smoke.
-        specular_ramp: String = "specular_halo".into(), picture(ImageRole::Ramp);
+        specular_ramp: String = "specular_halo".into(), image(ImageRole::Ramp);
         /// Painted lit sphere: light by paint alone.
-        motif: String = "motif_studio".into(), picture(ImageRole::Motif);
+        motif: String = "motif_studio".into(), image(ImageRole::Motif);
         /// Colour by age: from flame to ash.
-        age_ramp: String = "age_smoke".into(), picture(ImageRole::Ramp);
+        age_ramp: String = "age_smoke".into(), image(ImageRole::Ramp);
         /// Coverage by amount: soft, wispy or sharp silhouettes.
-        coverage_ramp: String = "coverage_soft".into(), picture(ImageRole::Ramp);
+        coverage_ramp: String = "coverage_soft".into(), image(ImageRole::Ramp);
         /// Tiling 3D noise: a built-in one, or a PNG of slices one below the other.
-        noise: String = "fbm".into(), picture(ImageRole::Noise);
+        noise: String = "fbm".into(), image(ImageRole::Noise);
     }
 }
 
@@ -66,13 +66,13 @@ impl MaterialNames {
     /// fields in order, at least one, each with its field. Images that belong to the sprite report under `sprite`.
     pub fn load_from(&self, pictures: &mut ImageCache) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
-        let sprite = kept("sprite", self.load_sprite(pictures), &mut errors);
+        let sprite = ok_or_record("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
             let found = match builtin::find(list, name) {
                 Some(ramp) => ramp.ramp(),
-                None => inside(field, name, list).and_then(|file| pictures.ramp(field, file)),
+                None => resolve_image_path(field, name, list).and_then(|file| pictures.ramp(field, file)),
             };
-            kept(field, found, &mut errors)
+            ok_or_record(field, found, &mut errors)
         };
         let ramps = (
             ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS),
@@ -85,9 +85,11 @@ impl MaterialNames {
         );
         let noise = match builtin::find(builtin::NOISES, &self.noise) {
             Some(noise) => noise.noise(),
-            None => inside("noise", &self.noise, builtin::NOISES).and_then(|file| pictures.noise("noise", file)),
+            None => {
+                resolve_image_path("noise", &self.noise, builtin::NOISES).and_then(|file| pictures.noise("noise", file))
+            }
         };
-        let noise = kept("noise", noise, &mut errors);
+        let noise = ok_or_record("noise", noise, &mut errors);
         match (sprite, ramps, noise) {
             (
                 Some(SpriteImages { sprite, detail, six_way }),
@@ -112,25 +114,25 @@ impl MaterialNames {
 
     /// Copy with default images for some fields, named as in the errors of [`MaterialNames::load_from`].
     pub fn with_defaults_for(&self, fields: &[&str]) -> Self {
-        let usual = Self::default();
+        let defaults = Self::default();
         let mut names = self.clone();
         for field in fields {
-            let (own, usual) = match *field {
-                "diffuse_ramp" => (&mut names.diffuse_ramp, &usual.diffuse_ramp),
-                "soft_scatter_ramp" => (&mut names.soft_scatter_ramp, &usual.soft_scatter_ramp),
-                "specular_ramp" => (&mut names.specular_ramp, &usual.specular_ramp),
-                "motif" => (&mut names.motif, &usual.motif),
-                "age_ramp" => (&mut names.age_ramp, &usual.age_ramp),
-                "coverage_ramp" => (&mut names.coverage_ramp, &usual.coverage_ramp),
-                "backlight_ramp" => (&mut names.backlight_ramp, &usual.backlight_ramp),
-                "noise" => (&mut names.noise, &usual.noise),
+            let (own, defaults) = match *field {
+                "diffuse_ramp" => (&mut names.diffuse_ramp, &defaults.diffuse_ramp),
+                "soft_scatter_ramp" => (&mut names.soft_scatter_ramp, &defaults.soft_scatter_ramp),
+                "specular_ramp" => (&mut names.specular_ramp, &defaults.specular_ramp),
+                "motif" => (&mut names.motif, &defaults.motif),
+                "age_ramp" => (&mut names.age_ramp, &defaults.age_ramp),
+                "coverage_ramp" => (&mut names.coverage_ramp, &defaults.coverage_ramp),
+                "backlight_ramp" => (&mut names.backlight_ramp, &defaults.backlight_ramp),
+                "noise" => (&mut names.noise, &defaults.noise),
                 _ => {
                     (names.detail, names.six_way) = (String::new(), String::new());
                     (names.columns, names.rows, names.y_down) = (1, 1, false);
-                    (&mut names.sprite, &usual.sprite)
+                    (&mut names.sprite, &defaults.sprite)
                 }
             };
-            own.clone_from(usual);
+            own.clone_from(defaults);
         }
         names
     }
@@ -140,12 +142,12 @@ impl MaterialNames {
             Some(builtin) => (self.load_builtin(builtin)?, builtin.sprite_layout()?),
             None => {
                 let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: false };
-                let path = inside("sprite", &self.sprite, builtin::SPRITES)?;
+                let path = resolve_image_path("sprite", &self.sprite, builtin::SPRITES)?;
                 let sprite = pictures.sprite("sprite", path, SpriteLayout { y_down: self.y_down, ..layout })?;
-                ((sprite, beside(pictures, "detail", &self.detail, layout)?), layout)
+                ((sprite, load_companion(pictures, "detail", &self.detail, layout)?), layout)
             }
         };
-        let six_way = beside(pictures, "six_way", &self.six_way, six_way_layout(layout))?;
+        let six_way = load_companion(pictures, "six_way", &self.six_way, six_way_layout(layout))?;
         Ok(SpriteImages { sprite, detail, six_way })
     }
 
@@ -168,7 +170,7 @@ impl MaterialNames {
 }
 
 /// Loads an image that accompanies a sprite, if one is named.
-fn beside(
+fn load_companion(
     pictures: &mut ImageCache,
     field: &'static str,
     name: &str,
@@ -177,7 +179,7 @@ fn beside(
     if name.is_empty() {
         return Ok(None);
     }
-    Ok(Some(pictures.sprite(field, inside(field, name, &[])?, layout)?))
+    Ok(Some(pictures.sprite(field, resolve_image_path(field, name, &[])?, layout)?))
 }
 
 /// Sprite with its accompanying images.
@@ -197,7 +199,7 @@ pub fn image_file_path(name: &str) -> Option<&Path> {
 }
 
 /// File that a name stands for, relative to the preset's folder.
-fn inside<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, Error> {
+fn resolve_image_path<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, Error> {
     if let Some(path) = image_file_path(name) {
         return Ok(path);
     }
@@ -214,7 +216,7 @@ fn inside<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, 
 }
 
 /// Returns the value, or records the error.
-fn kept<T>(field: &'static str, found: Result<T, Error>, errors: &mut Vec<(&'static str, Error)>) -> Option<T> {
+fn ok_or_record<T>(field: &'static str, found: Result<T, Error>, errors: &mut Vec<(&'static str, Error)>) -> Option<T> {
     found.map_err(|error| errors.push((field, error))).ok()
 }
 
@@ -225,39 +227,39 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::assets::ramp::Role;
+    use crate::assets::ramp::RampRole;
     use crate::settings::{FieldVisitor, Fields};
 
     #[test]
     fn every_field_for_a_ramp_has_a_role_and_a_default_of_that_role() {
-        struct Roles(Vec<Role>);
+        struct Roles(Vec<RampRole>);
         impl FieldVisitor for Roles {
             fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
             fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
             fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
             fn group(&mut self, _: &'static str, _: &mut dyn Fields) {}
             fn item(&mut self, _: &'static str, _: usize, _: &mut dyn Fields) {}
-            fn picture(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
-                let wanted = Role::of_field(name);
+            fn image(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
+                let wanted = RampRole::of_field(name);
                 assert_eq!(wanted.is_some(), role == ImageRole::Ramp, "{name}");
-                assert!(wanted.is_none() || wanted == Role::of_name(value), "{name} {value}");
+                assert!(wanted.is_none() || wanted == RampRole::of_name(value), "{name} {value}");
                 self.0.extend(wanted);
             }
         }
         let mut roles = Roles(Vec::new());
         MaterialNames::default().visit(&mut roles);
-        assert_eq!(roles.0.len(), Role::ALL.len());
+        assert_eq!(roles.0.len(), RampRole::ALL.len());
     }
 
     #[test]
     fn image_files_stay_inside_the_presets_folder() {
-        assert_eq!(inside("sprite", "a/b.png", &[]).unwrap(), Path::new("a/b.png"));
+        assert_eq!(resolve_image_path("sprite", "a/b.png", &[]).unwrap(), Path::new("a/b.png"));
         for outside in ["../b.png", "/etc/b.png", "a/../../b.png", "puf", "b.jpg"] {
-            assert!(inside("sprite", outside, builtin::SPRITES).is_err(), "{outside}");
+            assert!(resolve_image_path("sprite", outside, builtin::SPRITES).is_err(), "{outside}");
         }
-        let said = inside("sprite", "Wisps", builtin::SPRITES).unwrap_err().to_string();
+        let said = resolve_image_path("sprite", "Wisps", builtin::SPRITES).unwrap_err().to_string();
         assert!(said.ends_with("inside the preset's folder; the nearest name is \"wisp\""), "{said}");
-        let said = inside("sprite", "b.jpg", builtin::SPRITES).unwrap_err().to_string();
+        let said = resolve_image_path("sprite", "b.jpg", builtin::SPRITES).unwrap_err().to_string();
         assert!(said.ends_with("inside the preset's folder"), "{said}");
     }
 }

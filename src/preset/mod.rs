@@ -4,12 +4,11 @@ mod asset_folders;
 mod camera;
 mod environment;
 mod image_cache;
+mod json_writer;
 mod material_names;
 mod particle_source;
-#[allow(clippy::module_inception, reason = "one file per part of a preset, and one for the whole")]
-mod preset;
+mod preset_file;
 mod sequence;
-mod text;
 
 pub use asset_folders::AssetFolders;
 pub use camera::Camera;
@@ -18,6 +17,6 @@ pub use image_cache::{ImageCache, MAX_IMAGE_BYTES};
 pub use material_names::{MaterialNames, image_file_path};
 pub use particle_source::{EndBehaviour, ParticleFiles, UpAxis, particle_file_path};
 #[doc(hidden)]
-pub use preset::with_system_context;
-pub use preset::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
-pub use sequence::{Sequence, frame_files, is_there, places};
+pub use preset_file::with_system_context;
+pub use preset_file::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
+pub use sequence::{Sequence, exists, frame_files, watched_paths};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 
 /// Maximum number of folder entries that are examined.
-const MOST_NAMES: usize = 100_000;
+const MAX_FOLDER_ENTRIES: usize = 100_000;
 
 /// Maximum number of frames.
 const MAX_FRAMES: usize = 10_000;
@@ -48,7 +48,7 @@ impl Sequence {
     /// Lists the existing frames in order.
     fn frames(&self) -> Result<Vec<(u32, PathBuf)>, IoError> {
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
-        let names = std::fs::read_dir(folder)?.take(MOST_NAMES);
+        let names = std::fs::read_dir(folder)?.take(MAX_FOLDER_ENTRIES);
         let names = names.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
         let mut frames: Vec<_> = names.filter_map(|name| Some((self.number(&name)?, self.folder.join(name)))).collect();
         frames.sort();
@@ -74,7 +74,7 @@ pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, Error> {
 
 /// True if the file, or at least one frame of the sequence, exists. Also true if the path cannot be examined: reading
 /// it then reports the reason.
-pub fn is_there(path: &Path) -> bool {
+pub fn exists(path: &Path) -> bool {
     match Sequence::of(path) {
         Some(sequence) => sequence.frames().is_ok_and(|frames| !frames.is_empty()),
         None => match path.symlink_metadata() {
@@ -85,7 +85,7 @@ pub fn is_there(path: &Path) -> bool {
 }
 
 /// Returns the paths to watch for changes: every existing file of the path, and the next frame.
-pub fn places(path: &Path) -> Vec<PathBuf> {
+pub fn watched_paths(path: &Path) -> Vec<PathBuf> {
     let Some(sequence) = Sequence::of(path) else { return vec![path.into()] };
     let frames = sequence.frames().unwrap_or_default();
     let next = frames.last().map_or(1, |(last, _)| last.saturating_add(1));
@@ -121,7 +121,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let pattern = path("s##.csv");
-        assert!(!is_there(&pattern) && places(&pattern) == [path("s01.csv")]);
+        assert!(!exists(&pattern) && watched_paths(&pattern) == [path("s01.csv")]);
         let error = frame_files(&pattern).unwrap_err().to_string();
         assert!(error.ends_with("s##.csv: no such files; expected names with digits in place of #"), "{error}");
         for name in ["s100.csv", "s09.csv", "s10.csv", "s1.csv", "other.csv"] {
@@ -129,7 +129,7 @@ mod tests {
         }
         let numbers: Vec<_> = frame_files(&pattern).unwrap().into_iter().map(|(number, _)| number).collect();
         assert_eq!(numbers, [9, 10, 100]);
-        assert!(is_there(&pattern) && places(&pattern).last() == Some(&path("s101.csv")));
-        assert!(is_there(&path("s1.csv")) && !is_there(&path("s2.csv")));
+        assert!(exists(&pattern) && watched_paths(&pattern).last() == Some(&path("s101.csv")));
+        assert!(exists(&path("s1.csv")) && !exists(&path("s2.csv")));
     }
 }

@@ -7,12 +7,12 @@ use super::auto::PathModel;
 use super::gpu::Gpu;
 use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
 use super::layouts::Layouts;
-use super::material::{SharedTextures, create_material};
-use super::passes::Passes;
+use super::material_upload::{SharedTextures, create_material};
+use super::pipelines::Pipelines;
 use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
-use super::tiled::Tiled;
-use crate::assets::material::MaterialAssets;
+use super::tiled::TiledPipelines;
+use crate::assets::material_assets::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::Material;
 
@@ -32,7 +32,7 @@ pub(crate) struct Shared {
     pub device: wgpu::Device,
     pub layouts: Layouts,
     textures: SharedTextures,
-    pub passes: Passes,
+    pub pipelines: Pipelines,
     /// [`read_only_depth_is_supported`], queried once, because every query copies the adapter's information.
     pub read_only_depth: bool,
     /// True if the device supports six-way lighting; otherwise smoke is lit by normals.
@@ -43,7 +43,7 @@ pub(crate) struct Shared {
 impl Shared {
     /// Returns the traversal of the path `tiled`, as in [`PipelineInputs::tiles`](super::plan::Situation::tiles).
     pub fn tiles(&self) -> Option<bool> {
-        self.passes.tiled.as_ref().map(Tiled::cooperative)
+        self.pipelines.tiled.as_ref().map(TiledPipelines::cooperative)
     }
 
     pub fn path_model(&self) -> PathModel {
@@ -60,8 +60,8 @@ impl Context {
     /// `get_data` to save them.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let layouts = Layouts::new(device);
-        let Ok(passes) = Passes::new(device, &layouts, pipeline_cache, |name| embedded_shader(device, name));
-        Self::assemble(device, queue, layouts, passes)
+        let Ok(pipelines) = Pipelines::new(device, &layouts, pipeline_cache, |name| embedded_shader(device, name));
+        Self::assemble(device, queue, layouts, pipelines)
     }
 
     /// Creates a context with custom shaders, for shader development. Compiles and validates all shader modules and one
@@ -77,16 +77,16 @@ impl Context {
         sources: &Sources,
     ) -> Result<Self, Error> {
         let layouts = Layouts::new(device);
-        let passes = Passes::new(device, &layouts, pipeline_cache, |name| checked_shader(device, name, sources))?;
-        let context = Self::assemble(device, queue, layouts, passes);
+        let pipelines = Pipelines::new(device, &layouts, pipeline_cache, |name| checked_shader(device, name, sources))?;
+        let context = Self::assemble(device, queue, layouts, pipelines);
         let shared = context.shared();
         plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()
-            .try_for_each(|plan| shared.passes.compile(device, plan))?;
+            .try_for_each(|plan| shared.pipelines.compile(device, plan))?;
         Ok(context)
     }
 
-    fn assemble(device: &wgpu::Device, queue: &wgpu::Queue, layouts: Layouts, passes: Passes) -> Self {
+    fn assemble(device: &wgpu::Device, queue: &wgpu::Queue, layouts: Layouts, pipelines: Pipelines) -> Self {
         static CONTEXTS: AtomicU64 = AtomicU64::new(0);
         Self(Arc::new(Shared {
             number: CONTEXTS.fetch_add(1, Ordering::Relaxed),
@@ -96,7 +96,7 @@ impl Context {
             six_way: six_way_is_supported(device),
             path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
             layouts,
-            passes,
+            pipelines,
         }))
     }
 
@@ -120,7 +120,7 @@ impl Context {
     /// Returns the number of pipelines compiled so far. It stays constant once everything that a program draws has been
     /// drawn or warmed up.
     pub fn pipeline_count(&self) -> usize {
-        self.0.passes.pipeline_count()
+        self.0.pipelines.pipeline_count()
     }
 
     /// Returns true if the device supports the path `tiled`.
@@ -151,7 +151,7 @@ impl Context {
     /// not the device's default. Both give the same image.
     #[doc(hidden)]
     pub fn set_cooperative_traversal(&self, cooperative: bool) {
-        self.0.passes.tiled.iter().for_each(|tiled| tiled.set_cooperative(cooperative));
+        self.0.pipelines.tiled.iter().for_each(|tiled| tiled.set_cooperative(cooperative));
     }
 
     pub(crate) fn shared(&self) -> &Shared {

@@ -60,7 +60,7 @@ impl Descriptor<'_> {
             depth_format: self.depth_format,
             sample_count: self.sample_count,
             gamma_target: self.gamma_target,
-            ..HostPass::plain(self.color_format)
+            ..HostPass::color_only(self.color_format)
         };
         let Some(pass) = pass.with_further(self.further_color_formats) else {
             let value = format!("{} formats", self.further_color_formats.len());

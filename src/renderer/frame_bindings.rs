@@ -1,7 +1,7 @@
 //! Bind group 0 of every pass: view uniforms and scene depth.
 
 use super::gpu::Gpu;
-use super::gpu::error_scopes::checked;
+use super::gpu::error_scopes::with_error_scopes;
 use super::gpu::record::uniform_buffer;
 use super::layouts::{Layouts, bind_textures};
 use crate::error::FieldError;
@@ -82,7 +82,7 @@ impl Source {
         };
         if self.bound.as_ref().is_none_or(|bound| bound.depth != *depth) {
             self.bound = None;
-            let bound = checked(gpu.device, || self.bind(gpu.device, layouts, depth)).map_err(|reason| {
+            let bound = with_error_scopes(gpu.device, || self.bind(gpu.device, layouts, depth)).map_err(|reason| {
                 let expected = format!("a 2D view of one layer and one aspect of a texture of this device ({reason})");
                 FieldError::new("scene_depth", format!("a view of a {:?}", depth.texture().format()), expected)
             })?;

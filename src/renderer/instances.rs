@@ -2,10 +2,10 @@
 
 use super::gpu::Gpu;
 use super::gpu::idle_counter::IdleCounter;
-use super::pass::sprites::Sprites;
+use super::sprite_instances::Sprites;
 use crate::frame::{Particle, Particles};
-use crate::settings::{Order, Settings};
-use crate::view_setup::{SortScratch, ViewGeometry, in_order};
+use crate::settings::{BlendOrder, Settings};
+use crate::view_setup::{SortScratch, ViewGeometry, write_in_drawing_order};
 
 /// Processor that sorts particles for compute shaders. If the CPU also draws (software adapters), sorting on the CPU
 /// directly is faster.
@@ -18,7 +18,7 @@ pub(crate) enum SortedBy {
 #[derive(Debug, Default)]
 pub(crate) struct Instances {
     buffer: Option<wgpu::Buffer>,
-    spare: IdleCounter,
+    idle: IdleCounter,
     sort: SortScratch,
     sorted: Vec<Particle>,
     /// Particles of an emitter, evaluated on the CPU.
@@ -50,15 +50,15 @@ impl Instances {
                 &self.evaluated
             }
         };
-        let is_sorted = settings.order() == Order::Sorted && tiled != Some(SortedBy::Gpu);
-        in_order(view, particles, is_sorted, &mut self.sort, &mut self.sorted);
+        let is_sorted = settings.order() == BlendOrder::Sorted && tiled != Some(SortedBy::Gpu);
+        write_in_drawing_order(view, particles, is_sorted, &mut self.sort, &mut self.sorted);
         let needed = size_of_val(self.sorted.as_slice()) as u64;
         let held = self.bytes();
-        let gives_back = self.spare.tick(needed.next_power_of_two() * 4 <= held);
+        let should_release = self.idle.tick(needed.next_power_of_two() * 4 <= held);
         let mut usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
         usage.set(wgpu::BufferUsages::STORAGE, tiled.is_some());
         let fits = self.buffer.as_ref().is_some_and(|buffer| buffer.usage().contains(usage) && needed <= held);
-        if !fits || gives_back {
+        if !fits || should_release {
             self.buffer = None;
             self.sort.shrink();
             self.sorted.shrink_to_fit();

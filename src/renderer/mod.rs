@@ -4,26 +4,27 @@ mod auto;
 mod context;
 mod counts;
 mod descriptor;
-mod draw;
 mod frame_bindings;
 mod gpu;
 mod instances;
 mod layouts;
-mod material;
-mod memory;
+mod material_upload;
+mod memory_use;
 mod pass;
-mod passes;
 mod path_probe;
+mod pipelines;
 mod plan;
 pub mod shader;
+mod sprite_instances;
+mod system_passes;
 mod system_state;
 mod system_targets;
 mod targets;
 mod tiled;
-mod validate;
+mod validate_frame;
 mod warm_up;
 
-use crate::assets::material::MaterialAssets;
+use crate::assets::material_assets::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, Material};
 use crate::settings::{DebugView, Settings};
@@ -36,20 +37,20 @@ pub use descriptor::Descriptor;
 pub use gpu::capabilities::read_only_depth_is_supported;
 pub use gpu::frame_times::{FrameTimes, PassTime};
 pub use gpu::timing::Timing;
-pub use memory::{MemoryUse, TiledMemory};
+pub use memory_use::{MemoryUse, TiledMemory};
 pub use plan::SceneDepthKind;
 pub use targets::TargetViews;
 pub use warm_up::WarmUp;
 
-use draw::Draw;
 use frame_bindings::FrameBindings;
 use gpu::Gpu;
 use gpu::host_pass::HostPass;
 use gpu::record::set_viewport_and_scissor;
-use gpu::submission::Submission;
+use gpu::submission::SubmissionTracker;
 use plan::{PipelineInputs, plan};
+use system_passes::SystemPasses;
 use system_state::{FrameContext, SystemState};
-use validate::{host_size, validate};
+use validate_frame::{host_size, validate};
 
 /// Draws particle systems into a host's frame.
 ///
@@ -61,21 +62,21 @@ pub struct Renderer {
     context: Context,
     host: HostPass,
     exact_filtering: bool,
-    submission: Submission,
+    submission: SubmissionTracker,
     timing: Option<Timing>,
     /// Frame number of `timing` at the last `prepare`.
     timed_frame: Option<u64>,
     bindings: FrameBindings,
     states: Vec<SystemState>,
     /// Visible systems, farthest first.
-    order: Vec<Seen>,
+    order: Vec<VisibleSystem>,
     /// View of the last successful `prepare`.
     view: Option<ViewGeometry>,
 }
 
 /// A visible system.
 #[derive(Clone, Copy, Debug)]
-struct Seen {
+struct VisibleSystem {
     state: usize,
     /// View depth of the smoke's centre, metres.
     distance: f32,
@@ -96,7 +97,7 @@ impl Renderer {
         Ok(Self {
             host,
             exact_filtering: descriptor.exact_filtering,
-            submission: Submission::new(device),
+            submission: SubmissionTracker::new(device),
             timing: None,
             timed_frame: None,
             bindings: FrameBindings::new(device),
@@ -134,7 +135,7 @@ impl Renderer {
     /// pipeline the device rejects, because of a shader of [`Context::with_shaders`] or a driver error.
     pub fn warm_up(&self, expected: &WarmUp<'_>) -> Result<(), Error> {
         let view = ViewGeometry::new(&expected.view)?;
-        let inputs = self.inputs(&view, expected.scene_depth, expected.stages);
+        let inputs = self.pipeline_inputs(&view, expected.scene_depth, expected.debug_views);
         let shared = self.context.shared();
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
@@ -144,7 +145,7 @@ impl Renderer {
                 for &path in settings.path.candidates() {
                     for back_faces in [false, true] {
                         let settings = Settings { path, ..settings };
-                        shared.passes.compile(&shared.device, &plan(&inputs, &settings, back_faces))?;
+                        shared.pipelines.compile(&shared.device, &plan(&inputs, &settings, back_faces))?;
                     }
                 }
             }
@@ -176,13 +177,13 @@ impl Renderer {
         let shared = context.shared();
         let view = ViewGeometry::new(&frame.view)?;
         validate(shared, &self.host, frame)?;
-        let inputs = self.inputs(&view, frame.scene_depth.kind(), frame.stages);
+        let inputs = self.pipeline_inputs(&view, frame.scene_depth.kind(), frame.debug_views);
         // Bind group 0 of every system: view and scene depth.
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
         self.sync_system_states(frame);
-        self.submission.follow(encoder);
+        self.submission.track(encoder);
         let timing = self.timing.as_ref();
-        self.timed_frame = timing.map(|timing| timing.enter(self.timed_frame));
+        self.timed_frame = timing.map(|timing| timing.register_prepare(self.timed_frame));
 
         let host_size = host_size(&frame.scene_depth);
         let bindings = &self.bindings;
@@ -195,21 +196,21 @@ impl Renderer {
             if let (Some(timing), Some(choice)) = (timing, state.choice()) {
                 timing.add_choice(system.key, choice);
             }
-            let Some(draw) = state.draw() else { continue };
-            self.order.push(Seen { state: index, distance: state.distance() });
+            let Some(passes) = state.passes() else { continue };
+            self.order.push(VisibleSystem { state: index, distance: state.distance() });
             // Evaluates an emitter's particles, or sorts a host's particles back to front.
-            state.particles_pass().iter().for_each(|pass| pass.record(encoder, timing));
-            let Draw::Deferred(draw) = draw else { continue };
+            state.particle_pass().iter().for_each(|pass| pass.record(encoder, timing));
+            let SystemPasses::Deferred(passes) = passes else { continue };
             // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
-            draw.depth_downsample.iter().chain(&draw.depth_copy).for_each(|pass| pass.record(encoder, timing));
+            passes.depth_downsample.iter().chain(&passes.depth_copy).for_each(|pass| pass.record(encoder, timing));
             // Bakes all lights by normal, for the diffuse modes cubemap and motif.
-            draw.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
             // Accumulates sprites as premultiplied normal + amount.
-            draw.accumulate.record(encoder, timing);
+            passes.accumulate.record(encoder, timing);
             // Counts layers, for the overdraw view.
-            draw.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
             // Lights the target, if the lighting resolution is the target's.
-            draw.light_target.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.light_target.iter().for_each(|pass| pass.record(encoder, timing));
         }
         // Far to near; systems at equal distance keep the host's order.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -221,28 +222,28 @@ impl Renderer {
     /// vertex buffer 0, and sets viewport and scissor rectangle to the view. Leaves stencil reference and blend
     /// constant unchanged.
     pub fn render(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.render_stage(pass, DebugView::Final);
+        self.render_debug_view(pass, DebugView::Final);
     }
 
-    /// Records one stage of the shading instead of the final image. Draws nothing unless `stage` is one of the frame's
-    /// [`stages`](Frame::stages). After one `prepare`, any number of stages can be drawn.
-    pub fn render_stage(&self, pass: &mut wgpu::RenderPass<'_>, stage: DebugView) {
+    /// Records a debug view instead of the final image. Draws nothing unless `debug_view` is one of the frame's
+    /// [`debug_views`](Frame::debug_views). After one `prepare`, any number of debug views can be drawn.
+    pub fn render_debug_view(&self, pass: &mut wgpu::RenderPass<'_>, debug_view: DebugView) {
         let Some(view) = self.view.as_ref().filter(|_| !self.order.is_empty()) else { return };
         self.submission.track_pass(pass);
         let timing = self.timing.as_ref();
         set_viewport_and_scissor(pass, view.origin, view.size);
-        for seen in &self.order {
-            match self.states[seen.state].draw() {
+        for visible in &self.order {
+            match self.states[visible.state].passes() {
                 // Path `forward`: lights every sprite fragment.
-                Some(Draw::Forward(forward)) if stage.is_picture() => {
-                    Timing::inside(timing, "forward", pass, |pass| forward.record(pass));
+                Some(SystemPasses::Forward(forward)) if debug_view.shows_lit_smoke() => {
+                    Timing::measure_in_pass(timing, "forward", pass, |pass| forward.record(pass));
                 }
-                Some(Draw::Deferred(draw)) => {
+                Some(SystemPasses::Deferred(passes)) => {
                     // Draws the bounding box: lights each pixel once, or upsamples the lit target.
-                    Timing::inside(timing, "transfer", pass, |pass| draw.transfer.record(pass, stage));
+                    Timing::measure_in_pass(timing, "transfer", pass, |pass| passes.transfer.record(pass, debug_view));
                     // Adds the glow of lights behind the smoke.
-                    for glow in draw.specular_scatter.iter().filter(|_| stage.glows()) {
-                        Timing::inside(timing, "specular_scatter", pass, |pass| glow.record(pass));
+                    for glow in passes.specular_scatter.iter().filter(|_| debug_view.shows_glow()) {
+                        Timing::measure_in_pass(timing, "specular_scatter", pass, |pass| glow.record(pass));
                     }
                 }
                 _ => {}
@@ -265,7 +266,7 @@ impl Renderer {
     /// Counts the systems, sprites and texels that [`render`](Self::render) draws after the last
     /// [`prepare`](Self::prepare).
     pub fn counts(&self) -> FrameCounts {
-        self.order.iter().map(|seen| self.states[seen.state].counts()).sum()
+        self.order.iter().map(|visible| self.states[visible.state].counts()).sum()
     }
 
     /// Returns the path that `auto` chose in the last [`prepare`](Self::prepare) for the system with this key, with the
@@ -278,7 +279,7 @@ impl Renderer {
     /// sprites on the CPU: about 0.5 ms for 10,000 sprites.
     pub fn overdraw(&self) -> Overdraw {
         let Some(view) = self.view.map(|view| view.uniform(false)) else { return Overdraw::default() };
-        self.order.iter().map(|seen| self.states[seen.state].overdraw(&view)).sum()
+        self.order.iter().map(|visible| self.states[visible.state].overdraw(&view)).sum()
     }
 
     /// Measures the GPU time of this renderer's passes from the next [`prepare`](Self::prepare) on. `None`, the initial
@@ -296,11 +297,11 @@ impl Renderer {
         Ok(())
     }
 
-    fn inputs<'a>(
+    fn pipeline_inputs<'a>(
         &self,
         view: &ViewGeometry,
         scene_depth: SceneDepthKind,
-        stages: &'a [DebugView],
+        debug_views: &'a [DebugView],
     ) -> PipelineInputs<'a> {
         PipelineInputs {
             host: self.host,
@@ -311,7 +312,7 @@ impl Renderer {
             reversed: view.depth.reversed,
             mirrored: view.mirrored,
             size: view.size,
-            stages,
+            debug_views,
         }
     }
 

@@ -21,15 +21,15 @@ const SIZE: UVec2 = UVec2::splat(256);
 const SPRITES: u32 = 16;
 /// Minimum time of a measured frame. It is also at least `MIN_TIME_FACTOR` times the time of a frame that draws all
 /// sprites once. Jitter of clock and queue is small against it.
-const LONG_ENOUGH: Duration = Duration::from_millis(4);
+const MIN_FRAME_TIME: Duration = Duration::from_millis(4);
 const MIN_TIME_FACTOR: u32 = 2;
 /// Maximum number of times that a frame draws all sprites.
-const MOST_LOOPS: u32 = 4096;
+const MAX_LOOPS: u32 = 4096;
 /// Frames measured per path and loop count. The shortest counts, because disturbances only lengthen a frame; many short
 /// frames are likely to include an undisturbed one.
 const ROUNDS: u32 = 8;
 /// Frames measured per step of the search for the loop count.
-const FEW: u32 = 3;
+const SEARCH_ROUNDS: u32 = 3;
 
 impl Context {
     /// Measures the cost of both accumulation paths on this device for the path `auto`, and sets the result as the
@@ -51,16 +51,16 @@ impl Context {
             return Ok(self.path_model());
         }
         let class = PathModel::of_class(device.adapter_info().device_type);
-        let mut bench = Bench::new(self, device, queue)?;
-        let seconds = bench.seconds(&mut submit)?;
-        let load = bench.load();
+        let mut scene = ProbeScene::new(self, device, queue)?;
+        let seconds = scene.seconds(&mut submit)?;
+        let workload = scene.workload();
         let times = |costs: PathCosts, seconds: f64| {
             // Expected time of one pass over all sprites, without the costs per frame.
-            let expected = costs.milliseconds(&load, 1.0)
-                - costs.milliseconds(&PathWorkload { fragments: 0.0, sprites: 0.0, ..load }, 1.0);
+            let expected = costs.milliseconds(&workload, 1.0)
+                - costs.milliseconds(&PathWorkload { fragments: 0.0, sprites: 0.0, ..workload }, 1.0);
             (1.0e3 * seconds) as f32 / expected
         };
-        let model = class.probed([times(class.raster, seconds[0]), times(class.tiled, seconds[1])]);
+        let model = class.scaled_by_probe([times(class.raster, seconds[0]), times(class.tiled, seconds[1])]);
         self.set_path_model(model)?;
         Ok(model)
     }
@@ -69,7 +69,7 @@ impl Context {
 const PATHS: [RenderPath; 2] = [RenderPath::Raster, RenderPath::Tiled];
 
 /// Renderer and test scene of the measurement.
-struct Bench<'a> {
+struct ProbeScene<'a> {
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
     renderer: Renderer,
@@ -79,7 +79,7 @@ struct Bench<'a> {
     particles: Vec<Particle>,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> ProbeScene<'a> {
     fn new(context: &Context, device: &'a wgpu::Device, queue: &'a wgpu::Queue) -> Result<Self, Error> {
         let descriptor = Descriptor { context: Some(context), ..Descriptor::default() };
         let renderer = Renderer::new(device, queue, &descriptor)?;
@@ -113,7 +113,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Returns the workload of the last frame, which drew all sprites once.
-    fn load(&self) -> PathWorkload {
+    fn workload(&self) -> PathWorkload {
         PathWorkload {
             technique: Settings::default().technique,
             sprites: f64::from(SPRITES),
@@ -134,8 +134,8 @@ impl<'a> Bench<'a> {
         for (path, loops) in PATHS.into_iter().zip(&mut loops) {
             // The first frame compiles pipelines and is not measured.
             self.frame(path, 1, submit)?;
-            let enough = LONG_ENOUGH.max(MIN_TIME_FACTOR * self.frame(path, 1, submit)?);
-            while *loops < MOST_LOOPS && self.shortest(path, *loops, submit)? < enough {
+            let enough = MIN_FRAME_TIME.max(MIN_TIME_FACTOR * self.frame(path, 1, submit)?);
+            while *loops < MAX_LOOPS && self.shortest(path, *loops, submit)? < enough {
                 *loops *= 2;
             }
         }
@@ -162,7 +162,7 @@ impl<'a> Bench<'a> {
         submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
     ) -> Result<Duration, Error> {
         let mut shortest = Duration::MAX;
-        for _ in 0..FEW {
+        for _ in 0..SEARCH_ROUNDS {
             shortest = shortest.min(self.frame(path, loops, submit)?);
         }
         Ok(shortest)

@@ -9,16 +9,16 @@ use super::pass::diffuse_bake::DiffuseBakeKey;
 use super::pass::forward::ForwardKey;
 use super::pass::light_target::LightingKey;
 use super::pass::specular_scatter::SpecularScatterKey;
-use super::pass::sprites::SpriteKey;
 use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::TransferKey;
+use super::sprite_instances::SpriteKey;
 use super::targets::ExtraAttachment;
 use super::tiled::TiledKeys;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
 use crate::settings::{
-    DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, Order, RenderPath, Settings, Technique,
+    BlendOrder, DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, RenderPath, Settings, Technique,
 };
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
@@ -59,16 +59,16 @@ pub(crate) struct PipelineInputs<'a> {
     pub mirrored: bool,
     /// Size of the view, pixels.
     pub size: UVec2,
-    /// Stages that may be shown.
-    pub stages: &'a [DebugView],
+    /// Debug views that may be shown.
+    pub debug_views: &'a [DebugView],
 }
 
 /// Passes and pipeline keys of one system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(clippy::large_enum_variant, reason = "only one exists at a time, on the stack")]
 pub(crate) enum Plan<'a> {
-    /// The path `forward` has no intermediate stages to show.
-    Nothing,
+    /// The path `forward` has no intermediate values to show.
+    Skip,
     Forward(ForwardPlan),
     Deferred(DeferredPlan<'a>),
 }
@@ -95,21 +95,21 @@ pub(crate) struct DeferredPlan<'a> {
     pub overdraw: Option<AccumulateKey>,
     /// Present if smoke is lit at the target's resolution.
     pub light_target: Option<LightingKey>,
-    /// Key of the stage `Final`; `transfers` derives the keys of all stages from it.
+    /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
     pub transfer: TransferKey,
-    pub stages: &'a [DebugView],
+    pub debug_views: &'a [DebugView],
     pub specular_scatter: Option<SpecularScatterKey>,
 }
 
 /// Plans the passes of a system. `back_faces`: true if the near plane cuts its bounding box, or its sprites show
 /// through the scene.
 pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &Settings, back_faces: bool) -> Plan<'a> {
-    let reads_linear = reads_linear(inputs.scene_depth, inputs.read_only_depth, settings);
+    let reads_linear = reads_linear_target(inputs.scene_depth, inputs.read_only_depth, settings);
     if !settings.is_forward() {
         return Plan::Deferred(deferred(inputs, settings, back_faces, reads_linear));
     }
-    if !inputs.stages.iter().any(|stage| stage.is_picture()) {
-        return Plan::Nothing;
+    if !inputs.debug_views.iter().any(|debug_view| debug_view.shows_lit_smoke()) {
+        return Plan::Skip;
     }
     let key = ForwardKey {
         host: inputs.host,
@@ -129,7 +129,7 @@ pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &Settings, back_fa
 pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<bool>) -> [Plan<'static>; 4] {
     let depth_format = wgpu::TextureFormat::Depth32Float;
     let inputs = PipelineInputs {
-        host: HostPass { depth_format: Some(depth_format), ..HostPass::plain(wgpu::TextureFormat::Rgba8Unorm) },
+        host: HostPass { depth_format: Some(depth_format), ..HostPass::color_only(wgpu::TextureFormat::Rgba8Unorm) },
         exact_filtering: false,
         read_only_depth,
         tiles,
@@ -137,7 +137,7 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
         reversed: false,
         mirrored: false,
         size: UVec2::ONE,
-        stages: &[DebugView::Final],
+        debug_views: &[DebugView::Final],
     };
     let mut deferred = Settings::default();
     deferred.diffuse.mode = DiffuseMode::Cubemap;
@@ -154,13 +154,14 @@ fn deferred<'a>(
     back_faces: bool,
     reads_linear: bool,
 ) -> DeferredPlan<'a> {
-    let (accumulate, stages) = (&settings.accumulate, inputs.stages);
+    let (accumulate, debug_views) = (&settings.accumulate, inputs.debug_views);
     let (host, ramp_filter, exact_filtering) = (inputs.host, settings.ramp_filter, inputs.exact_filtering);
     let host_depth = accumulate.depth_source == DepthSource::Host;
     let depth_test = depth_test(inputs, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
-    let lights_target = stages.iter().any(|stage| stage.is_picture()) && accumulate.lights_target(inputs.size);
+    let lights_target =
+        debug_views.iter().any(|debug_view| debug_view.shows_lit_smoke()) && accumulate.lights_per_texel(inputs.size);
     let lighting = LightingKey {
         encoding: accumulate.encoding,
         decode: accumulate.decode,
@@ -171,7 +172,8 @@ fn deferred<'a>(
         ramp_filter,
         exact_filtering,
     };
-    let glows = stages.iter().any(|stage| stage.glows()) && settings.specular_scatter.intensity > 0.0;
+    let glows =
+        debug_views.iter().any(|debug_view| debug_view.shows_glow()) && settings.specular_scatter.intensity > 0.0;
     let accumulate_key = AccumulateKey {
         format: accumulate.format,
         encoding: accumulate.encoding,
@@ -197,7 +199,9 @@ fn deferred<'a>(
             .tiles
             .filter(|_| settings.path == RenderPath::Tiled)
             .map(|cooperative| tiled_keys(&accumulate_key, accumulate.layers, cooperative, exact_filtering)),
-        overdraw: stages.contains(&DebugView::Overdraw).then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
+        overdraw: debug_views
+            .contains(&DebugView::Overdraw)
+            .then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         light_target: lights_target.then_some(lighting),
         transfer: TransferKey {
             host,
@@ -213,7 +217,7 @@ fn deferred<'a>(
             mirrored: inputs.mirrored,
             coverage: settings.coverage,
         },
-        stages,
+        debug_views,
         specular_scatter: glows.then_some(SpecularScatterKey {
             host,
             upsample: accumulate.upsample,
@@ -225,7 +229,7 @@ fn deferred<'a>(
 
 fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filtering: bool) -> TiledKeys {
     let &AccumulateKey { format, encoding, order, extra_attachment, sprite, host_depth, .. } = key;
-    let weighted = order == Order::Weighted;
+    let weighted = order == BlendOrder::Weighted;
     TiledKeys {
         project: TileProjectKey { sprite, weighted },
         accumulate: TileAccumulateKey {
@@ -259,7 +263,7 @@ fn depth_test(inputs: &PipelineInputs, settings: &Settings) -> DepthTest {
 }
 
 /// Returns true if a system reads the scene's linear target instead of its depth buffer.
-pub(crate) fn reads_linear(scene_depth: SceneDepthKind, read_only_depth: bool, settings: &Settings) -> bool {
+pub(crate) fn reads_linear_target(scene_depth: SceneDepthKind, read_only_depth: bool, settings: &Settings) -> bool {
     match scene_depth {
         SceneDepthKind::Buffer(_) => false,
         SceneDepthKind::Linear => true,
@@ -269,20 +273,20 @@ pub(crate) fn reads_linear(scene_depth: SceneDepthKind, read_only_depth: bool, s
 }
 
 impl DeferredPlan<'_> {
-    /// Returns the transfer keys of all stages that draw the bounding box.
+    /// Returns the transfer keys of all debug views that draw the bounding box.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
-        let drawn = self.stages.iter().filter(|stage| **stage != DebugView::SpecularScatter);
-        // Stages that show a part of the light compute it in transfer, not in light_target.
-        let is_lit = |stage: DebugView| self.light_target.is_some() && stage.is_picture();
+        let drawn = self.debug_views.iter().filter(|debug_view| **debug_view != DebugView::SpecularScatter);
+        // Debug views that show a part of the light compute it in transfer, not in light_target.
+        let is_lit = |debug_view: DebugView| self.light_target.is_some() && debug_view.shows_lit_smoke();
         drawn.map(move |&debug_view| TransferKey { debug_view, lit: is_lit(debug_view), ..self.transfer })
     }
 }
 
 impl Plan<'_> {
     /// Returns true if the plan reads the scene's linear target.
-    pub fn reads_linear(&self) -> bool {
+    pub fn reads_linear_target(&self) -> bool {
         match self {
-            Self::Nothing => false,
+            Self::Skip => false,
             Self::Forward(plan) => plan.reads_linear,
             Self::Deferred(plan) => plan.reads_linear,
         }
@@ -290,158 +294,4 @@ impl Plan<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::settings::{DiffuseMode, FadeCurve, RenderPath};
-    use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
-
-    fn inputs() -> PipelineInputs<'static> {
-        PipelineInputs {
-            host: HostPass { depth_format: Some(Depth32Float), ..HostPass::plain(Rgba16Float) },
-            exact_filtering: false,
-            read_only_depth: true,
-            tiles: Some(true),
-            scene_depth: SceneDepthKind::Both(Depth24Plus),
-            reversed: false,
-            mirrored: false,
-            size: UVec2::new(1280, 720),
-            stages: &[DebugView::Final],
-        }
-    }
-
-    fn deferred<'a>(inputs: &PipelineInputs<'a>, settings: &Settings) -> DeferredPlan<'a> {
-        match plan(inputs, settings, false) {
-            Plan::Deferred(plan) => plan,
-            other => panic!("{other:?}"),
-        }
-    }
-
-    #[test]
-    fn planned_depth_reads_and_tests_match_the_table_in_the_docs() {
-        let table = include_str!("../../docs/depth.md");
-        let rows =
-            table.lines().filter(|line| ["| Buffer ", "| Linear ", "| Both "].iter().any(|k| line.starts_with(k)));
-        let mut seen = 0;
-        for row in rows {
-            let cells: Vec<_> = row.trim_matches('|').split('|').map(str::trim).collect();
-            let [depth, technique, source, backend, read, compared, tested] = cells[..] else { panic!("{row}") };
-            let inputs = PipelineInputs {
-                scene_depth: match depth {
-                    "Buffer" => SceneDepthKind::Buffer(Depth24Plus),
-                    "Linear" => SceneDepthKind::Linear,
-                    _ => SceneDepthKind::Both(Depth24Plus),
-                },
-                read_only_depth: backend != "OpenGL",
-                ..inputs()
-            };
-            // "soft" in the table stands for all other techniques.
-            let techniques =
-                Technique::ALL.iter().filter(|t| (**t == Technique::SoftLinear) == (technique == "soft_linear"));
-            for &technique in techniques {
-                let mut settings = Settings { technique, ..Settings::default() };
-                settings.accumulate.depth_source = source.parse().unwrap();
-                let plan = deferred(&inputs, &settings);
-                assert_eq!(plan.reads_linear, read == "linear", "{row}");
-                assert_eq!(plan.accumulate.host_depth, compared == "host's", "{row}");
-                assert_eq!(plan.depth_downsample.is_some(), compared == "reduced", "{row}");
-                let test = match tested {
-                    "reduced" => DepthTest::Reduced,
-                    "copy" => DepthTest::Copy,
-                    _ => DepthTest::Host(Depth24Plus, false),
-                };
-                assert_eq!(plan.accumulate.depth_test, test, "{row}");
-                assert_eq!(plan.depth_copy.is_some(), tested == "copy", "{row}");
-                settings.soft_fade.curve = FadeCurve::Always;
-                let always = deferred(&inputs, &settings).accumulate.depth_test;
-                assert_eq!(always, if technique.is_soft() { DepthTest::InShader } else { test }, "{row}");
-                seen += 1;
-            }
-        }
-        assert!(seen > 60, "{seen}");
-    }
-
-    #[test]
-    fn each_stage_plans_only_the_passes_that_it_shows() {
-        for &debug_view in DebugView::ALL {
-            let mut settings = Settings::default();
-            let inputs = PipelineInputs { stages: &[debug_view], ..inputs() };
-            let shown = deferred(&inputs, &settings);
-            let glows = matches!(debug_view, DebugView::Final | DebugView::SpecularScatter);
-            assert_eq!(shown.specular_scatter.is_some(), glows, "{debug_view:?}");
-            let stages: Vec<_> = shown.transfers().map(|key| key.debug_view).collect();
-            let is_drawn = debug_view != DebugView::SpecularScatter;
-            assert_eq!(stages, if is_drawn { vec![debug_view] } else { vec![] });
-            assert_eq!(shown.overdraw.is_some(), debug_view == DebugView::Overdraw);
-            assert!(!shown.accumulate.overdraw);
-            settings.specular_scatter.intensity = 0.0;
-            assert_eq!(deferred(&inputs, &settings).specular_scatter, None);
-            // Forward sprites are lit as they are drawn: there are no intermediate stages to show.
-            settings.path = RenderPath::Forward;
-            let is_picture = matches!(debug_view, DebugView::Final | DebugView::Combined);
-            assert_eq!(plan(&inputs, &settings, false) != Plan::Nothing, is_picture, "{debug_view:?}");
-        }
-    }
-
-    #[test]
-    fn only_the_modes_cubemap_and_motif_bake_light() {
-        for &mode in DiffuseMode::ALL {
-            let mut settings = Settings::default();
-            settings.diffuse.mode = mode;
-            let bakes = matches!(mode, DiffuseMode::Cubemap | DiffuseMode::Motif);
-            assert_eq!(deferred(&inputs(), &settings).diffuse_bake.is_some(), bakes, "{mode:?}");
-        }
-    }
-
-    #[test]
-    fn light_target_is_planned_only_for_final_images_at_reduced_resolution() {
-        let mut settings = Settings::default();
-        assert_eq!(deferred(&inputs(), &settings).light_target, None);
-        settings.accumulate.lighting_resolution = LightingResolution::Target;
-        for &debug_view in DebugView::ALL {
-            let inputs = PipelineInputs { stages: &[debug_view], ..inputs() };
-            let shown = deferred(&inputs, &settings);
-            let is_picture = matches!(debug_view, DebugView::Final | DebugView::Combined);
-            assert_eq!(shown.light_target.is_some(), is_picture, "{debug_view:?}");
-            assert_eq!(shown.transfers().any(|key| key.lit), is_picture, "{debug_view:?}");
-        }
-        let all = PipelineInputs { stages: DebugView::ALL, ..inputs() };
-        let lit: Vec<_> =
-            deferred(&all, &settings).transfers().filter(|key| key.lit).map(|key| key.debug_view).collect();
-        assert_eq!(lit, [DebugView::Final, DebugView::Combined]);
-        settings.accumulate.scale = 1;
-        assert_eq!(deferred(&inputs(), &settings).light_target, None);
-        settings.accumulate.max_side = 1279;
-        assert!(deferred(&inputs(), &settings).light_target.is_some());
-    }
-
-    #[test]
-    fn one_of_each_covers_every_pass() {
-        for read_only_depth in [true, false] {
-            let [Plan::Deferred(deferred), Plan::Deferred(lit), Plan::Forward(_), Plan::Deferred(tiled)] =
-                plans_covering_every_pass(read_only_depth, Some(true))
-            else {
-                panic!()
-            };
-            assert!(deferred.light_target.is_none() && lit.light_target.is_some());
-            assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
-            assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
-            assert!(tiled.tiled.is_some() && deferred.tiled.is_none());
-        }
-    }
-
-    #[test]
-    fn transfer_key_follows_mirroring_reversed_depth_and_missing_depth_attachment() {
-        let transfer = |inputs: &PipelineInputs, back_faces| match plan(inputs, &Settings::default(), back_faces) {
-            Plan::Deferred(plan) => plan.transfer,
-            other => panic!("{other:?}"),
-        };
-        let plain = transfer(&inputs(), false);
-        assert!(!plain.back_faces && !plain.mirrored && !plain.reversed);
-        assert!(transfer(&inputs(), true).back_faces);
-        assert!(transfer(&PipelineInputs { mirrored: true, ..inputs() }, false).mirrored);
-        assert!(transfer(&PipelineInputs { reversed: true, ..inputs() }, false).reversed);
-        // Without a depth attachment, back faces are drawn.
-        let untested = PipelineInputs { host: HostPass::plain(Rgba16Float), ..inputs() };
-        assert!(transfer(&untested, false).back_faces);
-    }
-}
+mod tests;

@@ -39,7 +39,7 @@ pub(crate) struct ReadyTargets<'a> {
 
 impl SystemTargets {
     /// Makes all textures fit `size` texels. `limit`: size of the whole view at this scale, texels.
-    pub fn fit(
+    pub fn ensure(
         &mut self,
         shared: &Shared,
         settings: &Settings,
@@ -57,8 +57,9 @@ impl SystemTargets {
             depth_copy: !shared.read_only_depth,
             tiled: plan.tiled.is_some(),
         };
-        let (accumulation, is_new) = AccumulationTarget::fit(&mut self.accumulation, device, key, size, limit);
-        let (baked_diffuse, is_newly_baked) = BakedDiffuse::fit(&mut self.baked_diffuse, device, settings.diffuse.mode);
+        let (accumulation, is_new) = AccumulationTarget::ensure(&mut self.accumulation, device, key, size, limit);
+        let (baked_diffuse, is_newly_baked) =
+            BakedDiffuse::ensure(&mut self.baked_diffuse, device, settings.diffuse.mode);
         if is_new || is_newly_baked {
             self.inputs = None;
         }

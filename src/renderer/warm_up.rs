@@ -15,5 +15,5 @@ pub struct WarmUp<'a> {
     /// Settings of the future systems.
     pub settings: &'a [Settings],
     /// Stages that will be shown.
-    pub stages: &'a [DebugView],
+    pub debug_views: &'a [DebugView],
 }

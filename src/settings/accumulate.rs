@@ -3,10 +3,10 @@
 use glam::UVec2;
 
 use super::choice::choice;
-use super::table::settings;
+use super::settings_macro::settings;
 
 /// Largest divisor of the target's resolution, pixels per texel.
-pub(super) const COARSEST: u32 = 16;
+pub(super) const MAX_SCALE: u32 = 16;
 
 choice! {
     /// Texel format of the accumulation target.
@@ -44,7 +44,7 @@ choice! {
 
 choice! {
     /// Order in which normals are blended; the amount does not depend on it. `docs/order.md` compares them.
-    Order {
+    BlendOrder {
         /// Sprites are blended back to front, as in OTEE. A sprite that passes another in depth changes the picture
         /// abruptly, and the edges of the nearest sprites show.
         #[default]
@@ -137,7 +137,7 @@ settings! {
         /// Decoding of normals. The literal one turns thin smoke away from the light.
         decode: NormalDecode = NormalDecode::default(), choice;
         /// Order in which normals are blended: crisp layers that pop, or soft ones without pops.
-        order: Order = Order::default(), choice;
+        order: BlendOrder = BlendOrder::default(), choice;
         /// Weight of normals with the order `weighted`: e^(-depth_weight · optical depth in front of the sprite).
         /// Higher: the front of the smoke dominates. 0: all sprites count alike.
         depth_weight: f32 = 0.4, number(0.0..=4.0, "");
@@ -145,7 +145,7 @@ settings! {
         layers: Layers = Layers::default(), choice;
         /// Pixels of the picture per texel of the target, along each side. Higher: less sharp, and cheaper by the
         /// square.
-        scale: u32 = 2, integer(1..=COARSEST, "pixels");
+        scale: u32 = 2, integer(1..=MAX_SCALE, "pixels");
         /// Most texels along the picture's longer side. Lower raises `scale` on large pictures.
         max_side: u32 = 4096, integer(16..=16384, "texels");
         /// Scene depth that sprites are compared with.
@@ -161,7 +161,7 @@ settings! {
     }
 }
 
-impl Order {
+impl BlendOrder {
     /// True if this order and encoding need the sum of the normals' weights.
     pub fn sums_weights(self, encoding: NormalEncoding) -> bool {
         (self, encoding) == (Self::Weighted, NormalEncoding::Biased)
@@ -175,7 +175,7 @@ impl Accumulate {
     }
 
     /// True if the smoke is lit once per texel in a picture of this size, and a texel is larger than a pixel.
-    pub fn lights_target(&self, picture: UVec2) -> bool {
+    pub fn lights_per_texel(&self, picture: UVec2) -> bool {
         self.lighting_resolution == LightingResolution::Target && self.effective_scale(picture) > 1
     }
 

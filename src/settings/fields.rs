@@ -73,7 +73,7 @@ pub trait FieldVisitor {
     fn text(&mut self, _name: &'static str, _value: &mut String) {}
 
     /// Name of an image: a built-in one, or a file.
-    fn picture(&mut self, _name: &'static str, _value: &mut String, _role: ImageRole) {}
+    fn image(&mut self, _name: &'static str, _value: &mut String, _role: ImageRole) {}
 
     /// Name of a particle file, or of one file per frame; empty for none.
     fn particles(&mut self, _name: &'static str, _value: &mut String) {}
@@ -94,7 +94,7 @@ pub trait FieldVisitor {
 /// # Errors
 /// The first field that is NaN or outside its range.
 pub fn validate<T: Fields + Clone>(settings: &T, path: impl FnOnce() -> String) -> Result<(), FieldError> {
-    let mut validator = Validator { path: [Step::default(); MAX_DEPTH], depth: 0, error: None };
+    let mut validator = Validator { path: [PathStep::default(); MAX_DEPTH], depth: 0, error: None };
     settings.clone().visit(&mut validator);
     match validator.error {
         None => Ok(()),
@@ -112,12 +112,12 @@ pub fn validate<T: Fields + Clone>(settings: &T, path: impl FnOnce() -> String) 
 const MAX_DEPTH: usize = 8;
 
 /// Struct on the path to a field: its name, and its index if it is in a list.
-type Step = (&'static str, Option<usize>);
+type PathStep = (&'static str, Option<usize>);
 
 /// Stores the path without allocation, because every frame validates its settings and must not allocate if they are
 /// valid.
 struct Validator {
-    path: [Step; MAX_DEPTH],
+    path: [PathStep; MAX_DEPTH],
     depth: usize,
     error: Option<FieldError>,
 }
@@ -152,7 +152,7 @@ impl Validator {
         self.error = Some(FieldError { field, value: value.to_string(), expected });
     }
 
-    fn enter(&mut self, step: Step, fields: &mut dyn Fields) {
+    fn enter(&mut self, step: PathStep, fields: &mut dyn Fields) {
         if self.depth < MAX_DEPTH {
             self.path[self.depth] = step;
             self.depth += 1;
@@ -189,7 +189,7 @@ impl FieldVisitor for Validator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::table::settings;
+    use crate::settings::settings_macro::settings;
 
     settings! {
         #[derive(Clone)]

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::choice::choice;
-use super::table::settings;
+use super::settings_macro::settings;
 
 choice! {
     /// Lighting model of sprites. `docs/six_way.md` compares the two.

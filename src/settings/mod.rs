@@ -5,22 +5,22 @@
 use crate::error::FieldError;
 
 mod accumulate;
-mod budget;
+mod assign;
 #[doc(hidden)]
 pub mod choice;
 pub(crate) mod fields;
 mod lighting;
-mod set;
+mod scale_budget;
+pub(crate) mod settings_macro;
 mod soft_fade;
-pub(crate) mod table;
 mod technique;
 mod traversal;
 
 pub use accumulate::{
-    Accumulate, AccumulationFormat, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
-    NormalEncoding, Order, Upsample,
+    Accumulate, AccumulationFormat, BlendOrder, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
+    NormalEncoding, Upsample,
 };
-pub use budget::{Budget, ScaleBudget};
+pub use assign::set_field;
 pub use choice::Choice;
 #[doc(hidden)]
 pub use choice::choice;
@@ -28,11 +28,11 @@ pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
 };
-pub use set::set_field;
+pub use scale_budget::{Budget, ScaleBudget};
+pub(crate) use settings_macro::settings;
 pub use soft_fade::{FadeCurve, SoftFade};
-pub(crate) use table::settings;
 pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
-pub use traversal::{Leaf, Step, Value, field_path, for_each_field, values};
+pub use traversal::{FieldRef, FieldValue, PathStep, field_path, field_values, for_each_field};
 
 choice! {
     /// Rendering path of a system.
@@ -102,18 +102,18 @@ choice! {
 }
 
 impl DebugView {
-    /// True for stages that show data instead of light, which are neither exposed nor tonemapped.
+    /// True for debug views that show data instead of light, which are neither exposed nor tonemapped.
     pub fn is_data(self) -> bool {
         matches!(self, Self::Normals | Self::Amount | Self::Overdraw | Self::ReducedDepth)
     }
 
-    /// True for stages that show lit smoke, which forward sprites show too.
-    pub fn is_picture(self) -> bool {
+    /// True for debug views that show lit smoke, which forward sprites show too.
+    pub fn shows_lit_smoke(self) -> bool {
         matches!(self, Self::Final | Self::Combined)
     }
 
-    /// True for stages that show the glow of lights.
-    pub fn glows(self) -> bool {
+    /// True for debug views that show the glow of lights.
+    pub fn shows_glow(self) -> bool {
         matches!(self, Self::Final | Self::SpecularScatter)
     }
 }
@@ -169,8 +169,8 @@ impl Settings {
     }
 
     /// Order in which sprites are drawn. Forward sprites hide each other and are always sorted.
-    pub fn order(&self) -> Order {
-        if self.is_forward() { Order::Sorted } else { self.accumulate.order }
+    pub fn order(&self) -> BlendOrder {
+        if self.is_forward() { BlendOrder::Sorted } else { self.accumulate.order }
     }
 
     /// Distance behind the scene at which sprites still show, metres: 0, except under the curve `always`.
@@ -180,7 +180,7 @@ impl Settings {
     }
 
     /// Distance of a sprite's corners from its centre, at any rotation, in radii of its particle.
-    pub fn reach(&self) -> f32 {
+    pub fn sprite_extent(&self) -> f32 {
         let of_technique = match self.technique {
             Technique::SphericalBillboard => self.spherical_billboard.radius,
             Technique::VolumetricHard | Technique::VolumetricSoft => 1.0,
@@ -204,7 +204,7 @@ impl Settings {
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.encoding == NormalEncoding::Signed {
             return conflict("encoding", "signed", "\"biased\" with format \"rgba8unorm\", which cannot hold signs");
         }
-        if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.order == Order::Weighted {
+        if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.order == BlendOrder::Weighted {
             return conflict("order", "weighted", "\"sorted\" with format \"rgba8unorm\", which cannot hold sums");
         }
         if accumulate.depth_source == DepthSource::Host && accumulate.scale != 1 {
@@ -243,9 +243,9 @@ mod tests {
         assert_eq!(settings.validate(|| "s".into()).unwrap_err().field, "s.accumulate.encoding");
         settings.accumulate.encoding = NormalEncoding::Biased;
         settings.validate(String::new).unwrap();
-        settings.accumulate.order = Order::Weighted;
+        settings.accumulate.order = BlendOrder::Weighted;
         assert_eq!(settings.validate(String::new).unwrap_err().field, "accumulate.order");
-        settings.accumulate.order = Order::Sorted;
+        settings.accumulate.order = BlendOrder::Sorted;
         settings.accumulate.depth_source = DepthSource::Host;
         assert_eq!(settings.validate(String::new).unwrap_err().field, "accumulate.scale");
         settings.accumulate.scale = 1;

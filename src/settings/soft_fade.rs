@@ -1,7 +1,7 @@
 //! Fade of sprites near the scene and near the camera.
 
 use super::choice::choice;
-use super::table::settings;
+use super::settings_macro::settings;
 
 choice! {
     /// Curve from depth difference to fade. x is the difference times `fade_scale`, clamped to 0..1.
@@ -43,7 +43,7 @@ settings! {
 
 impl SoftFade {
     /// Distance beyond which the scene behind a sprite has no effect on it, metres.
-    pub fn reach(&self) -> f32 {
+    pub fn max_distance(&self) -> f32 {
         (1.0 / self.fade_scale).max(self.epsilon)
     }
 }

@@ -1,7 +1,7 @@
 //! Sprite techniques and their settings, and the appearance of sprites. `docs/techniques.md` compares the techniques.
 
 use super::choice::choice;
-use super::table::settings;
+use super::settings_macro::settings;
 
 choice! {
     /// Technique by which a sprite meets the scene.

@@ -9,10 +9,10 @@ use super::choice::Choice;
 use super::fields::{FieldVisitor, Fields, ImageRole};
 
 /// Name on the path to a field, and its index if it is in a list.
-pub type Step<'a> = (&'a str, Option<usize>);
+pub type PathStep<'a> = (&'a str, Option<usize>);
 
 /// Reference to a field.
-pub enum Leaf<'a> {
+pub enum FieldRef<'a> {
     /// Real number.
     Number(&'a mut f32),
     /// Whole number, or a seed.
@@ -30,22 +30,22 @@ pub enum Leaf<'a> {
 /// Value of a field. NaN equals NaN here.
 #[derive(Clone, Debug, serde::Serialize)]
 #[serde(untagged)]
-pub enum Value {
-    /// Value of a [`Leaf::Number`].
+pub enum FieldValue {
+    /// Value of a [`FieldRef::Number`].
     Number(f32),
-    /// Value of a [`Leaf::Whole`].
+    /// Value of a [`FieldRef::Whole`].
     Whole(u32),
-    /// Value of a [`Leaf::Vector`].
+    /// Value of a [`FieldRef::Vector`].
     Vector(Vec3),
-    /// Value of a [`Leaf::Flag`].
+    /// Value of a [`FieldRef::Flag`].
     Flag(bool),
-    /// Name of the choice of a [`Leaf::Choice`].
+    /// Name of the choice of a [`FieldRef::Choice`].
     Choice(&'static str),
-    /// Value of a [`Leaf::Text`].
+    /// Value of a [`FieldRef::Text`].
     Text(String),
 }
 
-impl PartialEq for Value {
+impl PartialEq for FieldValue {
     fn eq(&self, other: &Self) -> bool {
         let same =
             |a: f32, b: f32| a.partial_cmp(&b).is_some_and(std::cmp::Ordering::is_eq) || a.is_nan() && b.is_nan();
@@ -61,28 +61,28 @@ impl PartialEq for Value {
     }
 }
 
-impl Leaf<'_> {
+impl FieldRef<'_> {
     /// Returns the current value.
-    pub fn value(&self) -> Value {
+    pub fn value(&self) -> FieldValue {
         match self {
-            Self::Number(value) => Value::Number(**value),
-            Self::Whole(value) => Value::Whole(**value),
-            Self::Vector(value) => Value::Vector(**value),
-            Self::Flag(value) => Value::Flag(**value),
-            Self::Choice(value) => Value::Choice(value.names().get(value.index()).copied().unwrap_or_default()),
-            Self::Text(value) => Value::Text((*value).clone()),
+            Self::Number(value) => FieldValue::Number(**value),
+            Self::Whole(value) => FieldValue::Whole(**value),
+            Self::Vector(value) => FieldValue::Vector(**value),
+            Self::Flag(value) => FieldValue::Flag(**value),
+            Self::Choice(value) => FieldValue::Choice(value.names().get(value.index()).copied().unwrap_or_default()),
+            Self::Text(value) => FieldValue::Text((*value).clone()),
         }
     }
 
     /// Sets the value. A value of another kind, or an unknown name, changes nothing.
-    pub fn set(self, value: &Value) {
+    pub fn set(self, value: &FieldValue) {
         match (self, value) {
-            (Self::Number(field), Value::Number(value)) => *field = *value,
-            (Self::Whole(field), Value::Whole(value)) => *field = *value,
-            (Self::Vector(field), Value::Vector(value)) => *field = *value,
-            (Self::Flag(field), Value::Flag(value)) => *field = *value,
-            (Self::Text(field), Value::Text(value)) => field.clone_from(value),
-            (Self::Choice(field), Value::Choice(name)) => {
+            (Self::Number(field), FieldValue::Number(value)) => *field = *value,
+            (Self::Whole(field), FieldValue::Whole(value)) => *field = *value,
+            (Self::Vector(field), FieldValue::Vector(value)) => *field = *value,
+            (Self::Flag(field), FieldValue::Flag(value)) => *field = *value,
+            (Self::Text(field), FieldValue::Text(value)) => field.clone_from(value),
+            (Self::Choice(field), FieldValue::Choice(name)) => {
                 if let Some(index) = field.names().iter().position(|choice| choice == name) {
                     field.set_index(index);
                 }
@@ -94,19 +94,19 @@ impl Leaf<'_> {
 
 /// Calls `at` for every field in the order of the struct, with the steps that lead to it; the last is the field's own
 /// name. [`FieldVisitor::srgb`] fields are skipped, because presets have none.
-pub fn for_each_field(settings: &mut dyn Fields, at: &mut dyn FnMut(&[Step<'static>], Leaf<'_>)) {
+pub fn for_each_field(settings: &mut dyn Fields, at: &mut dyn FnMut(&[PathStep<'static>], FieldRef<'_>)) {
     settings.visit(&mut FieldTraversal { path: Vec::new(), at });
 }
 
 /// Path, as [`field_path`] formats it, and value of every field.
-pub fn values<T: Fields + Clone>(settings: &T) -> Vec<(String, Value)> {
+pub fn field_values<T: Fields + Clone>(settings: &T) -> Vec<(String, FieldValue)> {
     let mut values = Vec::new();
     for_each_field(&mut settings.clone(), &mut |path, leaf| values.push((field_path(path), leaf.value())));
     values
 }
 
 /// Formats a path: `systems[0].settings.boost`.
-pub fn field_path(path: &[Step<'_>]) -> String {
+pub fn field_path(path: &[PathStep<'_>]) -> String {
     let mut text = String::new();
     for (name, index) in path {
         let dot = if text.is_empty() { "" } else { "." };
@@ -119,18 +119,18 @@ pub fn field_path(path: &[Step<'_>]) -> String {
 }
 
 struct FieldTraversal<'a> {
-    path: Vec<Step<'static>>,
-    at: &'a mut dyn FnMut(&[Step<'static>], Leaf<'_>),
+    path: Vec<PathStep<'static>>,
+    at: &'a mut dyn FnMut(&[PathStep<'static>], FieldRef<'_>),
 }
 
 impl FieldTraversal<'_> {
-    fn leaf(&mut self, name: &'static str, leaf: Leaf<'_>) {
+    fn leaf(&mut self, name: &'static str, leaf: FieldRef<'_>) {
         self.path.push((name, None));
         (self.at)(&self.path, leaf);
         self.path.pop();
     }
 
-    fn enter(&mut self, step: Step<'static>, fields: &mut dyn Fields) {
+    fn enter(&mut self, step: PathStep<'static>, fields: &mut dyn Fields) {
         self.path.push(step);
         fields.visit(self);
         self.path.pop();
@@ -139,39 +139,39 @@ impl FieldTraversal<'_> {
 
 impl FieldVisitor for FieldTraversal<'_> {
     fn number(&mut self, name: &'static str, value: &mut f32, _: RangeInclusive<f32>, _: &'static str) {
-        self.leaf(name, Leaf::Number(value));
+        self.leaf(name, FieldRef::Number(value));
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, _: RangeInclusive<u32>, _: &'static str) {
-        self.leaf(name, Leaf::Whole(value));
+        self.leaf(name, FieldRef::Whole(value));
     }
 
     fn vector(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
-        self.leaf(name, Leaf::Vector(value));
+        self.leaf(name, FieldRef::Vector(value));
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {
-        self.leaf(name, Leaf::Flag(value));
+        self.leaf(name, FieldRef::Flag(value));
     }
 
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
-        self.leaf(name, Leaf::Choice(value));
+        self.leaf(name, FieldRef::Choice(value));
     }
 
     fn text(&mut self, name: &'static str, value: &mut String) {
-        self.leaf(name, Leaf::Text(value));
+        self.leaf(name, FieldRef::Text(value));
     }
 
-    fn picture(&mut self, name: &'static str, value: &mut String, _: ImageRole) {
-        self.leaf(name, Leaf::Text(value));
+    fn image(&mut self, name: &'static str, value: &mut String, _: ImageRole) {
+        self.leaf(name, FieldRef::Text(value));
     }
 
     fn particles(&mut self, name: &'static str, value: &mut String) {
-        self.leaf(name, Leaf::Text(value));
+        self.leaf(name, FieldRef::Text(value));
     }
 
     fn seed(&mut self, name: &'static str, value: &mut u32) {
-        self.leaf(name, Leaf::Whole(value));
+        self.leaf(name, FieldRef::Whole(value));
     }
 
     fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {

@@ -1,18 +1,18 @@
 //! Device-independent data of a frame: the placement of systems and sprites in the view, and the uniforms that both
 //! renderers read.
 
-mod bounds;
-mod lights;
 mod optical_depth;
-mod order;
+mod particle_sort;
+mod projected_bounds;
 mod smoke_extent;
-mod sprites;
-mod system;
-mod view;
+mod sprite_projector;
+mod system_setup;
+mod view_geometry;
+mod view_lights;
 
-pub use lights::light_uniforms;
 pub use optical_depth::optical_depth;
-pub use order::{SortScratch, in_order};
-pub use sprites::{Grid, ProjectedSprite, SpriteProjector, SpriteTrim};
-pub use system::{SystemInput, SystemSetup, system_setup};
-pub use view::ViewGeometry;
+pub use particle_sort::{SortScratch, write_in_drawing_order};
+pub use sprite_projector::{ProjectedSprite, SpriteProjector, SpriteTrim, TexelGrid};
+pub use system_setup::{SystemInput, SystemSetup, system_setup};
+pub use view_geometry::ViewGeometry;
+pub use view_lights::light_uniforms;

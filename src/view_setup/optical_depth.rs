@@ -4,7 +4,7 @@
 use glam::{DVec2, Vec3Swizzles, Vec4};
 
 use super::smoke_extent::SmokeExtent;
-use super::view::ViewGeometry;
+use super::view_geometry::ViewGeometry;
 use crate::formula::order::{FRONT_KNOTS, knot_coordinate};
 use crate::frame::Particle;
 use crate::settings::{Settings, Technique};
@@ -15,14 +15,14 @@ const MEAN_TO_CENTRE_RATIO: f32 = 0.375;
 /// Assumed optical depth from the near to the far side of a system whose sprites are on the GPU.
 const ASSUMED_OPTICAL_DEPTH: f32 = 4.0;
 
-/// Computes the optical depth in front of each knot of `optical_depth_in_front`. `particles_per_sample`: number of sprites that
-/// each particle represents.
+/// Computes the optical depth in front of each knot of `optical_depth_in_front`. `particles_per_sample`: number of
+/// sprites that each particle represents.
 pub(super) fn optical_depths(
     view: &ViewGeometry,
     particles: &[Particle],
     particles_per_sample: u32,
     settings: &Settings,
-    middle: &SmokeExtent,
+    extent: &SmokeExtent,
 ) -> [Vec4; 4] {
     let mut knots = [0.0_f32; FRONT_KNOTS];
     // Distributes optical depth times area of every sprite to the two nearest knots, and sums the first two moments of
@@ -34,7 +34,7 @@ pub(super) fn optical_depths(
         let in_front = ((-position.z - view.depth.near) / radius).clamp(0.0, 1.0);
         let area = 4.0 * radius * radius;
         let share = MEAN_TO_CENTRE_RATIO * optical_depth * area * in_front;
-        let place = knot_coordinate(-position.z, middle.near, middle.far) * (FRONT_KNOTS - 1) as f32;
+        let place = knot_coordinate(-position.z, extent.near, extent.far) * (FRONT_KNOTS - 1) as f32;
         let low = (place as usize).min(FRONT_KNOTS - 2);
         knots[low] += share * (1.0 - (place - low as f32));
         knots[low + 1] += share * (place - low as f32);
@@ -110,9 +110,9 @@ mod tests {
         };
         let wall = |(depth, amount)| (0..256).map(move |i| sprite(depth, amount, i));
         let particles: Vec<_> = [8.0, 12.0].into_iter().zip(amounts).flat_map(wall).collect();
-        let middle = SmokeExtent { centre: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
-        let knots = optical_depths(&view, &particles, 1, &Settings::default(), &middle);
-        depths.map(|depth| optical_depth_in_front(&knots, depth, middle.near, middle.far))
+        let extent = SmokeExtent { centre: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
+        let knots = optical_depths(&view, &particles, 1, &Settings::default(), &extent);
+        depths.map(|depth| optical_depth_in_front(&knots, depth, extent.near, extent.far))
     }
 
     #[test]

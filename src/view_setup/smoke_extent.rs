@@ -7,8 +7,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::bounds::ProjectedBounds;
-use super::view::ViewGeometry;
+use super::projected_bounds::ProjectedBounds;
+use super::view_geometry::ViewGeometry;
 use crate::frame::{Bounds, Particle};
 
 /// Extent of the smoke, view space.
@@ -36,15 +36,15 @@ impl SmokeExtent {
         particles: &[Particle],
         size: f32,
         bounds: &Bounds,
-        setup: &ProjectedBounds,
+        projected: &ProjectedBounds,
         depth: Option<f32>,
     ) -> Self {
         let measured = Self::of_particles(view, particles, size);
-        let mut middle = measured.unwrap_or_else(|| Self::of_bounds(view, bounds, setup));
+        let mut extent = measured.unwrap_or_else(|| Self::of_bounds(view, bounds, projected));
         if let Some(depth) = depth {
-            middle.centre.z = -(depth + view.depth_offset).max(view.depth.near);
+            extent.centre.z = -(depth + view.depth_offset).max(view.depth.near);
         }
-        middle
+        extent
     }
 
     /// Measures particles, weighted by amount and area. `size` multiplies radii. Returns `None` if no particle is in
@@ -80,10 +80,10 @@ impl SmokeExtent {
     }
 
     /// Returns the centre of the part of the box that is in front of the viewer.
-    fn of_bounds(view: &ViewGeometry, bounds: &Bounds, setup: &ProjectedBounds) -> Self {
-        let depth = 0.5 * (setup.near.max(view.depth.near) + setup.far);
+    fn of_bounds(view: &ViewGeometry, bounds: &Bounds, projected: &ProjectedBounds) -> Self {
+        let depth = 0.5 * (projected.near.max(view.depth.near) + projected.far);
         let centre = view.view_position(bounds.centre()).with_z(-depth);
-        Self { centre, near: setup.near, far: setup.far, farthest: setup.far }
+        Self { centre, near: projected.near, far: projected.far, farthest: projected.far }
     }
 }
 
@@ -94,13 +94,13 @@ mod tests {
 
     use super::*;
     use crate::frame::{View, particle_bounds};
-    use crate::view_setup::bounds::bounds_in_view;
+    use crate::view_setup::projected_bounds::project_bounds;
 
-    fn middle(particles: &[Particle], depth: Option<f32>) -> SmokeExtent {
+    fn extent(particles: &[Particle], depth: Option<f32>) -> SmokeExtent {
         let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));
         let view = ViewGeometry::new(&view).unwrap();
         let bounds = particle_bounds(particles, 1.5);
-        SmokeExtent::new(&view, particles, 1.0, &bounds, &bounds_in_view(&bounds, &view).unwrap(), depth)
+        SmokeExtent::new(&view, particles, 1.0, &bounds, &project_bounds(&bounds, &view).unwrap(), depth)
     }
 
     fn puff(depth: f32, radius: f32, amount: f32) -> Particle {
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn sprites_are_weighted_by_amount_and_area() {
-        let near_and_far = |amount, radius| -middle(&[puff(4.0, 1.0, 1.0), puff(8.0, radius, amount)], None).centre.z;
+        let near_and_far = |amount, radius| -extent(&[puff(4.0, 1.0, 1.0), puff(8.0, radius, amount)], None).centre.z;
         assert!((near_and_far(1.0, 1.0) - 6.0).abs() < 1e-4);
         assert!((near_and_far(0.5, 1.0) - (4.0 + 8.0 * 0.5) / 1.5).abs() < 1e-4);
         assert!((near_and_far(1.0, 2.0) - (4.0 + 8.0 * 4.0) / 5.0).abs() < 1e-4);
@@ -119,13 +119,13 @@ mod tests {
 
     #[test]
     fn single_puff_extends_one_radius_to_the_front_and_to_the_back() {
-        let middle = middle(&[puff(5.0, 1.0, 1.0)], None);
-        assert!((middle.near - 4.0).abs() < 1e-3 && (middle.far - 6.0).abs() < 1e-3, "{middle:?}");
+        let extent = extent(&[puff(5.0, 1.0, 1.0)], None);
+        assert!((extent.near - 4.0).abs() < 1e-3 && (extent.far - 6.0).abs() < 1e-3, "{extent:?}");
     }
 
     #[test]
     fn sprite_that_passes_the_near_plane_moves_the_centre_slowly() {
-        let at = |depth| -middle(&[puff(6.0, 1.0, 1.0), puff(depth, 1.0, 1.0)], None).centre.z;
+        let at = |depth| -extent(&[puff(6.0, 1.0, 1.0), puff(depth, 1.0, 1.0)], None).centre.z;
         let steps = (0..=400).map(|i| at(2.0 - 0.01 * i as f32));
         let largest = steps.clone().zip(steps.skip(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         // The sprite moves by 0.01 m per step. If it lost its weight at once, the centre would jump by 3 m.
@@ -136,9 +136,9 @@ mod tests {
     #[test]
     fn host_can_set_the_depth_of_the_centre() {
         let puffs = [puff(5.0, 1.0, 1.0)];
-        let chosen = middle(&puffs, Some(9.0));
+        let chosen = extent(&puffs, Some(9.0));
         assert!((chosen.centre.z + 9.0).abs() < 1e-5, "{chosen:?}");
         // A depth behind the viewer is clamped to the near plane.
-        assert!((middle(&puffs, Some(-3.0)).centre.z + 0.1).abs() < 1e-5);
+        assert!((extent(&puffs, Some(-3.0)).centre.z + 0.1).abs() < 1e-5);
     }
 }

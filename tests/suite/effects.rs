@@ -53,7 +53,7 @@ impl PresetCase {
         let system = &self.preset.systems[0];
         particle_files::particles(system, self.caches[0].as_ref(), self.preset.time, &mut stage.particles);
         stage.lights.clone_from(&self.preset.lights);
-        (stage.settings, stage.time) = (system.settings_for(SIZE.y), self.preset.time);
+        (stage.settings, stage.time) = (system.settings_at_height(SIZE.y), self.preset.time);
         stage.material = self.material.clone();
         stage
     }
@@ -98,7 +98,7 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| s.settings.path = RenderPath::Forward,
     |s, _| (s.settings.path, s.settings.accumulate.opacity) = (RenderPath::Tiled, 1.0),
     |s, _| (s.settings.path, s.settings.sprite.age_colour) = (RenderPath::Forward, 0.5),
-    |s, l| (s.settings.accumulate.order, l.kind) = (Order::Weighted, LightKind::Directional),
+    |s, l| (s.settings.accumulate.order, l.kind) = (BlendOrder::Weighted, LightKind::Directional),
     |s, l| {
         (s.settings.accumulate.scale, s.settings.soft_fade.curve, l.kind) = (1, FadeCurve::Contrast, LightKind::Spot);
     },

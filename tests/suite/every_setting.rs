@@ -84,7 +84,7 @@ impl FieldVisitor for SettingMutator {
             }
         }
     }
-    fn picture(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
+    fn image(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
         if self.is_selected(name) {
             let builtins = match role {
                 ImageRole::Sprite => builtin::SPRITES,
@@ -138,7 +138,7 @@ fn stages() -> Vec<TestScene> {
     // The near fade reaches into the smoke.
     let contrast: fn(&mut Settings) = |s| (s.soft_fade.curve, s.soft_fade.near_fade_end) = (FadeCurve::Contrast, 9.0);
     let tested: fn(&mut Settings) = |s| (s.accumulate.scale, s.accumulate.encoding) = (1, NormalEncoding::Biased);
-    let weighted: fn(&mut Settings) = |s| s.accumulate.order = Order::Weighted;
+    let weighted: fn(&mut Settings) = |s| s.accumulate.order = BlendOrder::Weighted;
     let six_way: fn(&mut Settings) = |s| s.lighting = Lighting::SixWay;
     vec![
         stage(Technique::Soft, RenderPath::Raster, nothing),

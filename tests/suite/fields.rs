@@ -67,7 +67,7 @@ impl FieldVisitor for Met {
     fn text(&mut self, name: &'static str, _: &mut String) {
         self.field(name);
     }
-    fn picture(&mut self, name: &'static str, _: &mut String, _: ImageRole) {
+    fn image(&mut self, name: &'static str, _: &mut String, _: ImageRole) {
         self.field(name);
     }
     fn particles(&mut self, name: &'static str, _: &mut String) {

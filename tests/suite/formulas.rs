@@ -188,7 +188,7 @@ const INDIRECT: &[&str] = &[
     "packed_rect",
     "rects_meet",
     "run_count",
-    "is_shown",
+    "is_visible",
     "front_to_back_bits",
     "ray_through_texel",
     "texel_of_ray",
@@ -223,12 +223,12 @@ const INDIRECT: &[&str] = &[
     "visible_parts",
     "init_texel",
     "accumulate_sprite",
-    "is_done",
+    "is_opaque",
     "is_opaque_or_occluded",
     "approximate_amount",
     "is_flat",
     "write_texel",
-    "sprite_number",
+    "sprite_index",
     "covers",
 ];
 

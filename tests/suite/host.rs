@@ -174,7 +174,7 @@ impl Host {
             lights: &stage.lights,
             systems: &[system],
             time: stage.time,
-            stages: stage.stages.unwrap_or(std::slice::from_ref(&stage.debug_view)),
+            debug_views: stage.stages.unwrap_or(std::slice::from_ref(&stage.debug_view)),
             ..Frame::new(stage.view, scene_depth(stage.depth, &self.depth, &self.linear))
         };
         self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
@@ -215,7 +215,7 @@ impl Host {
             timestamp_writes: self.timing.as_ref().and_then(|timing| timing.host_pass("host")),
             ..Default::default()
         });
-        self.renderer.render_stage(&mut pass, stage.debug_view);
+        self.renderer.render_debug_view(&mut pass, stage.debug_view);
     }
 
     /// Reads back the colour target as floats. sRGB formats are decoded to linear light.

@@ -206,7 +206,8 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         add("depth_downsample", mode.name(), with(|s| (s.accumulate.depth_downsample, s.accumulate.scale) = (mode, 4)));
     }
     for &encoding in NormalEncoding::ALL {
-        let weighted = |s: &mut Settings| (s.accumulate.order, s.accumulate.encoding) = (Order::Weighted, encoding);
+        let weighted =
+            |s: &mut Settings| (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, encoding);
         add("order weighted", encoding.name(), with(weighted));
     }
     for &decode in NormalDecode::ALL {
@@ -218,7 +219,7 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
             decode.name(),
             with(|s| {
                 biased(s);
-                (s.accumulate.format, s.accumulate.order) = (AccumulationFormat::Rgba8Unorm, Order::Sorted);
+                (s.accumulate.format, s.accumulate.order) = (AccumulationFormat::Rgba8Unorm, BlendOrder::Sorted);
             }),
         );
     }
@@ -236,14 +237,14 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         add("lit target, upsample", upsample.name(), lit(&|s| s.accumulate.upsample = upsample));
     }
     let weighted = |s: &mut Settings| {
-        (s.accumulate.order, s.accumulate.encoding) = (Order::Weighted, NormalEncoding::Biased);
+        (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
         (s.coverage, s.soft_scatter.mode) = (CoverageMode::Ramp, SoftScatterMode::Ramp);
         s.diffuse.backlight = Backlight::Ramp;
     };
     add("lit target", "with weights and ramps", lit(&weighted));
     let rgba8 = |s: &mut Settings| {
         (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
-        s.accumulate.order = Order::Sorted;
+        s.accumulate.order = BlendOrder::Sorted;
     };
     add("lit target", "rgba8", lit(&rgba8));
     for &mode in BlendMode::ALL {

@@ -96,12 +96,12 @@ fn probed_values_match_every_debug_view() {
     let changes: [fn(&mut Settings); 6] = [
         |_| {},
         |s| s.accumulate.lighting_resolution = LightingResolution::Target,
-        |s| (s.accumulate.encoding, s.accumulate.order) = (NormalEncoding::Biased, Order::Weighted),
+        |s| (s.accumulate.encoding, s.accumulate.order) = (NormalEncoding::Biased, BlendOrder::Weighted),
         |s| (s.accumulate.scale, s.diffuse.mode) = (4, DiffuseMode::Cubemap),
         |s| (s.accumulate.scale, s.accumulate.depth_source) = (1, DepthSource::Host),
         |s| {
             (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
-            s.accumulate.order = Order::Sorted;
+            s.accumulate.order = BlendOrder::Sorted;
             (s.diffuse.mode, s.soft_scatter.mode) = (DiffuseMode::Motif, SoftScatterMode::Ramp);
         },
     ];

@@ -131,7 +131,12 @@ fn shader_errors_report_file_line_and_column() {
     let behind = refused("saturate(light)", "/* ü→ü */ saturat(light)");
     assert!(behind.starts_with(&format!("{line}:27: ")), "{behind}");
     // The compiler would report this missing brace in the file that is composed after this one.
-    says("    return min(light, vec3f(BRIGHTEST));\n}", "", "{\n    return min(light, vec", "`{` is never closed");
+    says(
+        "    return min(light, vec3f(MAX_HALF_FLOAT_LIGHT));\n}",
+        "",
+        "{\n    return min(light, vec",
+        "`{` is never closed",
+    );
     let unended = refused("fn target_colour", "/* fn target_colour");
     assert_eq!(unended, format!("{}: unterminated block comment", place("lib/colour.wgsl", "fn target_colour")));
     // The error may be in an embedded file that no longer matches the edited one.
@@ -184,10 +189,10 @@ fn warm_up_reports_errors_that_only_other_settings_compile() {
     let host = Host::on(gpu(), &stage, Some(&folder.context().unwrap())).unwrap();
     let settings = [std::mem::take(&mut stage.settings)];
     let scene_depth = SceneDepthKind::Buffer(wgpu::TextureFormat::Depth32Float);
-    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, stages: &[DebugView::Final] };
+    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, debug_views: &[DebugView::Final] };
     host.renderer.warm_up(&expected).unwrap();
     let compiled = host.renderer.context().pipeline_count();
-    let combined = WarmUp { stages: &[DebugView::Combined], ..expected };
+    let combined = WarmUp { debug_views: &[DebugView::Combined], ..expected };
     let error = host.renderer.warm_up(&combined).unwrap_err().to_string();
     assert!(
         error.ends_with("transfer.wgsl:1:1: Pipeline constant error in fragment shader: Division by zero"),
@@ -201,11 +206,15 @@ fn warm_up_reports_errors_that_only_other_settings_compile() {
 fn missing_and_circular_imports_are_reported_at_the_import_line() {
     let imports = |import: &str| {
         let folder = Folder::new();
-        folder.edit("lib/colour.wgsl", "const BRIGHTEST", &format!("#import \"{import}\"\nconst BRIGHTEST"));
+        folder.edit(
+            "lib/colour.wgsl",
+            "const MAX_HALF_FLOAT_LIGHT",
+            &format!("#import \"{import}\"\nconst MAX_HALF_FLOAT_LIGHT"),
+        );
         folder
             .write("lib/round.wgsl", "#import \"lib/about.wgsl\"\n")
             .write("lib/about.wgsl", "\n#import \"lib/round.wgsl\"");
-        (folder.refusal(), place("lib/colour.wgsl", "const BRIGHTEST").replace(":1", ":9"))
+        (folder.refusal(), place("lib/colour.wgsl", "const MAX_HALF_FLOAT_LIGHT").replace(":1", ":9"))
     };
     let (unknown, place) = imports("lib/nothing.wgsl");
     assert_eq!(unknown, format!("{place}: there is no shader file \"lib/nothing.wgsl\" to import"));

@@ -33,9 +33,9 @@ type Change = fn(&mut Settings);
 /// Ways to accumulate sprites and to light the result.
 const MODES: &[(&str, Change)] = &[
     ("sorted", |_| {}),
-    ("weighted", |s| s.accumulate.order = Order::Weighted),
+    ("weighted", |s| s.accumulate.order = BlendOrder::Weighted),
     ("weighted and biased", |s| {
-        (s.accumulate.order, s.accumulate.encoding) = (Order::Weighted, NormalEncoding::Biased);
+        (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
     }),
     ("scale 1", |s| s.accumulate.scale = 1),
     ("lit at the target's resolution", |s| s.accumulate.lighting_resolution = LightingResolution::Target),

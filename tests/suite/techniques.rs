@@ -59,7 +59,7 @@ fn gpu_and_cpu_agree_on_every_technique_and_path() {
             agreement(&format!("{} {}", technique.name(), path.name()), &stage);
             if path == RenderPath::Raster {
                 let mut weighted = stage.clone();
-                weighted.settings.accumulate.order = Order::Weighted;
+                weighted.settings.accumulate.order = BlendOrder::Weighted;
                 agreement(&format!("{} weighted", technique.name()), &weighted);
             }
             stage.settings.soft_fade.curve = FadeCurve::Always;

@@ -102,10 +102,10 @@ fn tiled_path_agrees_in_every_accumulation_mode() {
     }
     type Change = fn(&mut TestScene);
     let changes: [(&str, Change); 9] = [
-        ("weighted", |s| s.settings.accumulate.order = Order::Weighted),
+        ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
         ("biased", |s| s.settings.accumulate.encoding = NormalEncoding::Biased),
         ("weighted and biased", |s| {
-            s.settings.accumulate.order = Order::Weighted;
+            s.settings.accumulate.order = BlendOrder::Weighted;
             s.settings.accumulate.encoding = NormalEncoding::Biased;
         }),
         ("lit at the target's resolution", |s| s.settings.accumulate.lighting_resolution = LightingResolution::Target),

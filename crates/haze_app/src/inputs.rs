@@ -9,7 +9,7 @@ use haze::settings::{FieldVisitor, Fields, ImageRole};
 
 /// Returns every path where an image that a preset names may lie.
 pub fn image_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
-    relative_image_paths(preset).iter().flat_map(|file| folders.places(file)).collect()
+    relative_image_paths(preset).iter().flat_map(|file| folders.candidate_paths(file)).collect()
 }
 
 /// Returns the same files, relative to the preset's folder.
@@ -22,7 +22,7 @@ pub fn relative_image_paths(preset: &Preset) -> Vec<PathBuf> {
 /// Returns every particle file that a preset names, and the next file of each sequence, which may be written later.
 pub fn particle_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
     let files = preset.systems.iter().filter_map(|system| particle_file_path(&system.cache.path));
-    files.flat_map(|file| folders.places(file)).flat_map(|place| haze::preset::places(&place)).collect()
+    files.flat_map(|file| folders.candidate_paths(file)).flat_map(|place| haze::preset::watched_paths(&place)).collect()
 }
 
 struct ImageNames(Vec<String>);
@@ -31,7 +31,7 @@ impl FieldVisitor for ImageNames {
     fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
     fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
     fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
-    fn picture(&mut self, _: &'static str, name: &mut String, _: ImageRole) {
+    fn image(&mut self, _: &'static str, name: &mut String, _: ImageRole) {
         self.0.push(name.clone());
     }
     fn group(&mut self, _: &'static str, fields: &mut dyn Fields) {

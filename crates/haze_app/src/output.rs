@@ -4,7 +4,7 @@ use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use haze::image::{FileIdentity, check_file};
+use haze::image::{FileIdentity, check_writable};
 use haze::{Error, FieldError};
 
 /// `println!` of one line that returns an error instead of panicking.
@@ -113,7 +113,7 @@ impl FileChecks {
         if found.is_ok_and(|found| found.permissions().readonly()) {
             return refuse("a file with write permission");
         }
-        if let Err(error) = check_file(path) {
+        if let Err(error) = check_writable(path) {
             return refuse(&format!("a file that can be written ({error})"));
         }
         let identity = FileIdentity::of(path);

@@ -10,7 +10,7 @@ use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRen
 use super::shot::{Shot, Source};
 use crate::headless::Headless;
 use haze::assets::image::Image;
-use haze::assets::material::MaterialAssets;
+use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
 use haze::frame::{Frame, Light, Material, Particles, SceneDepth, System, View};
 use haze::preset::Environment;
@@ -93,7 +93,8 @@ impl OffscreenContext {
     fn upload(&self, assets: &MaterialAssets) -> Result<Arc<Uploaded>, Error> {
         let mut materials = self.materials.lock().unwrap_or_else(PoisonError::into_inner);
         materials.retain(|uploaded| uploaded.strong_count() > 0);
-        if let Some(uploaded) = materials.iter().filter_map(Weak::upgrade).find(|one| one.assets.shares(assets)) {
+        if let Some(uploaded) = materials.iter().filter_map(Weak::upgrade).find(|one| one.assets.shares_memory(assets))
+        {
             return Ok(uploaded);
         }
         let material = self.haze.create_material(&self.device, &self.queue, assets)?;
@@ -241,7 +242,7 @@ impl OffscreenRenderer {
             systems: &systems,
             time: shot.preset.time,
             up: Vec3::Y,
-            stages,
+            debug_views: stages,
             ..Frame::new(
                 view,
                 match &set.targets.linear {
@@ -276,7 +277,7 @@ impl OffscreenRenderer {
                 }),
                 ..Default::default()
             });
-            self.renderer.render_stage(&mut pass, stage);
+            self.renderer.render_debug_view(&mut pass, stage);
         }
         Ok(())
     }
@@ -292,7 +293,8 @@ impl OffscreenRenderer {
     /// # Errors
     /// [`Error::Shader`] with the name of the pass, if custom shaders cannot be compiled.
     pub fn warm_up(&self, shot: &Shot) -> Result<(), Error> {
-        let settings: Vec<_> = shot.preset.systems.iter().map(|system| system.settings_for(shot.size.y)).collect();
+        let settings: Vec<_> =
+            shot.preset.systems.iter().map(|system| system.settings_at_height(shot.size.y)).collect();
         self.renderer.warm_up(&WarmUp {
             view: shot.preset.camera.view(shot.size),
             scene_depth: if self.context.scene.draws_linear {
@@ -301,7 +303,7 @@ impl OffscreenRenderer {
                 SceneDepthKind::Buffer(DEPTH_FORMAT)
             },
             settings: &settings,
-            stages: &[shot.debug_view],
+            debug_views: &[shot.debug_view],
         })
     }
 
@@ -351,7 +353,7 @@ impl OffscreenRenderer {
         self.materials.truncate(assets.len());
         for (index, assets) in assets.iter().enumerate() {
             match self.materials.get_mut(index) {
-                Some(slot) if slot.assets.shares(assets) => {}
+                Some(slot) if slot.assets.shares_memory(assets) => {}
                 Some(slot) => *slot = self.context.upload(assets)?,
                 None => self.materials.push(self.context.upload(assets)?),
             }

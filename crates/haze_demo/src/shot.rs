@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::UVec2;
 
 use super::scene::Scene;
-use haze::assets::material::MaterialAssets;
+use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
 use haze::frame::{EmitterSnapshot, Particle};
 use haze::preset::{AssetFolders, Preset, PresetSystem};
@@ -71,7 +71,7 @@ impl Shot {
     /// True if both give the same image before tonemapping; exposure is ignored. Cheap: images and particles from files
     /// are compared by address.
     pub fn is_same(&self, other: &Self) -> bool {
-        let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares(b);
+        let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares_memory(b);
         let is_same_but_exposed = || {
             let mut preset = other.preset.clone();
             preset.camera.exposure = self.preset.camera.exposure;
@@ -119,7 +119,7 @@ impl Shot {
     fn each_system<T>(&self, source: impl Fn(&PresetSystem, Option<&ParticleFrames>) -> T) -> Vec<(T, Settings)> {
         let system = |(index, system): (usize, &PresetSystem)| {
             let cache = self.caches.get(index).and_then(Option::as_ref);
-            (source(system, cache), system.settings_for(self.size.y))
+            (source(system, cache), system.settings_at_height(self.size.y))
         };
         self.preset.systems.iter().enumerate().map(system).collect()
     }

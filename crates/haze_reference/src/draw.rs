@@ -4,16 +4,19 @@ use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::frame::{Frame, System};
 use haze::assets::image::Image;
-use haze::assets::material::{MaterialAssets, MaterialInfo};
+use haze::assets::material_assets::{MaterialAssets, MaterialInfo};
 use haze::error::FieldError;
 use haze::formula::depth::view_depth_from_ndc_depth;
 use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
-use haze::frame::validate::{validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up};
+use haze::frame::validate_input::{
+    validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up,
+};
 use haze::frame::{Bounds, Particle, View, particle_bounds};
-use haze::settings::{DebugView, Order, Settings};
+use haze::settings::{BlendOrder, DebugView, Settings};
 use haze::view_setup::{
-    SortScratch, SpriteTrim, SystemInput, SystemSetup, ViewGeometry, in_order, light_uniforms, system_setup,
+    SortScratch, SpriteTrim, SystemInput, SystemSetup, ViewGeometry, light_uniforms, system_setup,
+    write_in_drawing_order,
 };
 
 /// Visible system, with the input of its passes.
@@ -26,7 +29,7 @@ pub struct Draw<'a> {
     pub lights: Vec<LightUniform>,
     /// In drawing order.
     pub particles: Vec<Particle>,
-    pub pictures: SpriteTrim,
+    pub trim: SpriteTrim,
     pub scene_depth: &'a Image<f32>,
     pub settings: &'a Settings,
     pub material: &'a MaterialAssets,
@@ -36,7 +39,7 @@ impl<'a> Draw<'a> {
     /// Returns `None` if the system is not visible.
     pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
         let settings = system.settings;
-        let bounds = system.bounds.unwrap_or_else(|| particle_bounds(system.particles, settings.reach()));
+        let bounds = system.bounds.unwrap_or_else(|| particle_bounds(system.particles, settings.sprite_extent()));
         let mut lights = Vec::new();
         light_uniforms(view, frame.lights, &bounds, &mut lights);
         let in_world = SystemInput {
@@ -52,10 +55,10 @@ impl<'a> Draw<'a> {
         };
         let setup = system_setup(view, frame.view.size, &in_world)?;
         let mut particles = Vec::new();
-        in_order(
+        write_in_drawing_order(
             view,
             system.particles,
-            settings.order() == Order::Sorted,
+            settings.order() == BlendOrder::Sorted,
             &mut SortScratch::default(),
             &mut particles,
         );
@@ -67,7 +70,7 @@ impl<'a> Draw<'a> {
             bounds,
             lights,
             particles,
-            pictures: SpriteTrim::new(settings, material),
+            trim: SpriteTrim::new(settings, material),
             scene_depth: frame.scene_depth,
             settings,
             material: system.material,
@@ -75,8 +78,8 @@ impl<'a> Draw<'a> {
     }
 
     /// True if this debug view shows the light of the target's texels.
-    pub fn lights_target(&self, debug_view: DebugView) -> bool {
-        debug_view.is_picture() && self.settings.accumulate.lights_target(self.view.size.as_uvec2())
+    pub fn lights_per_texel(&self, debug_view: DebugView) -> bool {
+        debug_view.shows_lit_smoke() && self.settings.accumulate.lights_per_texel(self.view.size.as_uvec2())
     }
 
     pub fn scene_view_depth(&self, pixel: IVec2) -> f32 {

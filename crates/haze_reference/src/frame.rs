@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use haze::assets::image::Image;
-use haze::assets::material::MaterialAssets;
+use haze::assets::material_assets::MaterialAssets;
 use haze::frame::{Bounds, Light, Particle, View};
 use haze::settings::{DebugView, Settings};
 

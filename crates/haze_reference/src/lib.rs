@@ -28,7 +28,7 @@ pub fn render(frame: &Frame<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldE
     let draws = visible(frame, picture.size)?;
     for (_, draw) in &draws {
         if draw.settings.is_forward() {
-            if frame.debug_view.is_picture() {
+            if frame.debug_view.shows_lit_smoke() {
                 draw.forward(picture);
             }
             continue;
@@ -40,13 +40,13 @@ pub fn render(frame: &Frame<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldE
         let (reduced_depth, accumulation, extra_attachment) =
             (&reduced_depth, &accumulation, extra_attachment.as_ref());
         let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, extra_attachment, lit: None };
-        if draw.lights_target(frame.debug_view) {
+        if draw.lights_per_texel(frame.debug_view) {
             smoke.lit = Some(smoke.light_target());
         }
         if frame.debug_view != DebugView::SpecularScatter {
             smoke.transfer(frame.debug_view, picture);
         }
-        if frame.debug_view.glows() {
+        if frame.debug_view.shows_glow() {
             smoke.specular_scatter(picture);
         }
     }

@@ -17,8 +17,8 @@ use haze::formula::technique::{
     spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
 };
 use haze::frame::Particle;
-use haze::settings::{Order, Technique};
-use haze::view_setup::{Grid, ProjectedSprite, SpriteProjector};
+use haze::settings::{BlendOrder, Technique};
+use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid};
 
 /// Sprite in view space.
 pub struct SpriteSetup {
@@ -54,7 +54,7 @@ impl Draw<'_> {
     /// order. `scene` returns the scene's view depth at a texel.
     pub fn for_fragments<T>(
         &self,
-        grid: &Grid,
+        grid: &TexelGrid,
         first_row: u32,
         band: &mut [T],
         scene: impl Fn(IVec2) -> f32,
@@ -84,13 +84,13 @@ impl Draw<'_> {
     /// `sprite_vertex()`; `None` if the sprite is hidden.
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
         let (technique, projector) = (self.settings.technique, self.projector());
-        let sprite = projector.sprite(particle, texels_per_pixel)?;
+        let sprite = projector.project(particle, texels_per_pixel)?;
         let ProjectedSprite { centre, radius, amount, frames, lod } = sprite;
         let view_depth = -centre.z;
         let (min, max) = if technique.is_sphere() {
             projector.sphere_rectangle(&sprite, texels_per_pixel)
         } else {
-            self.square_rectangle(projector.on_screen(centre), radius)
+            self.square_rectangle(projector.clamped_to_near_plane(centre), radius)
         };
         Some(SpriteSetup {
             centre,
@@ -100,7 +100,7 @@ impl Draw<'_> {
             amount,
             lod,
             frames,
-            reach: projector.reach(&sprite),
+            reach: projector.trimmed_extent(&sprite),
             age: particle.age,
             weight: self.order_weight(view_depth),
             min,
@@ -111,8 +111,8 @@ impl Draw<'_> {
     fn order_weight(&self, view_depth: f32) -> f32 {
         let system = &self.system;
         match self.settings.order() {
-            Order::Sorted => 1.0,
-            Order::Weighted => {
+            BlendOrder::Sorted => 1.0,
+            BlendOrder::Weighted => {
                 let (near, far) = (system.smoke_near, system.smoke_far);
                 let in_front = optical_depth_in_front(&system.front_knots, view_depth, near, far);
                 order_weight(system.depth_weight, in_front)
@@ -121,12 +121,7 @@ impl Draw<'_> {
     }
 
     fn projector(&self) -> SpriteProjector<'_> {
-        SpriteProjector {
-            view: &self.view,
-            system: &self.system,
-            technique: self.settings.technique,
-            pictures: &self.pictures,
-        }
+        SpriteProjector { view: &self.view, system: &self.system, technique: self.settings.technique, trim: &self.trim }
     }
 
     fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
@@ -142,7 +137,7 @@ impl Draw<'_> {
         if technique.is_sphere() {
             return self.sphere_fragment(sprite, pixel, scene);
         }
-        let drawn = self.projector().on_screen(sprite.centre);
+        let drawn = self.projector().clamped_to_near_plane(sprite.centre);
         let offset = self.view_position(pixel, -drawn.z) - drawn;
         let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
         let (low, high) = (trimmed_corner(Vec2::NEG_ONE, sprite.reach), trimmed_corner(Vec2::ONE, sprite.reach));

@@ -5,11 +5,11 @@ use std::path::Path;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use image::{DynamicImage, ImageBuffer, Rgba};
 
-use super::chunks::{ColourTags, colour_tags};
+use super::icc_profile::is_srgb;
 use super::png::{MAX_BYTES, decode_with_profile, is_png};
-use super::profile::is_srgb;
-use crate::assets::file;
-use crate::error::{Error, name};
+use super::png_chunks::{ColourTags, colour_tags};
+use crate::assets::bounded_read;
+use crate::error::{Error, display_path};
 use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 
 /// Decodes a PNG of colours, such as a ramp or a motif. The result is sRGB and opaque.
@@ -43,7 +43,7 @@ pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Erro
 /// # Errors
 /// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_colour_png`].
 pub fn read_colour_png(path: &Path) -> Result<DynamicImage, Error> {
-    decode_colour_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
+    decode_colour_png(path, &bounded_read::read(path, "PNG file", MAX_BYTES)?)
 }
 
 /// Returns notes about the conversions that [`decode_colour_png`] applies to a file, or why it refuses the file. Empty
@@ -52,7 +52,7 @@ pub fn read_colour_png(path: &Path) -> Result<DynamicImage, Error> {
 /// # Errors
 /// As [`read_colour_png`], except that an unsupported colour space is a note.
 pub fn colour_conversion_notes(path: &Path) -> Result<Vec<String>, Error> {
-    let bytes = file::read(path, "PNG file", MAX_BYTES)?;
+    let bytes = bounded_read::read(path, "PNG file", MAX_BYTES)?;
     let (picture, profile) = decode_with_profile(path, &bytes)?;
     let mut notes = Vec::new();
     match colour_tags(&bytes).unwrap_or_default().space(profile.as_deref()) {
@@ -125,7 +125,7 @@ impl ColourTags {
             return Ok(Space { transfer, srgb_from_linear: from_primaries(primaries)? });
         }
         if let Some(profile_name) = &self.profile {
-            let found = || format!("the colour profile \"{}\"", name(Path::new(profile_name)));
+            let found = || format!("the colour profile \"{}\"", display_path(Path::new(profile_name)));
             return if profile.is_some_and(is_srgb) { Ok(srgb) } else { Err(found()) };
         }
         if self.srgb {

@@ -1,19 +1,19 @@
 //! Images in memory with parallel iteration over rows, and reading and writing of PNG files.
 
-mod chunks;
+mod atomic_write;
 mod colour_space;
-mod file;
+mod icc_profile;
 mod png;
-mod profile;
+mod png_chunks;
 
+pub use atomic_write::{FileIdentity, check_writable, write_file};
 pub use colour_space::{colour_conversion_notes, decode_colour_png, read_colour_png};
-pub use file::{FileIdentity, check_file, write_file};
 pub use png::is_png;
 pub use png::{CompressionEffort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
 
 use glam::{IVec2, UVec2, Vec3, Vec4};
 
-use crate::assets::threads::{parallel_for_each, threads};
+use crate::assets::parallel::{parallel_for_each, thread_count};
 use crate::formula::texture::Texture2d;
 
 /// A 2D image, row by row from the top.
@@ -41,7 +41,7 @@ impl<T: Copy + Send> Image<T> {
     pub fn for_bands(&mut self, f: impl Fn(u32, &mut [T]) + Sync) {
         let width = self.size.x as usize;
         // More bands than threads, since smoke is rarely distributed evenly.
-        let rows = (self.size.y as usize).div_ceil(threads() * 4).max(1);
+        let rows = (self.size.y as usize).div_ceil(thread_count() * 4).max(1);
         parallel_for_each(self.texels.chunks_mut(rows * width).enumerate(), |(index, band)| {
             f((index * rows) as u32, band);
         });

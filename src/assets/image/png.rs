@@ -6,10 +6,10 @@ use std::path::Path;
 use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
-use super::chunks::colour_tags;
-use super::file::write_file;
-use crate::assets::file;
-use crate::assets::threads::parallel_for_each;
+use super::atomic_write::write_file;
+use super::png_chunks::colour_tags;
+use crate::assets::bounded_read;
+use crate::assets::parallel::parallel_for_each;
 use crate::error::Error;
 
 /// Maximum side of an image, pixels.
@@ -44,18 +44,18 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
     }
     // The first chunk is the header, which begins with width and height.
     let side = |at: usize| bytes.get(at..at + 4).and_then(|side| side.try_into().ok()).map(u32::from_be_bytes);
-    let (Some(width), Some(height)) = (side(16), side(20)) else { return refuse(broken(None)) };
+    let (Some(width), Some(height)) = (side(16), side(20)) else { return refuse(describe_decode_error(None)) };
     if width.max(height) > MAX_SIDE {
         return refuse(format!("{width}x{height} pixels; expected at most {MAX_SIDE}x{MAX_SIDE}"));
     }
     if colour_tags(bytes).is_none() {
-        return refuse(broken(None));
+        return refuse(describe_decode_error(None));
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_BYTES);
     let mut decoder = match PngDecoder::with_limits(Cursor::new(bytes), limits) {
         Ok(decoder) => decoder,
-        Err(error) => return refuse(broken(Some(&error))),
+        Err(error) => return refuse(describe_decode_error(Some(&error))),
     };
     // The decoder's own limit does not count the decoded image.
     let (decoded, most) = (decoder.total_bytes(), MAX_BYTES >> 20);
@@ -70,16 +70,16 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
     let profile = decoder.icc_profile().unwrap_or_default();
     match DynamicImage::from_decoder(decoder) {
         Ok(picture) => Ok((picture, profile)),
-        Err(error) => refuse(broken(Some(&error))),
+        Err(error) => refuse(describe_decode_error(Some(&error))),
     }
 }
 
 /// Returns a message about a damaged PNG. The decoder's own messages assume knowledge of its code.
-fn broken(error: Option<&ImageError>) -> String {
+fn describe_decode_error(error: Option<&ImageError>) -> String {
     let most = MAX_BYTES >> 20;
     match error {
         None => "the file ends too early; expected a whole PNG".into(),
-        Some(ImageError::IoError(error)) if error.kind() == ErrorKind::UnexpectedEof => broken(None),
+        Some(ImageError::IoError(error)) if error.kind() == ErrorKind::UnexpectedEof => describe_decode_error(None),
         Some(ImageError::Limits(_)) => format!("it takes more than {most} MiB to decode; expected a smaller PNG"),
         Some(_) => "a damaged PNG; expected one that other programs can open: export it again".into(),
     }
@@ -90,7 +90,7 @@ fn broken(error: Option<&ImageError>) -> String {
 /// # Errors
 /// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_png`].
 pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
-    decode_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
+    decode_png(path, &bounded_read::read(path, "PNG file", MAX_BYTES)?)
 }
 
 /// Compression effort.

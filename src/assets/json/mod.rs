@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-use super::file;
+use super::bounded_read;
 use super::image::is_png;
 use crate::error::{Error, FieldError};
 
@@ -33,7 +33,7 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
         let field = field.strip_suffix(unknown.map_or("", |(name, _)| name)).unwrap_or(&field).trim_end_matches('.');
         let (line, column) = (error.line().max(1), error.column().max(1));
         let rest = text.split('\n').nth(line - 1).and_then(|text| text.get(column - 1..));
-        let reason = serde_messages::plain(message, field, rest.unwrap_or_default());
+        let reason = serde_messages::translate(message, field, rest.unwrap_or_default());
         Error::Json { path: path.into(), line, column, reason }
     })
 }
@@ -50,7 +50,7 @@ pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32
     }
     let Versioned { version } = parse(path, text)?;
     if version == 0 || version > newest {
-        let (line, column) = place_of(text, "\"version\"");
+        let (line, column) = key_position(text, "\"version\"");
         let reason = if version == 0 {
             format!("version 0 does not exist; expected 1 to {newest}")
         } else {
@@ -75,12 +75,12 @@ pub fn load<T: DeserializeOwned>(
     Ok(value)
 }
 
-/// Reads the text of a file of at most `most` bytes.
+/// Reads the text of a file of at most `max_bytes` bytes.
 ///
 /// # Errors
 /// [`Error::Io`], or [`Error::Json`] if the file is not UTF-8 text.
-pub fn read(path: &Path, most: u64) -> Result<String, Error> {
-    text(path, &file::read(path, "JSON file", most)?).map(str::to_owned)
+pub fn read(path: &Path, max_bytes: u64) -> Result<String, Error> {
+    text(path, &bounded_read::read(path, "JSON file", max_bytes)?).map(str::to_owned)
 }
 
 /// Decodes UTF-8. The error names the kind of file if it is a PNG or UTF-16.
@@ -98,18 +98,18 @@ fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, Error> {
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     std::str::from_utf8(bytes).or_else(|error| {
         let before = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
-        refuse(place(&before), "not UTF-8")
+        refuse(position_after(&before), "not UTF-8")
     })
 }
 
 /// Returns the 1-based line and column of the position after `before`.
-fn place(before: &str) -> (usize, usize) {
+fn position_after(before: &str) -> (usize, usize) {
     (before.matches('\n').count() + 1, before.len() - before.rfind('\n').map_or(0, |at| at + 1) + 1)
 }
 
 /// Returns the 1-based line and column of the first occurrence of `key`.
-fn place_of(text: &str, key: &str) -> (usize, usize) {
-    place(&text[..text.find(key).unwrap_or(0)])
+fn key_position(text: &str, key: &str) -> (usize, usize) {
+    position_after(&text[..text.find(key).unwrap_or(0)])
 }
 
 #[cfg(test)]

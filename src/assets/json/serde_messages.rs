@@ -40,7 +40,7 @@ const EXPECTED: &[(&str, &str)] = &[
 
 /// Translates `message`, serde_json's error without its position, for the field at `path` ("" for the whole file).
 /// `rest` is the text from the position of the error on.
-pub fn plain(message: &str, path: &str, rest: &str) -> String {
+pub fn translate(message: &str, path: &str, rest: &str) -> String {
     let said = match message {
         // A valid value of another type: serde_json reports it as a syntax error where an enum name is expected.
         "expected value" if rest.starts_with(|c: char| c.is_ascii_digit() || "-[tfn".contains(c)) => {
@@ -49,14 +49,14 @@ pub fn plain(message: &str, path: &str, rest: &str) -> String {
         "trailing characters" if !path.is_empty() => "too many entries; expected the list to end here".to_owned(),
         _ => lookup(SYNTAX, message)
             .map(str::to_owned)
-            .or_else(|| mismatch(message))
+            .or_else(|| translate_mismatch(message))
             .unwrap_or_else(|| one_line(message)),
     };
     if path.is_empty() { said } else { format!("{}: {said}", one_line(path)) }
 }
 
 /// Translates errors about unknown fields, unknown names and values of the wrong type; `None` for other messages.
-fn mismatch(message: &str) -> Option<String> {
+fn translate_mismatch(message: &str) -> Option<String> {
     if let Some(field) = message.strip_prefix("unknown field `") {
         let (field, expected) = field.rsplit_once("`, expected ")?;
         return Some(format!("unknown field `{}`, expected {expected}", one_line(field)));

@@ -1,9 +1,9 @@
 //! Ramps: small lookup textures for lighting that an artist can paint. `ramps/README.md` describes axes, sizes and
 //! colour space.
 
-mod role;
+mod ramp_role;
 
-pub use role::Role;
+pub use ramp_role::RampRole;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ impl Ramp {
     }
 
     /// True if both share the same memory.
-    pub fn shares(&self, other: &Self) -> bool {
+    pub fn shares_memory(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.texels, &other.texels)
     }
 

@@ -6,8 +6,8 @@ use glam::{UVec2, Vec4};
 use super::Sprite;
 use crate::formula::sprite::FlipbookFrames;
 
-/// Alpha bounds of a frame at a mip level, including the footprint of bilinear filtering. Read by `alpha_bounds_texel()` in
-/// `shaders/lib/sprite_vertex.wgsl`.
+/// Alpha bounds of a frame at a mip level, including the footprint of bilinear filtering. Read by
+/// `alpha_bounds_texel()` in `shaders/lib/sprite_vertex.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct AlphaBoundsTexel {
@@ -49,7 +49,7 @@ impl AlphaBounds {
 
     /// Returns the extent of the amount from the middle in half sides: left, down, right, up. Covers both blended
     /// frames.
-    pub fn reach(&self, frames: FlipbookFrames, lod: f32) -> Vec4 {
+    pub fn trimmed_extent(&self, frames: FlipbookFrames, lod: f32) -> Vec4 {
         let level = (lod as u32).min(self.level_count - 1);
         let reach = |frame: i32| {
             let texel = self.texels.get((frame as u32 * self.level_count + level) as usize);
@@ -130,7 +130,7 @@ mod tests {
         let mut beyond = 0;
         for (frame, level) in (0..4).flat_map(|frame| (0..sprite.level_count()).map(move |level| (frame, level))) {
             let frames = FlipbookFrames { first: frame, second: frame + 1, blend: 0.5 };
-            let reach = alpha_bounds.reach(frames, level as f32);
+            let reach = alpha_bounds.trimmed_extent(frames, level as f32);
             for place in (0..128 * 128).map(|i| (UVec2::new(i % 128, i / 128).as_vec2() + 0.5) / 64.0 - 1.0) {
                 let is_within = place.cmpge(-reach.xy()).all() && place.cmple(reach.zw()).all();
                 let found = sample_sprite(&sprite, sprite_uv(place), frames, Vec2::ZERO, level as f32).w;
@@ -145,15 +145,15 @@ mod tests {
     fn the_extent_includes_the_footprint_of_bilinear_filtering() {
         let alpha_bounds = AlphaBounds::new(&sprite(128, 2, (64 + 50, 14)), None);
         let frames = |first, blend| FlipbookFrames { first, second: 1, blend };
-        assert_eq!(alpha_bounds.reach(frames(0, 0.0), 0.0), Vec4::ZERO);
+        assert_eq!(alpha_bounds.trimmed_extent(frames(0, 0.0), 0.0), Vec4::ZERO);
         // The footprint is texels 49.45 to 51.55 across and 13.45 to 15.55 down of 64, so right of and above the middle
         // at 32.
         let reach = Vec4::new(0.0, 0.0, 19.55 / 32.0, 18.55 / 32.0);
         for frames in [frames(1, 0.0), frames(0, 0.1)] {
-            let found = alpha_bounds.reach(frames, 0.0);
+            let found = alpha_bounds.trimmed_extent(frames, 0.0);
             assert!((found - reach).min_element() >= 0.0 && (found - reach).max_element() < 1.0 / 255.0, "{found}");
         }
         // At this level a frame has four texels per side; the texel is the last one across and the first one down.
-        assert_eq!(alpha_bounds.reach(frames(1, 0.0), 4.0), Vec4::new(0.0, 0.0, 1.0, 1.0));
+        assert_eq!(alpha_bounds.trimmed_extent(frames(1, 0.0), 4.0), Vec4::new(0.0, 0.0, 1.0, 1.0));
     }
 }

@@ -44,7 +44,7 @@ pub const MAX_FRAMES: u32 = 256;
 
 impl Sprite {
     /// True if both share the same memory.
-    pub fn shares(&self, other: &Self) -> bool {
+    pub fn shares_memory(&self, other: &Self) -> bool {
         self.levels.len() == other.levels.len() && self.levels.iter().zip(&other.levels).all(|(a, b)| Arc::ptr_eq(a, b))
     }
 

@@ -1,12 +1,12 @@
 //! Choice of the accumulation path for `auto`: workload, cost model and decision.
 
-mod choice;
-mod load;
-mod model;
+mod path_choice;
+mod path_model;
+mod workload;
 
-pub use choice::{PathChoice, PathReason};
-pub use load::PathWorkload;
-pub use model::{PathCosts, PathModel, PathModelSource};
+pub use path_choice::{PathChoice, PathReason};
+pub use path_model::{PathCosts, PathModel, PathModelSource};
+pub use workload::PathWorkload;
 
-pub(crate) use choice::Chooser;
-pub(crate) use load::load;
+pub(crate) use path_choice::PathChooser;
+pub(crate) use workload::estimate_workload;

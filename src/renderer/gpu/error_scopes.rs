@@ -7,7 +7,7 @@ use std::task::{Context, Poll, Waker};
 ///
 /// In a browser, errors arrive asynchronously. There this always returns `Ok`, and the host's error handler receives
 /// the errors.
-pub(crate) fn checked<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Result<T, String> {
+pub(crate) fn with_error_scopes<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Result<T, String> {
     if cfg!(target_arch = "wasm32") {
         return Ok(create());
     }
@@ -15,7 +15,7 @@ pub(crate) fn checked<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> R
     let scopes = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation].map(|kind| device.push_error_scope(kind));
     let created = create();
     // Error scopes are closed in reverse order.
-    let errors = scopes.into_iter().rev().filter_map(|scope| answer(scope.pop()).flatten());
+    let errors = scopes.into_iter().rev().filter_map(|scope| poll_once(scope.pop()).flatten());
     match errors.reduce(|first, _| first) {
         Some(error) => {
             let text = error.to_string();
@@ -27,7 +27,7 @@ pub(crate) fn checked<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> R
 }
 
 /// Returns the future's output if it is ready at once; in a browser it is not: `None`.
-pub(crate) fn answer<T>(future: impl Future<Output = T>) -> Option<T> {
+pub(crate) fn poll_once<T>(future: impl Future<Output = T>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(answer) => Some(answer),
         Poll::Pending => None,

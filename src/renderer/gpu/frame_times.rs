@@ -26,13 +26,13 @@ pub struct PassTime {
     /// Milliseconds.
     pub ms: f32,
     /// True for a pass of the host. Its time includes what haze draws in it.
-    pub of_host: bool,
+    pub is_host: bool,
 }
 
 impl FrameTimes {
     /// Returns the GPU time of the smoke, milliseconds: the sum of all measured passes except the host's.
     pub fn smoke_ms(&self) -> f32 {
-        self.passes.iter().filter(|pass| !pass.of_host).map(|pass| pass.ms).sum()
+        self.passes.iter().filter(|pass| !pass.is_host).map(|pass| pass.ms).sum()
     }
 }
 
@@ -40,7 +40,7 @@ impl FrameTimes {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     pub name: &'static str,
-    pub of_host: bool,
+    pub is_host: bool,
     /// Index of the query for its begin. The query for its end is the next one.
     pub query: u32,
 }
@@ -50,7 +50,7 @@ pub(crate) struct Span {
 pub(crate) struct Results {
     pub latest: Option<FrameTimes>,
     /// Last timestamp by query. A query that a frame does not write keeps its old value.
-    seen: Vec<u64>,
+    last_ticks: Vec<u64>,
 }
 
 impl Results {
@@ -73,9 +73,9 @@ impl Results {
         for span in spans {
             let ticks = [tick(span.query), tick(span.query + 1)];
             let at = span.query as usize;
-            self.seen.resize(self.seen.len().max(at + 2), 0);
-            let is_written = ticks.iter().zip(&self.seen[at..]).all(|(tick, seen)| *tick != 0 && tick != seen);
-            self.seen[at..at + 2].copy_from_slice(&ticks);
+            self.last_ticks.resize(self.last_ticks.len().max(at + 2), 0);
+            let is_written = ticks.iter().zip(&self.last_ticks[at..]).all(|(tick, last)| *tick != 0 && tick != last);
+            self.last_ticks[at..at + 2].copy_from_slice(&ticks);
             let [begin, end] = ticks;
             if !is_written || end < begin {
                 times.discarded += 1;
@@ -83,9 +83,9 @@ impl Results {
             }
             (first, last) = (first.min(begin), last.max(end));
             let ms = ((end - begin) as f64 * ms_per_tick) as f32;
-            match times.passes.iter_mut().find(|pass| (pass.name, pass.of_host) == (span.name, span.of_host)) {
+            match times.passes.iter_mut().find(|pass| (pass.name, pass.is_host) == (span.name, span.is_host)) {
                 Some(pass) => pass.ms += ms,
-                None => times.passes.push(PassTime { name: span.name, ms, of_host: span.of_host }),
+                None => times.passes.push(PassTime { name: span.name, ms, is_host: span.is_host }),
             }
         }
         times.whole_ms = (last.saturating_sub(first) as f64 * ms_per_tick) as f32;
@@ -101,7 +101,7 @@ mod tests {
         let ticks: Vec<_> = spans.iter().flat_map(|span| [span.1, span.2]).collect();
         let spans: Vec<_> = (0..)
             .zip(spans)
-            .map(|(index, &(name, ..))| Span { name, of_host: name == "host", query: 2 * index })
+            .map(|(index, &(name, ..))| Span { name, is_host: name == "host", query: 2 * index })
             .collect();
         results.read(7, &spans, &[], missed, 0.5, |query| ticks[query as usize]);
         results.latest.clone().unwrap()

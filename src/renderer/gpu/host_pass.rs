@@ -1,6 +1,6 @@
 //! Formats of the host's render pass, which pipelines that draw into it must match.
 
-use super::error_scopes::checked;
+use super::error_scopes::with_error_scopes;
 use super::pipeline::read_only_depth;
 use crate::error::FieldError;
 
@@ -21,7 +21,7 @@ pub(crate) struct HostPass {
 
 impl HostPass {
     /// Returns a pass with one colour attachment and nothing else.
-    pub const fn plain(color_format: wgpu::TextureFormat) -> Self {
+    pub const fn color_only(color_format: wgpu::TextureFormat) -> Self {
         Self {
             color_format,
             further: [None; MAX_ATTACHMENTS - 1],
@@ -62,19 +62,19 @@ impl HostPass {
             Err(FieldError::new(field, value, format!("{expected} ({reason})")))
         };
         // Finds the field at fault: tests each one in an otherwise plain pass.
-        if let Err(reason) = Self::plain(self.color_format).probe(device) {
+        if let Err(reason) = Self::color_only(self.color_format).probe(device) {
             let expected = "a format that this device can render to and blend, for example Rgba16Float";
             return refuse("color_format".into(), format!("{:?}", self.color_format), &reason, expected);
         }
-        let plain = Self::plain(wgpu::TextureFormat::Rgba8Unorm);
+        let color_only = Self::color_only(wgpu::TextureFormat::Rgba8Unorm);
         if let (Some(format), Err(reason)) =
-            (self.depth_format, Self { depth_format: self.depth_format, ..plain }.probe(device))
+            (self.depth_format, Self { depth_format: self.depth_format, ..color_only }.probe(device))
         {
             let expected = "a depth format that this device supports, or None";
             return refuse("depth_format".into(), format!("{format:?}"), &reason, expected);
         }
         for (index, &format) in self.further[..self.further_count].iter().enumerate() {
-            let one = plain.with_further(&[format]).map_or(Ok(()), |pass| pass.probe(device));
+            let one = color_only.with_further(&[format]).map_or(Ok(()), |pass| pass.probe(device));
             if let (Some(format), Err(reason)) = (format, one) {
                 let field = format!("further_color_formats[{index}]");
                 let expected = "a format that this device can render to as a further attachment";
@@ -117,6 +117,6 @@ impl HostPass {
                 cache: None,
             })
         };
-        checked(device, pipeline).map(drop)
+        with_error_scopes(device, pipeline).map(drop)
     }
 }

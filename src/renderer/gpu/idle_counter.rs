@@ -1,7 +1,7 @@
 //! Delayed release of memory: memory that was needed once may be needed again soon.
 
 /// Frames for which memory must have been too large or unused before it is released: 2 s at 60 frames per second.
-const PATIENCE: u32 = 120;
+const RELEASE_DELAY_FRAMES: u32 = 120;
 
 /// Counts consecutive frames in which memory was too large or unused.
 #[derive(Clone, Copy, Debug, Default)]
@@ -11,9 +11,9 @@ pub(crate) struct IdleCounter {
 
 impl IdleCounter {
     /// Counts one more frame. Returns true once the memory should be released.
-    pub fn tick(&mut self, is_to_spare: bool) -> bool {
-        self.frames = if is_to_spare { self.frames + 1 } else { 0 };
-        self.frames > PATIENCE
+    pub fn tick(&mut self, is_idle: bool) -> bool {
+        self.frames = if is_idle { self.frames + 1 } else { 0 };
+        self.frames > RELEASE_DELAY_FRAMES
     }
 }
 
@@ -23,10 +23,10 @@ mod tests {
 
     #[test]
     fn memory_is_released_only_after_enough_consecutive_spare_frames() {
-        let mut spare = IdleCounter::default();
-        assert!((0..PATIENCE).all(|_| !spare.tick(true)));
-        assert!(!spare.tick(false) && !spare.tick(true));
-        assert!((1..PATIENCE).all(|_| !spare.tick(true)));
-        assert!(spare.tick(true));
+        let mut idle = IdleCounter::default();
+        assert!((0..RELEASE_DELAY_FRAMES).all(|_| !idle.tick(true)));
+        assert!(!idle.tick(false) && !idle.tick(true));
+        assert!((1..RELEASE_DELAY_FRAMES).all(|_| !idle.tick(true)));
+        assert!(idle.tick(true));
     }
 }

@@ -5,7 +5,7 @@ use std::hash::Hash;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::error_scopes::checked;
+use super::error_scopes::with_error_scopes;
 use crate::error::{Error, one_line};
 
 /// Shader of a pass.
@@ -18,7 +18,7 @@ pub(crate) struct Shader {
 
 /// Shader of a pass, and its pipelines by key. A pipeline is compiled on first use, from any thread.
 #[derive(Debug)]
-pub(crate) struct PipelineVariants<K, P: Parts = RenderPipelineDescription> {
+pub(crate) struct PipelineVariants<K, P: PipelineDescription = RenderPipelineDescription> {
     common: Common,
     describe: fn(K) -> P,
     pipelines: Mutex<HashMap<K, P::Pipeline>>,
@@ -35,7 +35,7 @@ pub(crate) struct Common {
 }
 
 /// Variant-specific parts of a pipeline; together with the properties that its pass shares, they create it.
-pub(crate) trait Parts {
+pub(crate) trait PipelineDescription {
     type Pipeline: Clone + std::fmt::Debug;
 
     fn create(&self, device: &wgpu::Device, common: &Common) -> Self::Pipeline;
@@ -59,7 +59,7 @@ pub(crate) struct ComputePipelineDescription {
     pub constants: Vec<Constant>,
 }
 
-impl<K: Copy + Eq + Hash, P: Parts> PipelineVariants<K, P> {
+impl<K: Copy + Eq + Hash, P: PipelineDescription> PipelineVariants<K, P> {
     /// `name`: name of the pass, used as label.
     pub fn new(
         device: &wgpu::Device,
@@ -90,7 +90,7 @@ impl<K: Copy + Eq + Hash, P: Parts> PipelineVariants<K, P> {
         if self.lock().contains_key(&key) {
             return Ok(());
         }
-        let compiled = checked(device, || self.compile(device, key)).map_err(|reason| {
+        let compiled = with_error_scopes(device, || self.compile(device, key)).map_err(|reason| {
             let stages = [("VERTEX", "vertex"), ("FRAGMENT", "fragment"), ("COMPUTE", "compute")];
             let plain = |text: String, (stage, name): (&str, _)| text.replace(&format!("ShaderStages({stage})"), name);
             let reason = one_line(stages.into_iter().fold(reason, plain));
@@ -119,7 +119,7 @@ impl<K: Copy + Eq + Hash, P: Parts> PipelineVariants<K, P> {
     }
 }
 
-impl Parts for RenderPipelineDescription {
+impl PipelineDescription for RenderPipelineDescription {
     type Pipeline = wgpu::RenderPipeline;
 
     fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::RenderPipeline {
@@ -148,7 +148,7 @@ impl Parts for RenderPipelineDescription {
     }
 }
 
-impl Parts for ComputePipelineDescription {
+impl PipelineDescription for ComputePipelineDescription {
     type Pipeline = wgpu::ComputePipeline;
 
     fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::ComputePipeline {
@@ -167,17 +167,17 @@ impl Parts for ComputePipelineDescription {
 pub(crate) type Constant = (&'static str, f64);
 
 /// Returns a boolean override constant.
-pub(crate) fn switch(name: &'static str, on: bool) -> Constant {
+pub(crate) fn bool_constant(name: &'static str, on: bool) -> Constant {
     (name, if on { 1.0 } else { 0.0 })
 }
 
 /// Makes an override constant from a setting's enum: the value is the variant's index.
-macro_rules! variant {
+macro_rules! enum_constant {
     ($name:literal, $value:expr) => {
         ($name, f64::from($value as u32))
     };
 }
-pub(crate) use variant;
+pub(crate) use enum_constant;
 
 /// ONE, ONE_MINUS_SRC_ALPHA: source over destination, both premultiplied.
 pub(crate) const PREMULTIPLIED_OVER: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
@@ -189,7 +189,7 @@ pub(crate) const ADDITIVE: wgpu::BlendState = wgpu::BlendState { color: ADD, alp
 pub(crate) const WEIGHTED_SUM: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: wgpu::BlendComponent::OVER };
 
 /// ONE, ONE on colour and alpha.
-pub(crate) const COUNT: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: ADD };
+pub(crate) const ADD_ALL: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: ADD };
 
 /// DST, ZERO on colour: destination times source; alpha is not changed.
 pub(crate) const MULTIPLY: wgpu::BlendState = wgpu::BlendState {
@@ -233,12 +233,12 @@ pub(crate) fn read_only_depth(format: wgpu::TextureFormat, compare: wgpu::Compar
 }
 
 /// Returns the comparison "in front of the surface or on it".
-pub(crate) fn in_front(reversed: bool) -> wgpu::CompareFunction {
+pub(crate) fn depth_compare(reversed: bool) -> wgpu::CompareFunction {
     if reversed { wgpu::CompareFunction::GreaterEqual } else { wgpu::CompareFunction::LessEqual }
 }
 
 /// Primitive state of quads: a strip of four corners, visible from both sides.
-pub(crate) const STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
+pub(crate) const QUAD_STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
     topology: wgpu::PrimitiveTopology::TriangleStrip,
     strip_index_format: None,
     front_face: wgpu::FrontFace::Ccw,

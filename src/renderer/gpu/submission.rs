@@ -8,13 +8,13 @@ use std::sync::Arc;
 /// request within the submission. The callback drops a reference to `recorded` when it is called, or when it is dropped
 /// together with an encoder that is never submitted.
 #[derive(Debug)]
-pub(crate) struct Submission {
+pub(crate) struct SubmissionTracker {
     probe: wgpu::Buffer,
     /// Shared with every encoder that is not yet submitted.
     recorded: Arc<()>,
 }
 
-impl Submission {
+impl SubmissionTracker {
     pub fn new(device: &wgpu::Device) -> Self {
         let probe = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("haze submission"),
@@ -31,7 +31,7 @@ impl Submission {
     }
 
     /// Tracks an encoder.
-    pub fn follow(&self, encoder: &wgpu::CommandEncoder) {
+    pub fn track(&self, encoder: &wgpu::CommandEncoder) {
         let recorded = self.recorded.clone();
         encoder.map_buffer_on_submit(&self.probe, wgpu::MapMode::Read, .., move |_| drop(recorded));
     }

@@ -147,7 +147,7 @@ impl Timing {
     /// Registers that a renderer is prepared, and returns the current frame. `last`: the frame in which it was prepared
     /// before. If that is the current frame, its commands were dropped, or submitted without
     /// [`resolve`](Self::resolve), and the frame's recording is discarded.
-    pub(crate) fn enter(&self, last: Option<u64>) -> u64 {
+    pub(crate) fn register_prepare(&self, last: Option<u64>) -> u64 {
         let mut recording = lock(&self.0.recording);
         if last == Some(recording.frame) {
             let next_frame = recording.frame + 1;
@@ -175,7 +175,7 @@ impl Timing {
     }
 
     /// Measures the commands of `record` in a pass, if the device supports timestamps inside passes.
-    pub(crate) fn inside(
+    pub(crate) fn measure_in_pass(
         timing: Option<&Self>,
         name: &'static str,
         pass: &mut wgpu::RenderPass<'_>,
@@ -192,8 +192,8 @@ impl Timing {
         }
     }
 
-    fn writes(&self, name: &'static str, of_host: bool) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
-        let query = self.add(name, of_host)?;
+    fn writes(&self, name: &'static str, is_host: bool) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        let query = self.add(name, is_host)?;
         Some(wgpu::RenderPassTimestampWrites {
             query_set: &self.0.queries,
             beginning_of_pass_write_index: Some(query),
@@ -201,8 +201,8 @@ impl Timing {
         })
     }
 
-    fn add(&self, name: &'static str, of_host: bool) -> Option<u32> {
-        lock(&self.0.recording).add(name, of_host)
+    fn add(&self, name: &'static str, is_host: bool) -> Option<u32> {
+        lock(&self.0.recording).add(name, is_host)
     }
 
     /// Reads the timestamps of a mapped buffer.
@@ -227,8 +227,8 @@ impl Recording {
     }
 
     /// Adds an interval. Returns the first of its two queries, or `None` if no queries are left.
-    fn add(&mut self, name: &'static str, of_host: bool) -> Option<u32> {
-        let (taken, range) = if of_host {
+    fn add(&mut self, name: &'static str, is_host: bool) -> Option<u32> {
+        let (taken, range) = if is_host {
             (&mut self.host_queries, 0..HOST_QUERIES)
         } else {
             (&mut self.own_queries, HOST_QUERIES..QUERIES)
@@ -239,7 +239,7 @@ impl Recording {
             return None;
         }
         *taken += 2;
-        self.spans.push(Span { name, of_host, query });
+        self.spans.push(Span { name, is_host, query });
         Some(query)
     }
 }

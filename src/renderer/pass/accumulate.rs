@@ -10,23 +10,23 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::Groups;
-use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::MAX_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{
-    COUNT, PREMULTIPLIED_OVER, RenderPipelineDescription, STRIP, WEIGHTED_SUM, color_target, in_front, read_only_depth,
-    switch, variant,
+    ADD_ALL, PREMULTIPLIED_OVER, QUAD_STRIP, RenderPipelineDescription, WEIGHTED_SUM, bool_constant, color_target,
+    depth_compare, enum_constant, read_only_depth,
 };
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor, tested_depth};
 use crate::renderer::gpu::timing::Timing;
+use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, ExtraAttachment, REDUCED_DEPTH_FORMAT, accumulation_layout};
-use crate::settings::{AccumulationFormat, NormalEncoding, Order};
+use crate::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
 
 /// Key of an accumulation pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
-    pub order: Order,
+    pub order: BlendOrder,
     pub extra_attachment: ExtraAttachment,
     pub sprite: SpriteKey,
     /// True if sprites are compared with the host's own depth instead of the reduced depth.
@@ -53,20 +53,20 @@ pub(crate) enum DepthTest {
 pub(crate) fn describe(key: AccumulateKey) -> RenderPipelineDescription {
     // Blend states of the first and the second texture.
     let blends = match (key.overdraw, key.order) {
-        (true, _) => [COUNT; 2],
-        (false, Order::Sorted) => [PREMULTIPLIED_OVER; 2],
+        (true, _) => [ADD_ALL; 2],
+        (false, BlendOrder::Sorted) => [PREMULTIPLIED_OVER; 2],
         // Weights add up; the second texture's alpha has nothing else.
-        (false, Order::Weighted) => [WEIGHTED_SUM, COUNT],
+        (false, BlendOrder::Weighted) => [WEIGHTED_SUM, ADD_ALL],
     };
     let extra_attachment = if key.overdraw { ExtraAttachment::Nothing } else { key.extra_attachment };
     RenderPipelineDescription {
         buffers: const { &[Some(PARTICLE_LAYOUT)] },
-        primitive: STRIP,
+        primitive: QUAD_STRIP,
         depth_stencil: match key.depth_test {
             DepthTest::InShader => None,
-            DepthTest::Reduced => Some(read_only_depth(REDUCED_DEPTH_FORMAT, in_front(false))),
-            DepthTest::Copy => Some(read_only_depth(DEPTH_COPY_FORMAT, in_front(false))),
-            DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
+            DepthTest::Reduced => Some(read_only_depth(REDUCED_DEPTH_FORMAT, depth_compare(false))),
+            DepthTest::Copy => Some(read_only_depth(DEPTH_COPY_FORMAT, depth_compare(false))),
+            DepthTest::Host(format, reversed) => Some(read_only_depth(format, depth_compare(reversed))),
         },
         sample_count: 1,
         targets: accumulation_layout(key.format, extra_attachment, false)
@@ -75,12 +75,12 @@ pub(crate) fn describe(key: AccumulateKey) -> RenderPipelineDescription {
             .map(|(attachment, blend)| color_target(attachment.format, Some(blend)))
             .collect(),
         constants: key.sprite.constants([
-            variant!("NORMAL_ENCODING", key.encoding),
-            switch("HOST_DEPTH", key.host_depth),
-            switch("WEIGHTED", key.order == Order::Weighted),
+            enum_constant!("NORMAL_ENCODING", key.encoding),
+            bool_constant("HOST_DEPTH", key.host_depth),
+            bool_constant("WEIGHTED", key.order == BlendOrder::Weighted),
             // The copy is too coarse to replace the shader's own test.
-            switch("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
-            switch("OVERDRAW", key.overdraw),
+            bool_constant("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
+            bool_constant("OVERDRAW", key.overdraw),
         ]),
     }
 }

@@ -8,7 +8,7 @@
 
 use glam::UVec2;
 
-use crate::renderer::gpu::pipeline::{RenderPipelineDescription, read_only_depth, switch, variant};
+use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, enum_constant, read_only_depth};
 use crate::renderer::gpu::record::{begin_pass, set_viewport_and_scissor, written_depth};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT};
@@ -34,7 +34,7 @@ pub(crate) fn describe(key: DepthDownsampleKey) -> RenderPipelineDescription {
         }),
         sample_count: 1,
         targets: Vec::new(),
-        constants: vec![variant!("DEPTH_DOWNSAMPLE", key.mode), switch("COARSE_COPY", key.copy)],
+        constants: vec![enum_constant!("DEPTH_DOWNSAMPLE", key.mode), bool_constant("COARSE_COPY", key.copy)],
     }
 }
 

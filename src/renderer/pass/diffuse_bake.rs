@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::Groups;
 use crate::formula::diffuse_bake::baked_size_and_layers;
-use crate::renderer::gpu::pipeline::{RenderPipelineDescription, color_target, switch, variant};
+use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, color_target, enum_constant};
 use crate::renderer::gpu::record::{begin_pass, color_attachment};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
@@ -35,11 +35,11 @@ pub(crate) fn describe(key: DiffuseBakeKey) -> RenderPipelineDescription {
         sample_count: 1,
         targets: vec![color_target(BAKED_DIFFUSE_FORMAT, None)],
         constants: vec![
-            switch("MOTIF", key.mode == DiffuseMode::Motif),
+            bool_constant("MOTIF", key.mode == DiffuseMode::Motif),
             ("BAKE_SIZE", f64::from(side)),
-            variant!("BACKLIGHT", key.backlight),
-            variant!("RAMP_FILTER", key.ramp_filter),
-            switch("EXACT_FILTERING", key.exact_filtering),
+            enum_constant!("BACKLIGHT", key.backlight),
+            enum_constant!("RAMP_FILTER", key.ramp_filter),
+            bool_constant("EXACT_FILTERING", key.exact_filtering),
         ],
     }
 }

@@ -6,12 +6,12 @@
 //! Source: OTEE "Typical game particles so far".
 
 use super::Groups;
-use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
-    ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, RenderPipelineDescription, STRIP, in_front, read_only_depth, switch,
-    variant,
+    ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, QUAD_STRIP, RenderPipelineDescription, bool_constant, depth_compare,
+    enum_constant, read_only_depth,
 };
+use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::settings::{Backlight, BlendMode, RampFilter, SoftScatterMode};
 
 /// Key of a forward pipeline.
@@ -36,21 +36,21 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
         BlendMode::Additive => ADDITIVE,
         BlendMode::Multiply => MULTIPLY,
     };
-    let compare = if key.shows_through { wgpu::CompareFunction::Always } else { in_front(key.reversed) };
+    let compare = if key.shows_through { wgpu::CompareFunction::Always } else { depth_compare(key.reversed) };
     RenderPipelineDescription {
         buffers: const { &[Some(PARTICLE_LAYOUT)] },
-        primitive: STRIP,
+        primitive: QUAD_STRIP,
         depth_stencil: key.host.depth_format.map(|format| read_only_depth(format, compare)),
         sample_count: key.host.sample_count,
         targets: key.host.color_targets(blend),
         constants: key.sprite.constants([
-            variant!("BLEND_MODE", key.blend_mode),
-            switch("AGE_COLOUR", key.age_colour),
-            switch("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
-            variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
-            variant!("BACKLIGHT", key.backlight),
-            variant!("RAMP_FILTER", key.ramp_filter),
-            switch("GAMMA_TARGET", key.host.gamma_target),
+            enum_constant!("BLEND_MODE", key.blend_mode),
+            bool_constant("AGE_COLOUR", key.age_colour),
+            bool_constant("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
+            enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
+            enum_constant!("BACKLIGHT", key.backlight),
+            enum_constant!("RAMP_FILTER", key.ramp_filter),
+            bool_constant("GAMMA_TARGET", key.host.gamma_target),
         ]),
     }
 }

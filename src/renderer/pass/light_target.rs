@@ -9,7 +9,7 @@
 use glam::UVec2;
 
 use super::Groups;
-use crate::renderer::gpu::pipeline::{Constant, RenderPipelineDescription, color_target, switch, variant};
+use crate::renderer::gpu::pipeline::{Constant, RenderPipelineDescription, bool_constant, color_target, enum_constant};
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{ExtraAttachment, LIT_FORMAT};
@@ -32,15 +32,15 @@ impl LightingKey {
     /// Returns the override constants of `shaders/lib/lit_smoke.wgsl`, followed by the pass's own.
     pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
         let shared = [
-            variant!("DIFFUSE_MODE", self.diffuse_mode),
-            variant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
-            variant!("NORMAL_ENCODING", self.encoding),
-            variant!("NORMAL_DECODE", self.decode),
-            switch("WEIGHT_SUM", self.extra_attachment == ExtraAttachment::Weights),
-            switch("SIX_WAY", self.extra_attachment == ExtraAttachment::SixWay),
-            variant!("BACKLIGHT", self.backlight),
-            variant!("RAMP_FILTER", self.ramp_filter),
-            switch("EXACT_FILTERING", self.exact_filtering),
+            enum_constant!("DIFFUSE_MODE", self.diffuse_mode),
+            enum_constant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
+            enum_constant!("NORMAL_ENCODING", self.encoding),
+            enum_constant!("NORMAL_DECODE", self.decode),
+            bool_constant("WEIGHT_SUM", self.extra_attachment == ExtraAttachment::Weights),
+            bool_constant("SIX_WAY", self.extra_attachment == ExtraAttachment::SixWay),
+            enum_constant!("BACKLIGHT", self.backlight),
+            enum_constant!("RAMP_FILTER", self.ramp_filter),
+            bool_constant("EXACT_FILTERING", self.exact_filtering),
         ];
         shared.into_iter().chain(of_pass).collect()
     }

@@ -10,7 +10,6 @@ pub(crate) mod forward;
 pub(crate) mod light_target;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;
-pub(crate) mod sprites;
 pub(crate) mod tile_accumulate;
 pub(crate) mod tile_bin;
 pub(crate) mod tile_gather;

@@ -7,7 +7,9 @@
 
 use super::Groups;
 use crate::renderer::gpu::host_pass::HostPass;
-use crate::renderer::gpu::pipeline::{ADDITIVE, RenderPipelineDescription, STRIP, read_only_depth, switch, variant};
+use crate::renderer::gpu::pipeline::{
+    ADDITIVE, QUAD_STRIP, RenderPipelineDescription, bool_constant, enum_constant, read_only_depth,
+};
 use crate::settings::{RampFilter, Upsample};
 
 /// Key of a specular scatter pipeline.
@@ -24,15 +26,15 @@ pub(crate) fn describe(key: SpecularScatterKey) -> RenderPipelineDescription {
     let always = |format| read_only_depth(format, wgpu::CompareFunction::Always);
     RenderPipelineDescription {
         buffers: &[],
-        primitive: STRIP,
+        primitive: QUAD_STRIP,
         depth_stencil: key.host.depth_format.map(always),
         sample_count: key.host.sample_count,
         targets: key.host.color_targets(ADDITIVE),
         constants: vec![
-            variant!("UPSAMPLE", key.upsample),
-            switch("GAMMA_TARGET", key.host.gamma_target),
-            variant!("RAMP_FILTER", key.ramp_filter),
-            switch("EXACT_FILTERING", key.exact_filtering),
+            enum_constant!("UPSAMPLE", key.upsample),
+            bool_constant("GAMMA_TARGET", key.host.gamma_target),
+            enum_constant!("RAMP_FILTER", key.ramp_filter),
+            bool_constant("EXACT_FILTERING", key.exact_filtering),
         ],
     }
 }

@@ -7,13 +7,13 @@
 use glam::UVec2;
 
 use super::Groups;
-use super::sprites::SpriteKey;
 use super::tile_refine;
-use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch, variant};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant, enum_constant};
+use crate::renderer::sprite_instances::SpriteKey;
 use crate::renderer::targets::ExtraAttachment;
 use crate::settings::{AccumulationFormat, NormalEncoding};
 
-/// Texels per workgroup of the entry points `cooperative` and `alone` in `shaders/tile_accumulate.wgsl`.
+/// Texels per workgroup of the entry points `cooperative` and `per_invocation` in `shaders/tile_accumulate.wgsl`.
 const COOPERATIVE_TILE: UVec2 = UVec2::new(8, 16);
 const PER_INVOCATION_TILE: UVec2 =
     UVec2::new(tile_refine::PER_INVOCATION_TILE.x, 8 * tile_refine::PER_INVOCATION_TILE.y);
@@ -39,13 +39,13 @@ pub(crate) fn describe(key: TileAccumulateKey) -> ComputePipelineDescription {
     ComputePipelineDescription {
         entry_point: if key.cooperative { "cooperative" } else { "per_invocation" },
         constants: key.sprite.constants([
-            variant!("NORMAL_ENCODING", key.encoding),
-            switch("HOST_DEPTH", key.host_depth),
-            switch("WEIGHTED", key.weighted),
-            switch("BYTE_TARGET", key.format == AccumulationFormat::Rgba8Unorm),
-            switch("SUMS_WEIGHTS", key.extra_attachment == ExtraAttachment::Weights),
-            switch("STOPS", key.stops),
-            switch("LOADS_SPRITE", !key.cooperative),
+            enum_constant!("NORMAL_ENCODING", key.encoding),
+            bool_constant("HOST_DEPTH", key.host_depth),
+            bool_constant("WEIGHTED", key.weighted),
+            bool_constant("BYTE_TARGET", key.format == AccumulationFormat::Rgba8Unorm),
+            bool_constant("SUMS_WEIGHTS", key.extra_attachment == ExtraAttachment::Weights),
+            bool_constant("STOPS", key.stops),
+            bool_constant("LOADS_SPRITE", !key.cooperative),
         ]),
     }
 }

@@ -8,7 +8,7 @@ use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 /// Sprites that one invocation assigns to bins: `RUN` in `shaders/lib/tiles.wgsl`.
 pub(crate) const RUN: u32 = 64;
 /// Up to this many sprites, one dispatch makes all lists: the number of bits of `touching` in `shaders/tile_bin.wgsl`.
-pub(crate) const FEW: u32 = 1 << 15;
+pub(crate) const MAX_SPRITES_SINGLE_DISPATCH: u32 = 1 << 15;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,24 +19,24 @@ pub(crate) struct TileBinKey {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Step {
     CountSprites,
-    ListFew,
+    BuildLists,
     Allocate,
-    AllocateAlone,
+    AllocatePerInvocation,
     Fill,
-    CountAlone,
-    FillAlone,
+    CountPerRun,
+    FillPerRun,
 }
 
 /// Maximum number of pipelines in one frame.
-pub(crate) const STEPS: usize = 3;
+pub(crate) const MAX_PIPELINES: usize = 3;
 
-/// Returns the keys of a frame's pipelines, in order. `cooperative`: true for cooperative workgroups. `few`: true for at
-/// most [`FEW`] sprites.
+/// Returns the keys of a frame's pipelines, in order. `cooperative`: true for cooperative workgroups. `few`: true for
+/// at most [`MAX_SPRITES_SINGLE_DISPATCH`] sprites.
 pub(crate) fn keys(cooperative: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
     let steps: &[Step] = match (cooperative, few) {
-        (true, true) => &[Step::ListFew],
+        (true, true) => &[Step::BuildLists],
         (true, false) => &[Step::CountSprites, Step::Allocate, Step::Fill],
-        (false, _) => &[Step::CountAlone, Step::AllocateAlone, Step::FillAlone],
+        (false, _) => &[Step::CountPerRun, Step::AllocatePerInvocation, Step::FillPerRun],
     };
     steps.iter().map(|&step| TileBinKey { step })
 }
@@ -46,12 +46,12 @@ pub(crate) fn describe(key: TileBinKey) -> ComputePipelineDescription {
     ComputePipelineDescription {
         entry_point: match key.step {
             Step::CountSprites => "count_sprites",
-            Step::ListFew => "build_lists_in_one_dispatch",
+            Step::BuildLists => "build_lists_in_one_dispatch",
             Step::Allocate => "allocate",
-            Step::AllocateAlone => "allocate_per_invocation",
+            Step::AllocatePerInvocation => "allocate_per_invocation",
             Step::Fill => "fill",
-            Step::CountAlone => "count_per_run",
-            Step::FillAlone => "fill_per_run",
+            Step::CountPerRun => "count_per_run",
+            Step::FillPerRun => "fill_per_run",
         },
         constants: Vec::new(),
     }
@@ -61,7 +61,7 @@ pub(crate) fn describe(key: TileBinKey) -> ComputePipelineDescription {
 #[derive(Debug)]
 pub(crate) struct TileBin {
     /// Pipelines in the order of [`keys`].
-    pub pipelines: [Option<(TileBinKey, wgpu::ComputePipeline)>; STEPS],
+    pub pipelines: [Option<(TileBinKey, wgpu::ComputePipeline)>; MAX_PIPELINES],
     pub inputs: wgpu::BindGroup,
     /// Indirect dispatch size for the runs of visible sprites.
     pub workgroups: wgpu::Buffer,
@@ -78,9 +78,9 @@ impl TileBin {
             match key.step {
                 // Of many sprites some are usually out of sight, so the dispatch covers only the visible ones.
                 Step::CountSprites | Step::Fill => pass.dispatch_workgroups_indirect(&self.workgroups, 0),
-                Step::Allocate | Step::ListFew => pass.dispatch_workgroups(self.bins, 1, 1),
-                Step::AllocateAlone => pass.dispatch_workgroups(self.bins.div_ceil(64), 1, 1),
-                Step::CountAlone | Step::FillAlone => pass.dispatch_workgroups(self.runs.div_ceil(8), 1, 1),
+                Step::Allocate | Step::BuildLists => pass.dispatch_workgroups(self.bins, 1, 1),
+                Step::AllocatePerInvocation => pass.dispatch_workgroups(self.bins.div_ceil(64), 1, 1),
+                Step::CountPerRun | Step::FillPerRun => pass.dispatch_workgroups(self.runs.div_ceil(8), 1, 1),
             }
         }
     }

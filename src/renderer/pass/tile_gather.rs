@@ -3,7 +3,7 @@
 //! Reads: sorted keys and sprite indices, rectangles.
 //! Writes: sorted rectangles, the count, and the indirect dispatch size for it.
 
-use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,7 +14,7 @@ pub(crate) struct TileGatherKey {
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileGatherKey) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "gather", constants: vec![switch("SORTED", key.sorted)] }
+    ComputePipelineDescription { entry_point: "gather", constants: vec![bool_constant("SORTED", key.sorted)] }
 }
 
 /// The pass for one system.

@@ -4,8 +4,8 @@
 //! Writes: sprites, their rectangles, and the keys and indices to sort.
 
 use super::Groups;
-use super::sprites::SpriteKey;
-use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
+use crate::renderer::sprite_instances::SpriteKey;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,7 +16,7 @@ pub(crate) struct TileProjectKey {
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileProjectKey) -> ComputePipelineDescription {
-    let constants = key.sprite.constants([switch("WEIGHTED", key.weighted)]);
+    let constants = key.sprite.constants([bool_constant("WEIGHTED", key.weighted)]);
     ComputePipelineDescription { entry_point: "project", constants }
 }
 

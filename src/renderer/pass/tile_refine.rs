@@ -6,13 +6,13 @@
 use glam::UVec2;
 
 use super::Groups;
-use super::sprites::SpriteKey;
-use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
+use crate::renderer::sprite_instances::SpriteKey;
 
 /// Texels of a tile: `PER_INVOCATION_TILE` in `shaders/lib/tiles.wgsl`.
 pub(crate) const PER_INVOCATION_TILE: UVec2 = UVec2::new(8, 4);
 /// Sprites of a list whose bits share one word: `BITS_PER_WORD` in `shaders/lib/tiles.wgsl`.
-pub(crate) const BATCH: u32 = 32;
+pub(crate) const BITS_PER_WORD: u32 = 32;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -26,7 +26,8 @@ pub(crate) struct TileRefineKey {
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileRefineKey) -> ComputePipelineDescription {
-    let constants = key.sprite.constants([switch("HOST_DEPTH", key.host_depth), switch("STOPS", key.stops)]);
+    let constants =
+        key.sprite.constants([bool_constant("HOST_DEPTH", key.host_depth), bool_constant("STOPS", key.stops)]);
     ComputePipelineDescription { entry_point: "refine", constants }
 }
 

@@ -10,7 +10,7 @@ use super::Groups;
 use super::light_target::LightingKey;
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
-    PREMULTIPLIED_OVER, RenderPipelineDescription, in_front, read_only_depth, switch, variant,
+    PREMULTIPLIED_OVER, RenderPipelineDescription, bool_constant, depth_compare, enum_constant, read_only_depth,
 };
 use crate::settings::{CoverageMode, DebugView, Upsample};
 
@@ -40,7 +40,7 @@ pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
     let (cull, compare) = if key.back_faces {
         (wgpu::Face::Front, wgpu::CompareFunction::Always)
     } else {
-        (wgpu::Face::Back, in_front(key.reversed))
+        (wgpu::Face::Back, depth_compare(key.reversed))
     };
     RenderPipelineDescription {
         buffers: &[],
@@ -53,13 +53,13 @@ pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
         sample_count: key.host.sample_count,
         targets: key.host.color_targets(PREMULTIPLIED_OVER),
         constants: key.lighting.constants([
-            switch("LIT", key.lit),
-            variant!("UPSAMPLE", key.upsample),
-            variant!("DEBUG_VIEW", key.debug_view),
-            switch("HOST_DEPTH", key.host_depth),
-            switch("BACK_FACES", key.back_faces),
-            switch("GAMMA_TARGET", key.host.gamma_target),
-            variant!("COVERAGE_MODE", key.coverage),
+            bool_constant("LIT", key.lit),
+            enum_constant!("UPSAMPLE", key.upsample),
+            enum_constant!("DEBUG_VIEW", key.debug_view),
+            bool_constant("HOST_DEPTH", key.host_depth),
+            bool_constant("BACK_FACES", key.back_faces),
+            bool_constant("GAMMA_TARGET", key.host.gamma_target),
+            enum_constant!("COVERAGE_MODE", key.coverage),
         ]),
     }
 }
@@ -67,7 +67,7 @@ pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
 /// The pass for one system, in the host's pass.
 #[derive(Debug)]
 pub(crate) struct Transfer {
-    /// Pipelines by stage; `None` for stages that are not shown.
+    /// Pipelines by debug view; `None` for those that are not shown.
     pub pipelines: [Option<wgpu::RenderPipeline>; DebugView::ALL.len()],
     pub groups: Groups,
     /// Group 3: the targets.
@@ -79,12 +79,12 @@ pub(crate) struct Transfer {
 }
 
 impl Transfer {
-    /// Draws the box for a stage. Draws nothing for a stage that was not planned.
-    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, stage: DebugView) {
-        let Some(pipeline) = &self.pipelines[stage as usize] else { return };
-        let inputs = match stage {
+    /// Draws the box for a debug view. Draws nothing for one that was not planned.
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, debug_view: DebugView) {
+        let Some(pipeline) = &self.pipelines[debug_view as usize] else { return };
+        let inputs = match debug_view {
             DebugView::Overdraw => self.overdraw_inputs.as_ref(),
-            stage if stage.is_picture() => self.lit_inputs.as_ref().or(Some(&self.inputs)),
+            debug_view if debug_view.shows_lit_smoke() => self.lit_inputs.as_ref().or(Some(&self.inputs)),
             _ => Some(&self.inputs),
         };
         pass.set_pipeline(pipeline);

@@ -32,7 +32,7 @@ impl Composed {
 
     /// Creates an error for a line and column of the composed text, located in the file that contains it. Lines beyond
     /// the end count as the last line.
-    pub fn mistake(&self, line: usize, column: usize, reason: &str) -> Error {
+    pub fn error_at(&self, line: usize, column: usize, reason: &str) -> Error {
         let index = line.clamp(1, self.places.len().max(1)) - 1;
         let (path, line) = match self.places.get(index) {
             Some(place) => (&*place.path, place.line),
@@ -83,7 +83,7 @@ impl<'a> Composer<'a> {
                 self.composed.places.push(Place { path: file.path.clone(), line });
                 continue;
             };
-            let refuse = |reason| Err(file.mistake(line, IMPORT_COLUMN, reason));
+            let refuse = |reason| Err(file.error_at(line, IMPORT_COLUMN, reason));
             if let Some(start) = self.open.iter().position(|open| *open == import) {
                 let circle = [&self.open[start..], &[import]].concat().join(" → ");
                 return refuse(format!("circular import: {circle}"));

@@ -3,16 +3,16 @@
 //! An import is replaced by the text of the file, once per composed shader. Names are not changed, so driver messages,
 //! frame captures and searches show the names of the sources. (naga_oil renames imported items.)
 
-mod check;
 mod compose;
 mod embedded;
 mod naga_messages;
+mod shader_module;
 mod sources;
 
 pub use embedded::{source, sources};
 pub use sources::Sources;
 
-pub(crate) use check::{checked_shader, embedded_shader};
+pub(crate) use shader_module::{checked_shader, embedded_shader};
 
 use crate::error::Error;
 

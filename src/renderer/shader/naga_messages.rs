@@ -22,7 +22,7 @@ const TYPES: &[(&str, &str)] = &[
 
 /// Returns the message without the source excerpt: the text behind "error: ", followed by the notes below the excerpt,
 /// each closer to the cause.
-pub(super) fn plain(message: &str) -> String {
+pub(super) fn to_wgsl_terms(message: &str) -> String {
     let mut lines = message.lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.next().unwrap_or_default();
     let said = first.split_once("error: ").map_or(first, |(_, said)| said);
@@ -34,32 +34,32 @@ pub(super) fn plain(message: &str) -> String {
 fn strip_handles(said: &str) -> String {
     let said = TYPES.iter().fold(said.to_owned(), |said, (naga, wgsl)| said.replace(naga, wgsl));
     let said = said.replace("(of type ", "\u{1} ");
-    let mut naga_messages: Vec<&str> = Vec::new();
+    let mut words: Vec<&str> = Vec::new();
     let mut typed = false;
     for word in said.split(' ') {
         let returned = word.strip_prefix("Some(").and_then(|rest| rest.strip_suffix(')'));
         let number = returned.unwrap_or(word).strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         if word == "\u{1}" {
             // The type alone identifies the operand.
-            naga_messages.pop_if(|before| *before == "this");
+            words.pop_if(|before| *before == "this");
             typed = true;
         } else if number.is_some_and(|digits| digits.parse::<u32>().is_ok()) {
             // "Function [3] 'name'" has a name; "the `return` expression Some([3])" is the one that the excerpt marks.
-            let is_named = naga_messages.last().is_some_and(|before| before.starts_with(char::is_uppercase));
-            naga_messages.extend((returned.is_none() && !is_named).then_some("this"));
+            let is_named = words.last().is_some_and(|before| before.starts_with(char::is_uppercase));
+            words.extend((returned.is_none() && !is_named).then_some("this"));
         } else if typed && word.ends_with(')') {
             typed = false;
-            naga_messages.extend(word.strip_suffix(')'));
+            words.extend(word.strip_suffix(')'));
         } else {
-            naga_messages.push(word);
+            words.push(word);
         }
     }
-    naga_messages.join(" ")
+    words.join(" ")
 }
 
 /// Returns line and column, 1-based, of the innermost mark in the excerpt: for an invalid function, the expression that
 /// makes it invalid. `None` if only the whole function is marked.
-pub(super) fn pointed_at(message: &str, source: &str) -> Option<(usize, usize)> {
+pub(super) fn marked_location(message: &str, source: &str) -> Option<(usize, usize)> {
     // Parse errors have their own location.
     if !message.trim_start().starts_with("Shader validation") {
         return None;
@@ -125,12 +125,12 @@ mod tests {
             "\nShader validation error: Function [23] 'f' is invalid\n    ┌─ a:1:1\n    │\n    = Expression [4] is invalid\n    \
              = Operation Add can't work with [1] (of type {f32s}) and [3] (of type Scalar(Scalar {{ kind: Uint, width: 4 }}))\n"
         );
-        assert_eq!(plain(&message), "Function 'f' is invalid: Operation Add can't work with vec3<f32> and u32");
+        assert_eq!(to_wgsl_terms(&message), "Function 'f' is invalid: Operation Add can't work with vec3<f32> and u32");
         let returned = "Shader validation error: The `return` expression Some([5]) does not match the declared return type Some([3])";
-        assert_eq!(plain(returned), "The `return` expression does not match the declared return type");
-        assert_eq!(plain("error: Bindings for [4] conflict with [5]"), "Bindings for this conflict with this");
+        assert_eq!(to_wgsl_terms(returned), "The `return` expression does not match the declared return type");
+        assert_eq!(to_wgsl_terms("error: Bindings for [4] conflict with [5]"), "Bindings for this conflict with this");
         let parsed = "\nShader 'a' parsing error: expected `;`, found \"return\"\n  ┌─ wgsl:387:5\n";
-        assert_eq!(plain(parsed), "expected `;`, found \"return\"");
+        assert_eq!(to_wgsl_terms(parsed), "expected `;`, found \"return\"");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::embedded::SOURCES;
 use super::naga_messages::find_unclosed_bracket;
-use crate::assets::{builtin, file};
+use crate::assets::{bounded_read, builtin};
 use crate::error::{Error, one_line};
 
 /// Maximum size of a file, bytes. The longest of haze's own has about 10,000.
@@ -83,7 +83,7 @@ impl Sources {
                     continue;
                 }
                 if files.len() + imported.len() == MAX_FILES {
-                    return Err(file.mistake(line, IMPORT_COLUMN, format!("more than {MAX_FILES} files")));
+                    return Err(file.error_at(line, IMPORT_COLUMN, format!("more than {MAX_FILES} files")));
                 }
                 match File::read(folder, name)? {
                     Some(file) => imported.push(file),
@@ -107,7 +107,7 @@ impl Sources {
     pub(super) fn find_unclosed_bracket(&self) -> Option<Error> {
         let own = self.files.iter().filter(|file| !file.is_embedded);
         own.filter_map(|file| Some((file, find_unclosed_bracket(&file.text)?)))
-            .map(|(file, (line, column, bracket))| file.mistake(line, column, format!("`{bracket}` is never closed")))
+            .map(|(file, (line, column, bracket))| file.error_at(line, column, format!("`{bracket}` is never closed")))
             .next()
     }
 
@@ -124,7 +124,7 @@ impl File {
     /// Reads a file of the folder; `None` if it does not exist.
     fn read(folder: &Path, name: &str) -> Result<Option<Self>, Error> {
         let path: Arc<Path> = folder.join(name).into();
-        let bytes = match file::read(&path, "WGSL file", MAX_BYTES) {
+        let bytes = match bounded_read::read(&path, "WGSL file", MAX_BYTES) {
             Err(Error::Io { error, .. }) if error.kind() == ErrorKind::NotFound => return Ok(None),
             read => read?,
         };
@@ -141,7 +141,7 @@ impl File {
     }
 
     /// Creates an error in this file.
-    pub fn mistake(&self, line: usize, column: usize, reason: String) -> Error {
+    pub fn error_at(&self, line: usize, column: usize, reason: String) -> Error {
         Error::Shader { path: self.path.to_path_buf(), line, column, reason: one_line(reason) }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::textures::Textures;
+use super::texture_allocator::TextureAllocator;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::settings::{AccumulationFormat, DepthSource, Settings};
 
@@ -111,7 +111,7 @@ pub(crate) struct AccumulationKey {
 pub(crate) struct AccumulationTarget {
     key: AccumulationKey,
     size: UVec2,
-    spare: IdleCounter,
+    idle: IdleCounter,
     pub attachments: Arc<[wgpu::TextureView]>,
     /// Counted layers, in the format of the first attachment.
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
@@ -127,7 +127,7 @@ pub(crate) struct AccumulationTarget {
 impl AccumulationTarget {
     /// Makes the target fit `size` texels. `limit`: size of the whole view at this scale; the textures never need to be
     /// larger. Returns the target, and true if it is new.
-    pub fn fit<'a>(
+    pub fn ensure<'a>(
         target: &'a mut Option<Self>,
         device: &wgpu::Device,
         key: AccumulationKey,
@@ -135,7 +135,7 @@ impl AccumulationTarget {
         limit: UVec2,
     ) -> (&'a Self, bool) {
         let old = target.as_ref().filter(|target| target.key == key).map_or(UVec2::ZERO, |target| target.size);
-        if !target.as_mut().is_some_and(|target| target.key == key && target.serves(size)) {
+        if !target.as_mut().is_some_and(|target| target.key == key && target.is_suitable_for(size)) {
             // Drops the old textures before it creates new ones.
             *target = None;
         }
@@ -143,23 +143,23 @@ impl AccumulationTarget {
         let target = target.get_or_insert_with(|| {
             // All attachments of a pass must have one size: with the host's depth, the host's size.
             let is_host = key.depth_source == DepthSource::Host;
-            Self::new(device, key, if is_host { size } else { grown(old, size).min(limit) })
+            Self::new(device, key, if is_host { size } else { grown_size(old, size).min(limit) })
         });
         (target, is_new)
     }
 
     /// Returns true if the textures hold `size` texels and have not been much too large for more than 120 frames.
-    fn serves(&mut self, size: UVec2) -> bool {
+    fn is_suitable_for(&mut self, size: UVec2) -> bool {
         if self.key.depth_source == DepthSource::Host {
             return self.size == size;
         }
-        let is_to_spare = self.size.element_product() > 4 * padded(size).element_product();
-        let tick = self.spare.tick(is_to_spare);
+        let is_idle = self.size.element_product() > 4 * padded(size).element_product();
+        let tick = self.idle.tick(is_idle);
         size.cmple(self.size).all() && !tick
     }
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
-        let mut textures = Textures { device, bytes: 0, storage: false };
+        let mut textures = TextureAllocator { device, bytes: 0, storage: false };
         let mut create = |extra_attachment, tiled| -> Arc<[_]> {
             textures.storage = tiled;
             let layout = accumulation_layout(key.format, extra_attachment, tiled).into_iter();
@@ -175,7 +175,7 @@ impl AccumulationTarget {
         let depth_copy =
             (is_reduced && key.depth_copy).then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
         let bytes = textures.bytes;
-        Self { key, size, spare: IdleCounter::default(), attachments, overdraw, lit, reduced_depth, depth_copy, bytes }
+        Self { key, size, idle: IdleCounter::default(), attachments, overdraw, lit, reduced_depth, depth_copy, bytes }
     }
 }
 
@@ -188,7 +188,7 @@ fn padded(size: UVec2) -> UVec2 {
 /// Returns the size of new textures. A side that is too short becomes at least half as long again, so that a growing
 /// box does not need new textures every few frames. A side that is long enough stays, unless the area would exceed four
 /// times the needed area.
-fn grown(old: UVec2, needed: UVec2) -> UVec2 {
+fn grown_size(old: UVec2, needed: UVec2) -> UVec2 {
     let side = |old: u32, needed: u32| if needed <= old { old } else { needed.max(old + old / 2) };
     let grown = padded(UVec2::new(side(old.x, needed.x), side(old.y, needed.y)));
     if grown.element_product() > 4 * padded(needed).element_product() { padded(needed) } else { grown }
@@ -204,7 +204,7 @@ mod tests {
         for side in 64..2000 {
             let needed = UVec2::new(side, 64 + side / 3);
             if needed.cmpgt(size).any() {
-                size = grown(size, needed);
+                size = grown_size(size, needed);
                 renewals += 1;
             }
             assert!(needed.cmple(size).all() && size.element_product() <= 4 * padded(needed).element_product());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::textures::Textures;
+use super::texture_allocator::TextureAllocator;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::renderer::gpu::capabilities::array_layers;
 use crate::settings::DiffuseMode;
@@ -25,7 +25,7 @@ pub(crate) struct BakedDiffuse {
 
 impl BakedDiffuse {
     /// Makes the texture fit a mode. Returns it, and true if it is new.
-    pub fn fit<'a>(baked: &'a mut Option<Self>, device: &wgpu::Device, mode: DiffuseMode) -> (&'a Self, bool) {
+    pub fn ensure<'a>(baked: &'a mut Option<Self>, device: &wgpu::Device, mode: DiffuseMode) -> (&'a Self, bool) {
         let size_and_layers = baked_size_and_layers(mode);
         if baked.as_ref().is_some_and(|baked| baked.size_and_layers != size_and_layers) {
             *baked = None;
@@ -35,7 +35,7 @@ impl BakedDiffuse {
     }
 
     fn new(device: &wgpu::Device, size_and_layers: Option<(u32, u32)>) -> Self {
-        let mut textures = Textures { device, bytes: 0, storage: false };
+        let mut textures = TextureAllocator { device, bytes: 0, storage: false };
         let (side, layers) = size_and_layers.unwrap_or((1, 1));
         let label = "haze baked diffuse";
         let texture = textures.create(label, BAKED_DIFFUSE_FORMAT, UVec2::splat(side), array_layers(layers));

@@ -2,13 +2,13 @@
 
 mod accumulation;
 mod baked_diffuse;
-mod textures;
-mod views;
+mod target_views;
+mod texture_allocator;
 
 pub(crate) use accumulation::{
     AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, ExtraAttachment, LIT_FORMAT, REDUCED_DEPTH_FORMAT,
     accumulation_layout, tiled_formats,
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};
-pub(crate) use textures::storage_target;
-pub use views::TargetViews;
+pub use target_views::TargetViews;
+pub(crate) use texture_allocator::storage_target;

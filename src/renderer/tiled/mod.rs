@@ -1,17 +1,17 @@
 //! Accumulation by compute shaders: resources that all systems of a device share, and those of each system.
 
-mod buffers;
-mod depth_sorted;
-mod emission;
-mod passes;
-mod shared;
+mod emitted_particles;
 mod sort_buffers;
-mod storage;
-mod system;
+mod sorted_particles;
+mod storage_buffers;
+mod tile_buffers;
+mod tiled_passes;
+mod tiled_pipelines;
+mod tiled_system;
 
-pub(crate) use buffers::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
-pub(crate) use depth_sorted::SortedParticles;
-pub(crate) use emission::Emitted;
-pub(crate) use passes::TiledPasses;
-pub(crate) use shared::{Tiled, TiledKeys};
-pub(crate) use system::{TiledInputs, TiledSystem};
+pub(crate) use emitted_particles::EmittedParticles;
+pub(crate) use sorted_particles::SortedParticles;
+pub(crate) use tile_buffers::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
+pub(crate) use tiled_passes::TiledPasses;
+pub(crate) use tiled_pipelines::{TiledKeys, TiledPipelines};
+pub(crate) use tiled_system::{TiledInputs, TiledSystem};

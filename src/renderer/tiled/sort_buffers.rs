@@ -1,7 +1,7 @@
 //! Buffers of a sort.
 
-use super::shared::Tiled;
-use super::storage::{WORD_BYTES, bind, storage};
+use super::storage_buffers::{WORD_BYTES, bind, storage};
+use super::tiled_pipelines::TiledPipelines;
 use crate::renderer::pass::sort::{BLOCK, DIGITS};
 
 /// Keys, the particle indices that belong to them, and digit counts.
@@ -9,38 +9,38 @@ use crate::renderer::pass::sort::{BLOCK, DIGITS};
 pub(super) struct SortBuffers {
     /// Two pairs, which the sort uses alternately. It begins and ends in the first.
     keys: [wgpu::Buffer; 2],
-    numbers: [wgpu::Buffer; 2],
+    indices: [wgpu::Buffer; 2],
     digit_counts: wgpu::Buffer,
     digit_totals: wgpu::Buffer,
     pub ping_pong: [wgpu::BindGroup; 2],
 }
 
 impl SortBuffers {
-    /// Creates buffers for `most` keys. `uniform` is bound with them.
-    pub fn new(device: &wgpu::Device, tiled: &Tiled, uniform: &wgpu::Buffer, most: u32) -> Self {
+    /// Creates buffers for `capacity` keys. `uniform` is bound with them.
+    pub fn new(device: &wgpu::Device, tiled: &TiledPipelines, uniform: &wgpu::Buffer, capacity: u32) -> Self {
         let words = |name, count| storage(device, name, count, WORD_BYTES);
-        let keys = ["haze sort keys", "haze sort keys, sorted"].map(|name| words(name, most));
-        let numbers = ["haze sort numbers", "haze sort numbers, sorted"].map(|name| words(name, most));
-        let digit_counts = words("haze digit counts", most.div_ceil(BLOCK) * DIGITS);
+        let keys = ["haze sort keys", "haze sort keys, sorted"].map(|name| words(name, capacity));
+        let indices = ["haze sort indices", "haze sort indices, sorted"].map(|name| words(name, capacity));
+        let digit_counts = words("haze digit counts", capacity.div_ceil(BLOCK) * DIGITS);
         let digit_totals = words("haze digit totals", DIGITS);
         let ping_pong = [(0, 1), (1, 0)].map(|(from, to)| {
-            let buffers = [uniform, &keys[from], &numbers[from], &keys[to], &numbers[to], &digit_counts, &digit_totals];
+            let buffers = [uniform, &keys[from], &indices[from], &keys[to], &indices[to], &digit_counts, &digit_totals];
             bind(device, &tiled.layouts.sort, buffers.map(wgpu::Buffer::as_entire_binding))
         });
-        Self { keys, numbers, digit_counts, digit_totals, ping_pong }
+        Self { keys, indices, digit_counts, digit_totals, ping_pong }
     }
 
     pub fn keys(&self) -> &wgpu::Buffer {
         &self.keys[0]
     }
 
-    pub fn numbers(&self) -> &wgpu::Buffer {
-        &self.numbers[0]
+    pub fn indices(&self) -> &wgpu::Buffer {
+        &self.indices[0]
     }
 
     /// Returns the bytes of keys and indices, and of counts.
     pub fn bytes(&self) -> [u64; 2] {
-        let keys = self.keys.iter().chain(&self.numbers).map(wgpu::Buffer::size).sum();
+        let keys = self.keys.iter().chain(&self.indices).map(wgpu::Buffer::size).sum();
         [keys, self.digit_counts.size() + self.digit_totals.size()]
     }
 }

@@ -113,7 +113,7 @@ fn host_buffers_that_cannot_be_sorted_are_rejected() {
         assert_eq!(field(refused(gpu(), &stage, READ, 4)), "systems[0].particles.offset");
     }
     // Weighted order needs no sorting, so such buffers are accepted.
-    stage.settings.accumulate.order = Order::Weighted;
+    stage.settings.accumulate.order = BlendOrder::Weighted;
     for gpu in [&webgl2, gpu()] {
         refused(gpu, &stage, vertices, 4).unwrap();
     }

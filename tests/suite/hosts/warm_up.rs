@@ -16,7 +16,7 @@ fn warm_up<'a>(stage: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
         DepthKind::Linear => SceneDepthKind::Linear,
         DepthKind::Both => SceneDepthKind::Both(stage.host.depth_format),
     };
-    WarmUp { view: stage.view, scene_depth, settings, stages: std::slice::from_ref(&stage.debug_view) }
+    WarmUp { view: stage.view, scene_depth, settings, debug_views: std::slice::from_ref(&stage.debug_view) }
 }
 
 #[test]

@@ -18,7 +18,7 @@ fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
             let mut stage = TestScene::new(size);
             stage.view = preset.camera.view(size);
             stage.lights.clone_from(&preset.lights);
-            stage.settings = system.settings_for(size.y);
+            stage.settings = system.settings_at_height(size.y);
             stage.settings.path = RenderPath::Raster;
             stage.material = system.material.load(std::path::Path::new("")).unwrap();
             system.emitter.evaluate(preset.time, &mut stage.particles);

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec4, vec3};
 use haze::frame::particle_bounds;
-use haze::settings::{AccumulationFormat, DebugView, Order};
+use haze::settings::{AccumulationFormat, BlendOrder, DebugView};
 use haze::{Bounds, Particle};
 use haze_reference::blend_unit::{premultiplied_over, quantise};
 use proptest::prelude::*;
@@ -70,7 +70,7 @@ fn weighted_order_draws_the_same_image_from_reversed_particles() {
         };
         psnr(&draw(&stage.particles), &draw(&reversed))
     };
-    let (weighted, sorted) = (psnr_after_reversal(Order::Weighted), psnr_after_reversal(Order::Sorted));
+    let (weighted, sorted) = (psnr_after_reversal(BlendOrder::Weighted), psnr_after_reversal(BlendOrder::Sorted));
     println!("reversed order: weighted {weighted:.1} dB, sorted {sorted:.1} dB");
     // f16 sums in another order round differently.
     assert!(weighted > AGREEMENT && sorted < AGREEMENT, "{weighted} {sorted}");
@@ -82,7 +82,7 @@ fn particle_amounts_above_1_are_drawn_as_1() {
     let mut host = Host::new(gpu(), &stage).unwrap();
     let mut draw = |amount: f32| {
         stage.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
-        stage.bounds = Some(particle_bounds(&stage.particles, stage.settings.reach()));
+        stage.bounds = Some(particle_bounds(&stage.particles, stage.settings.sprite_extent()));
         host.draw(gpu(), &stage).unwrap();
         let slice = host.picture(gpu()).unwrap();
         host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();

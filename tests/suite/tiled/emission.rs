@@ -31,12 +31,12 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
     for shape in [EmitterShape::Sphere, EmitterShape::Box, EmitterShape::Disc] {
         let emitter = Emitter { shape, ..emitter() };
         for time in [0.3, 7.0, 10_000.0] {
-            let emission = emitter.at(time);
+            let emission = emitter.snapshot(time);
             let mut stage = stage(Technique::Soft);
             emission.evaluate(&mut stage.particles);
             // The same bounding box for both, so that both are lit on the same plane.
-            stage.bounds = Some(emission.bounds(stage.settings.reach()));
-            stage.settings.accumulate.order = Order::Sorted;
+            stage.bounds = Some(emission.bounds(stage.settings.sprite_extent()));
+            stage.settings.accumulate.order = BlendOrder::Sorted;
             let mut host = Host::new(gpu(), &stage).unwrap();
             let particles = stage.particles.clone();
             let mut drawn = |path, particles| {
@@ -63,7 +63,7 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
     }
     let emitter = Emitter { rate: 100_000.0, lifetime: 8.7, lifetime_spread: 0.2, radius_end: 0.02, ..emitter() };
     emitter.validate(String::new).unwrap();
-    let emission = emitter.at(60.0);
+    let emission = emitter.snapshot(60.0);
     assert!(
         (1_000_000..=haze::emitter::MAX_PARTICLES + 2).contains(&emission.count()),
         "{} particles",

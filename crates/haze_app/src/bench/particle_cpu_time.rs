@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use haze::settings::Order;
+use haze::settings::BlendOrder;
 use haze::{Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
 use haze_author::particle_files;
 use haze_demo::headless::Headless;
@@ -24,8 +24,8 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
     let view = shot.preset.camera.view(shot.size);
     let mut renderers = Vec::new();
-    for order in [Order::Sorted, Order::Weighted] {
-        let mut settings = system.settings_for(shot.size.y);
+    for order in [BlendOrder::Sorted, BlendOrder::Weighted] {
+        let mut settings = system.settings_at_height(shot.size.y);
         settings.accumulate.order = order;
         let renderer = Renderer::new(device, queue, &Descriptor::default())?;
         let material = renderer.create_material(device, queue, pictures)?;

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use glam::{UVec2, Vec3};
 use haze::settings::{
-    AccumulationFormat, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, Order, RenderPath,
+    AccumulationFormat, BlendOrder, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, RenderPath,
     Settings, Technique, Upsample,
 };
 use haze::{Error, Light, builtin};
@@ -145,7 +145,7 @@ fn set_format(settings: &mut Settings, format: AccumulationFormat) {
     settings.accumulate.format = format;
     if format == AccumulationFormat::Rgba8Unorm {
         // Rgba8Unorm supports no other encoding and order.
-        (settings.accumulate.encoding, settings.accumulate.order) = (NormalEncoding::Biased, Order::Sorted);
+        (settings.accumulate.encoding, settings.accumulate.order) = (NormalEncoding::Biased, BlendOrder::Sorted);
     }
 }
 

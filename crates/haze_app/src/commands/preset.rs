@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use glam::UVec2;
 use haze::image::write_file;
 use haze::preset::{Preset, PresetSystem};
-use haze::settings::{Value, values};
+use haze::settings::{FieldValue, field_values};
 use haze::{Error, FieldError, Light, builtin};
 use haze_author::preset::{check_files, no_effect_reason};
 
@@ -100,8 +100,8 @@ fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<Strin
 /// A setting of a preset.
 struct Setting {
     path: String,
-    value: Value,
-    default: Value,
+    value: FieldValue,
+    default: FieldValue,
     /// Reason why it has no effect.
     no_effect_reason: Option<&'static str>,
 }
@@ -118,8 +118,8 @@ fn settings(preset: &Preset) -> Vec<Setting> {
         systems: vec![PresetSystem::default(); preset.systems.len()],
         ..Preset::default()
     };
-    let pairs = values(preset).into_iter().zip(values(&plain));
-    let setting = |((path, value), (_, default)): ((String, Value), (String, Value))| {
+    let pairs = field_values(preset).into_iter().zip(field_values(&plain));
+    let setting = |((path, value), (_, default)): ((String, FieldValue), (String, FieldValue))| {
         let no_effect_reason = no_effect_reason(&preset, &path, SIZE);
         Setting { path, value, default, no_effect_reason }
     };
@@ -130,9 +130,9 @@ fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
     let settings = settings(preset);
     let wide = settings.iter().map(|setting| setting.path.len()).max().unwrap_or_default();
     for setting in settings.iter().filter(|setting| !(changed && setting.is_default())) {
-        let text = |value: &Value| match value {
+        let text = |value: &FieldValue| match value {
             // JSON has no infinity.
-            Value::Number(number) if !number.is_finite() => number.to_string(),
+            FieldValue::Number(number) if !number.is_finite() => number.to_string(),
             value => serde_json::to_string(value).unwrap_or_default(),
         };
         let mark = if setting.is_default() { "default".into() } else { format!("default {}", text(&setting.default)) };

@@ -17,7 +17,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
-use haze::assets::file;
+use haze::assets::bounded_read;
 use haze::error::Error;
 
 pub use parse_error::ParseError;
@@ -60,7 +60,7 @@ impl ParticleFrames {
     pub fn load(path: &Path, limits: Limits) -> Result<Self, Error> {
         let (mut frames, mut bytes) = (Vec::new(), 0);
         for (number, file) in haze::preset::frame_files(path)? {
-            let content = file::read(&file, "CSV or PLY file", MAX_FILE_BYTES)?;
+            let content = bounded_read::read(&file, "CSV or PLY file", MAX_FILE_BYTES)?;
             let frame = parse(&file, &content, limits.particles).map_err(|error| error.into_error(&file))?;
             bytes += frame.bytes();
             if bytes > limits.bytes {

@@ -80,13 +80,13 @@ pub fn particles(system: &PresetSystem, files: Option<&ParticleFrames>, time: f3
             let flipbook_rate = if is_frozen { 0.0 } else { system.cache.flipbook_rate };
             files.evaluate(&ParticleFiles { flipbook_rate, ..system.cache.clone() }, time, particles);
         }
-        None => system.emission(time).evaluate(particles),
+        None => system.emitter_snapshot(time).evaluate(particles),
     }
 }
 
 /// Unevaluated particles of the emitter; `None` if they come from `files`.
 pub fn emission(system: &PresetSystem, files: Option<&ParticleFrames>, time: f32) -> Option<EmitterSnapshot> {
-    (!system.cache.is_used() || files.is_none()).then(|| system.emission(time))
+    (!system.cache.is_used() || files.is_none()).then(|| system.emitter_snapshot(time))
 }
 
 fn load(name: &str, folders: &AssetFolders, bytes: u64) -> Result<ParticleFrames, Error> {

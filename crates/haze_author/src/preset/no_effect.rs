@@ -75,13 +75,13 @@ pub(super) fn effect_conditions(path: &str) -> impl Iterator<Item = &'static str
 mod tests {
     use super::*;
     use haze::preset::PresetSystem;
-    use haze::settings::values;
+    use haze::settings::field_values;
 
     #[test]
     fn every_row_names_existing_fields() {
         let preset =
             Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
-        let paths: Vec<_> = values(&preset).into_iter().map(|(path, _)| path).collect();
+        let paths: Vec<_> = field_values(&preset).into_iter().map(|(path, _)| path).collect();
         let systems = SYSTEM_RULES.iter().flat_map(|rule| rule.fields).map(|field| format!("systems[0].{field}"));
         let lights = LIGHT_RULES.iter().flat_map(|rule| rule.fields).map(|field| format!("lights[0].{field}"));
         let environments =

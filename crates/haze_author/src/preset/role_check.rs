@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2, Vec3Swizzles as _};
 
 use crate::sprite::lint::{EMPTY_MESSAGE, describe_non_normals, is_clear};
-use haze::assets::material::MaterialAssets;
+use haze::assets::material_assets::MaterialAssets;
 use haze::assets::ramp::Ramp;
 use haze::preset::MaterialNames;
 

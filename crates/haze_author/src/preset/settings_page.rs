@@ -12,7 +12,7 @@ use super::tooltips::Tooltips;
 use haze::assets::builtin;
 use haze::frame::Light;
 use haze::preset::{Preset, PresetSystem};
-use haze::settings::{Choice, FieldVisitor, Fields, ImageRole, Value, values};
+use haze::settings::{Choice, FieldValue, FieldVisitor, Fields, ImageRole, field_values};
 
 const HEAD: &str = "\
 # Settings
@@ -27,7 +27,7 @@ otherwise: `haze preset check` reports such settings of your preset, and the win
 pub fn settings_page() -> String {
     let mut preset = preset_with_widest_ranges();
     let plain = Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
-    let defaults = values(&plain).into_iter().map(|(path, value)| (path.replace("[0]", ""), value)).collect();
+    let defaults = field_values(&plain).into_iter().map(|(path, value)| (path.replace("[0]", ""), value)).collect();
     let mut page = Page { tooltips: Tooltips::of::<Preset>(), defaults, path: Vec::new(), sections: Vec::new() };
     page.section("preset", "Contents of a preset file.".into(), &mut preset);
     let mut text = HEAD.to_owned();
@@ -48,7 +48,7 @@ struct Section {
 struct Page {
     tooltips: Tooltips,
     /// Defaults by path without list indices.
-    defaults: HashMap<String, Value>,
+    defaults: HashMap<String, FieldValue>,
     path: Vec<&'static str>,
     sections: Vec<Section>,
 }
@@ -129,11 +129,11 @@ impl FieldVisitor for SectionWriter<'_> {
         self.row(name, "any text");
     }
 
-    fn picture(&mut self, name: &'static str, _: &mut String, role: ImageRole) {
+    fn image(&mut self, name: &'static str, _: &mut String, role: ImageRole) {
         if role == ImageRole::Ramp {
             return self.row(name, "[a built-in ramp](../ramps/README.md), or a PNG's path");
         }
-        let names: Vec<_> = builtin::of_role(role).iter().map(|built_in| format!("`{}`", built_in.name)).collect();
+        let names: Vec<_> = builtin::for_role(role).iter().map(|built_in| format!("`{}`", built_in.name)).collect();
         let or = if names.is_empty() { "" } else { ", or " };
         self.row(name, names.join(", ") + or + "a PNG's path");
     }
@@ -160,14 +160,14 @@ fn span<T: Display + PartialEq>(range: &RangeInclusive<T>, unit: &str) -> String
     format!("{} to {}{space}{unit}", range.start(), range.end())
 }
 
-fn shown(value: &Value) -> String {
+fn shown(value: &FieldValue) -> String {
     match value {
-        Value::Number(number) => number.to_string(),
-        Value::Whole(number) => number.to_string(),
-        Value::Vector(vector) => vector.to_array().map(|axis| axis.to_string()).join(", "),
-        Value::Flag(flag) => format!("`{flag}`"),
-        Value::Choice(name) => format!("`{name}`"),
-        Value::Text(text) if text.is_empty() => "none".into(),
-        Value::Text(text) => format!("`{text}`"),
+        FieldValue::Number(number) => number.to_string(),
+        FieldValue::Whole(number) => number.to_string(),
+        FieldValue::Vector(vector) => vector.to_array().map(|axis| axis.to_string()).join(", "),
+        FieldValue::Flag(flag) => format!("`{flag}`"),
+        FieldValue::Choice(name) => format!("`{name}`"),
+        FieldValue::Text(text) if text.is_empty() => "none".into(),
+        FieldValue::Text(text) => format!("`{text}`"),
     }
 }

@@ -97,7 +97,7 @@ mod tests {
         fn text(&mut self, name: &'static str, _: &mut String) {
             self.row(name);
         }
-        fn picture(&mut self, name: &'static str, _: &mut String, _: ImageRole) {
+        fn image(&mut self, name: &'static str, _: &mut String, _: ImageRole) {
             self.row(name);
         }
         fn particles(&mut self, name: &'static str, _: &mut String) {

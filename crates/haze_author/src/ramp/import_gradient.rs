@@ -9,7 +9,7 @@ use super::fit_stops::{RampFit, fit_image, validate_max_error};
 use super::gimp;
 use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
 use super::ramp_recipe::{Blend, Curve, HexColour, RampStop};
-use haze::assets::file;
+use haze::assets::bounded_read;
 use haze::assets::image::read_colour_png;
 use haze::error::{Error, FieldError};
 
@@ -46,7 +46,7 @@ pub fn import_gradient(path: &Path, max_error: f32) -> Result<RampFit, Error> {
         column: 1,
         reason,
     };
-    let bytes = file::read(path, "gradient", MAX_BYTES)?;
+    let bytes = bounded_read::read(path, "gradient", MAX_BYTES)?;
     let text = std::str::from_utf8(&bytes).map_err(|_| {
         refuse(GradientParseError { line: 1, reason: "not UTF-8; expected a gradient as UTF-8 text".into() })
     })?;

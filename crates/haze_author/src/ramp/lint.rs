@@ -5,7 +5,7 @@ use image::DynamicImage;
 
 use crate::finding::Finding;
 use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
-use haze::ramp::Role;
+use haze::ramp::RampRole;
 
 /// Minimum jump in luminance that counts as a step or a seam, of 255: a twentieth of white.
 const JUMP: f32 = 12.0;
@@ -23,7 +23,7 @@ const BLACK: u16 = 257;
 /// - `ends`: a specular ramp that is not black at amount 0 or at distance 1.
 /// - `round`: a specular ramp whose brightest column is not distance 0, like a picture of a round glow.
 /// - `turned`: a gradient from top to bottom instead of left to right.
-pub fn lint_ramp(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
+pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding> {
     let pixels = picture.to_rgb16();
     let (width, height) = pixels.dimensions();
     let mut findings = Vec::new();
@@ -49,7 +49,7 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
         );
     }
     let jump = lines().find_map(|(axis, line)| Some((axis, find_step(&luminances(line))?)));
-    let may_jump = matches!(role, None | Some(Role::Diffuse | Role::Coverage));
+    let may_jump = matches!(role, None | Some(RampRole::Diffuse | RampRole::Coverage));
     if let Some((axis, at)) = jump.filter(|_| !may_jump) {
         find("step", format!("luminance jumps at {at:.2} {axis}; expected a slope of several texels"));
     }
@@ -59,7 +59,7 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
             format!("the {end} texel {axis} differs from its neighbours; expected the gradient to continue to the end"),
         );
     }
-    if role == Some(Role::Specular) {
+    if role == Some(RampRole::Specular) {
         let brightest = |line: &[[u16; 3]]| line.iter().flatten().copied().max().unwrap_or_default();
         for (line, end, why) in [
             (along_rows.first(), "amount 0, the bottom row", "lights glow where there is no smoke"),
@@ -148,7 +148,7 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
-    fn names(picture: &DynamicImage, role: Option<Role>) -> Vec<&'static str> {
+    fn names(picture: &DynamicImage, role: Option<RampRole>) -> Vec<&'static str> {
         lint_ramp(picture, role).into_iter().map(|finding| finding.name).collect()
     }
 
@@ -156,7 +156,7 @@ mod tests {
     fn built_in_ramps_and_templates_have_no_findings() {
         for ramp in builtin::RAMPS {
             let picture = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
-            let role = Role::of_name(ramp.name);
+            let role = RampRole::of_name(ramp.name);
             assert!(role.is_some());
             assert_eq!(lint_ramp(&picture, role), [], "{}", ramp.name);
         }
@@ -184,8 +184,8 @@ mod tests {
         assert!(names(&RampRecipe { bits: 8, rows, ..RampRecipe::default() }.bake().unwrap(), None).is_empty());
 
         let toon = grey(256, 1, |x, _| if x < 100 { 30 } else { 200 });
-        assert_eq!(names(&toon, Some(Role::Scatter)), ["step"]);
-        assert!(names(&toon, Some(Role::Diffuse)).is_empty() && names(&toon, None).is_empty());
+        assert_eq!(names(&toon, Some(RampRole::Scatter)), ["step"]);
+        assert!(names(&toon, Some(RampRole::Diffuse)).is_empty() && names(&toon, None).is_empty());
         let hard = Curve::Constant;
         let rows = [(0.0, 0), (0.5, 90)].map(|(at, grey)| RampRow {
             at,
@@ -193,24 +193,24 @@ mod tests {
             stops: vec![stop(0.0, grey), stop(1.0, 0)],
         });
         let rings = RampRecipe { width: 64, height: 64, rows: rows.into(), ..RampRecipe::default() };
-        assert_eq!(names(&rings.bake().unwrap(), Some(Role::Specular)), ["step"]);
+        assert_eq!(names(&rings.bake().unwrap(), Some(RampRole::Specular)), ["step"]);
 
         let framed = grey(64, 1, |x, _| if x == 63 { 0 } else { 60 + x * 3 });
         assert_eq!(names(&framed, None), ["seam"]);
         assert_eq!(names(&framed.fliph(), None), ["seam"]);
         let turned = grey(1, 64, |_, y| y * 4);
-        assert_eq!(names(&turned, Some(Role::Diffuse)), ["turned"]);
+        assert_eq!(names(&turned, Some(RampRole::Diffuse)), ["turned"]);
 
-        let recipe = TEMPLATES.iter().find(|template| template.role == Role::Specular).unwrap().recipe();
+        let recipe = TEMPLATES.iter().find(|template| template.role == RampRole::Specular).unwrap().recipe();
         let glow = recipe.bake().unwrap();
-        assert_eq!(names(&glow.flipv(), Some(Role::Specular)), ["ends"]);
-        assert_eq!(names(&glow.fliph(), Some(Role::Specular)), ["ends"]);
-        assert!(names(&glow.fliph(), Some(Role::Diffuse)).is_empty());
+        assert_eq!(names(&glow.flipv(), Some(RampRole::Specular)), ["ends"]);
+        assert_eq!(names(&glow.fliph(), Some(RampRole::Specular)), ["ends"]);
+        assert!(names(&glow.fliph(), Some(RampRole::Diffuse)).is_empty());
         let place = "sqrt(abs(2 * u - 1) ^ 2 + abs(2 * v - 1) ^ 2)".into();
         let round = RampRecipe { place, times: Vec::new(), ..recipe }.bake().unwrap();
-        assert_eq!(names(&round, Some(Role::Specular)), ["round"]);
+        assert_eq!(names(&round, Some(RampRole::Specular)), ["round"]);
         assert!(names(&round, None).is_empty());
-        let description = &lint_ramp(&glow.flipv(), Some(Role::Specular))[0].description;
+        let description = &lint_ramp(&glow.flipv(), Some(RampRole::Specular))[0].description;
         assert!(
             description.contains("at amount 0, the bottom row; expected black: otherwise lights glow"),
             "{description}"
@@ -220,14 +220,14 @@ mod tests {
     #[test]
     fn images_of_few_texels_do_not_panic() {
         for (width, height) in [(1, 1), (2, 1), (1, 2), (3, 3), (4, 1), (5, 5), (6, 6)] {
-            names(&grey(width, height, |x, y| (x * 97 + y * 61) % 256), Some(Role::Specular));
+            names(&grey(width, height, |x, y| (x * 97 + y * 61) % 256), Some(RampRole::Specular));
         }
     }
 
     #[test]
     fn the_role_follows_from_the_file_name() {
-        assert_eq!(Role::of_name("specular_moon.png"), Some(Role::Specular));
-        assert_eq!(Role::of_name("age.ramp.json"), Some(Role::Age));
-        assert_eq!(Role::of_name("moon.png"), None);
+        assert_eq!(RampRole::of_name("specular_moon.png"), Some(RampRole::Specular));
+        assert_eq!(RampRole::of_name("age.ramp.json"), Some(RampRole::Age));
+        assert_eq!(RampRole::of_name("moon.png"), None);
     }
 }

@@ -1,7 +1,7 @@
 //! Templates for new ramps.
 
 use super::ramp_recipe::{Curve, HexColour, RampRecipe, RampRow, RampStop};
-use haze::ramp::Role;
+use haze::ramp::RampRole;
 
 /// A position, 0 to 1, and an sRGB colour, `0xrrggbb`.
 type Stop = (f32, u32);
@@ -14,7 +14,7 @@ pub struct Template {
     /// One-line description for users.
     pub description: &'static str,
     /// Role.
-    pub role: Role,
+    pub role: RampRole,
     curve: Curve,
     stops: &'static [Stop],
     /// The recipe's `times` gradient and `place` formula; both empty for a ramp of one axis.
@@ -24,7 +24,7 @@ pub struct Template {
 
 /// Creates a template for a ramp of one axis.
 const fn one_axis(
-    role: Role,
+    role: RampRole,
     name: &'static str,
     description: &'static str,
     curve: Curve,
@@ -36,77 +36,77 @@ const fn one_axis(
 /// All templates.
 pub const TEMPLATES: &[Template] = &[
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "neutral",
         "grey, even to the eye",
         Curve::Monotone,
         &[(0.0, 0x1a1a1a), (0.5, 0x7a7a7a), (1.0, 0xffffff)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "soft_toon",
         "three tones with soft borders",
         Curve::Ease,
         &[(0.0, 0x2b2a3a), (0.40, 0x2b2a3a), (0.46, 0x8a8490), (0.68, 0x8a8490), (0.74, 0xf6efe2), (1.0, 0xf6efe2)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "hard_toon",
         "three tones with hard borders",
         Curve::Constant,
         &[(0.0, 0x2b2a3a), (0.45, 0x8a8490), (0.72, 0xf6efe2)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "ink",
         "a dark line between light and shade",
         Curve::Constant,
         &[(0.0, 0x5c6f86), (0.40, 0x0b0b0e), (0.47, 0xc8d4dc), (0.78, 0xfbf8ee)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "ash",
         "warm greys, never bright",
         Curve::Monotone,
         &[(0.0, 0x1d1a18), (0.35, 0x474240), (0.7, 0x8d8680), (1.0, 0xcfc7bd)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "steam",
         "white, with thin shade",
         Curve::Monotone,
         &[(0.0, 0x5f6c7a), (0.45, 0xa4afba), (0.75, 0xe4e8eb), (1.0, 0xffffff)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "soot",
         "black smoke of oil",
         Curve::Monotone,
         &[(0.0, 0x060505), (0.5, 0x1c1917), (0.8, 0x3c3632), (1.0, 0x6a615a)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "sand",
         "dust of a desert",
         Curve::Monotone,
         &[(0.0, 0x4a3524), (0.4, 0x8d6a47), (0.7, 0xcfa878), (1.0, 0xf6e3bb)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "sunset_backlight",
         "violet shade, burning edges",
         Curve::Monotone,
         &[(0.0, 0x241a33), (0.3, 0x4b2b4a), (0.5, 0xb0502f), (0.72, 0xff9a4c), (1.0, 0xffe3b0)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "night_lamp",
         "a street lamp on dark smoke",
         Curve::Monotone,
         &[(0.0, 0x05060c), (0.4, 0x141722), (0.65, 0x5a4126), (0.85, 0xd69a4a), (1.0, 0xffe6b0)],
     ),
     one_axis(
-        Role::Diffuse,
+        RampRole::Diffuse,
         "moon",
         "cold light, deep shade",
         Curve::Monotone,
@@ -115,35 +115,35 @@ pub const TEMPLATES: &[Template] = &[
     Template {
         name: "burning_rim",
         description: "thin edges burn against the light, the middle stays dark",
-        role: Role::Backlight,
+        role: RampRole::Backlight,
         curve: Curve::Monotone,
         stops: &[(0.0, 0xc8b09a), (0.4, 0xfff4e2), (0.7, 0xe0c4a4), (1.0, 0x8a7a70)],
         times: &[(0.0, 0xffffff), (0.3, 0xd09a68), (0.65, 0x4a3228), (1.0, 0x14100f)],
         place: "",
     },
     one_axis(
-        Role::Scatter,
+        RampRole::Scatter,
         "fog",
         "light where thin, blue where thick",
         Curve::Monotone,
         &[(0.0, 0xb4c1cf), (0.5, 0x7d8b9c), (1.0, 0x4a5563)],
     ),
     one_axis(
-        Role::Coverage,
+        RampRole::Coverage,
         "wispy",
         "thinner edges",
         Curve::Monotone,
         &[(0.0, 0x000000), (0.08, 0x050505), (0.24, 0x2a2a2a), (0.5, 0x8c8c8c), (0.78, 0xe6e6e6), (1.0, 0xffffff)],
     ),
     one_axis(
-        Role::Coverage,
+        RampRole::Coverage,
         "cut",
         "cut out, as from paper",
         Curve::Ease,
         &[(0.0, 0x000000), (0.34, 0x000000), (0.4, 0xffffff), (1.0, 0xffffff)],
     ),
     one_axis(
-        Role::Age,
+        RampRole::Age,
         "embers",
         "born as fire, grey when old",
         Curve::Monotone,
@@ -152,7 +152,7 @@ pub const TEMPLATES: &[Template] = &[
     Template {
         name: "neutral_glow",
         description: "a white glow, strongest in smoke of middle thickness",
-        role: Role::Specular,
+        role: RampRole::Specular,
         curve: Curve::Monotone,
         stops: &[(0.0, 0xffffff), (0.04, 0xb0b0b0), (0.16, 0x5c5c5c), (0.45, 0x1c1c1c), (1.0, 0x000000)],
         times: &[(0.0, 0x000000), (0.5, 0xffffff), (1.0, 0x606060)],
@@ -161,7 +161,7 @@ pub const TEMPLATES: &[Template] = &[
     Template {
         name: "wide_glow",
         description: "a warm glow that widens where the smoke is thick",
-        role: Role::Specular,
+        role: RampRole::Specular,
         curve: Curve::Monotone,
         stops: &[(0.0, 0xfff0d2), (0.05, 0xd8a468), (0.2, 0x7a5030), (0.5, 0x241609), (1.0, 0x000000)],
         times: &[(0.0, 0x000000), (0.4, 0xffffff), (1.0, 0x6e5a48)],

@@ -7,8 +7,8 @@ use crate::draw::Draw;
 use crate::sprite::SpriteFragment;
 use haze::assets::image::Image;
 use haze::formula::normal::accumulation_from_normal;
-use haze::settings::{AccumulationFormat, Order};
-use haze::view_setup::Grid;
+use haze::settings::{AccumulationFormat, BlendOrder};
+use haze::view_setup::TexelGrid;
 
 impl Draw<'_> {
     pub fn accumulate(&self, reduced_depth: &Image<f32>, overdraw: bool) -> Image<Vec4> {
@@ -24,8 +24,8 @@ impl Draw<'_> {
                     accumulation_from_normal(accumulate.encoding, normal, amount, weight)
                 };
                 match self.settings.order() {
-                    Order::Sorted => premultiplied_over(source, texel),
-                    Order::Weighted => weighted_sum(source, texel),
+                    BlendOrder::Sorted => premultiplied_over(source, texel),
+                    BlendOrder::Weighted => weighted_sum(source, texel),
                 }
             };
             quantise(accumulate.format, blended)
@@ -41,8 +41,8 @@ impl Draw<'_> {
                 let weight = fragment.amount * weight;
                 let source = (fragment.six_way.negative * weight).extend(weight);
                 let blended = match self.settings.order() {
-                    Order::Sorted => premultiplied_over(source, texel),
-                    Order::Weighted => source + texel,
+                    BlendOrder::Sorted => premultiplied_over(source, texel),
+                    BlendOrder::Weighted => source + texel,
                 };
                 quantise(accumulate.format, blended)
             };
@@ -60,7 +60,7 @@ impl Draw<'_> {
         let origin = self.setup.rect.origin.as_vec2();
         let scene = |at| reduced_depth.load(at);
         target.for_bands(|first_row, band| {
-            let grid = Grid { origin, scale: self.system.scale, size: self.setup.rect.size };
+            let grid = TexelGrid { origin, scale: self.system.scale, size: self.setup.rect.size };
             self.for_fragments(&grid, first_row, band, scene, |_, sprite, fragment, texel: &mut Vec4| {
                 *texel = f(fragment, sprite.weight, *texel);
             });

@@ -8,11 +8,11 @@ use haze::assets::image::Image;
 use haze::formula::blending::forward_fragment;
 use haze::formula::colour::bounded_light;
 use haze::formula::lighting::coverage;
-use haze::view_setup::Grid;
+use haze::view_setup::TexelGrid;
 
 impl Draw<'_> {
     pub fn forward(&self, picture: &mut Image<Vec4>) {
-        let grid = Grid { origin: Vec2::ZERO, scale: 1.0, size: picture.size };
+        let grid = TexelGrid { origin: Vec2::ZERO, scale: 1.0, size: picture.size };
         let mode = self.settings.blend_mode;
         let system = &self.system;
         picture.for_bands(|first_row, band| {

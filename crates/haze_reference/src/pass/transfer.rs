@@ -81,7 +81,7 @@ impl Accumulated<'_> {
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
-        let is_lit = self.draw.lights_target(debug_view);
+        let is_lit = self.draw.lights_per_texel(debug_view);
         let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_target(self.accumulation, pixel) };
         let amount = accumulated.w;
         match debug_view {

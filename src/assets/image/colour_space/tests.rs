@@ -3,7 +3,7 @@ use std::io::Cursor;
 use image::ImageFormat;
 
 use super::super::decode_png;
-use super::super::profile::tests as profiles;
+use super::super::icc_profile::tests as profiles;
 use super::*;
 
 type Chunk = (&'static [u8; 4], Vec<u8>);

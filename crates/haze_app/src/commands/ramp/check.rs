@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use haze::Error;
 use haze::image::colour_conversion_notes;
-use haze::ramp::{Ramp, Role};
+use haze::ramp::{Ramp, RampRole};
 use haze_author::finding::Finding;
 use haze_author::ramp::lint::lint_ramp;
 use haze_author::ramp::response::{DiffuseRamps, Puff};
@@ -25,8 +25,8 @@ pub struct Arguments {
     #[arg(required = true)]
     ramps: Vec<PathBuf>,
     /// Role of the ramps. Default: the beginning of each file name.
-    #[arg(long = "as", value_name = "ROLE", value_parser = choices::<Role>())]
-    role: Option<Role>,
+    #[arg(long = "as", value_name = "ROLE", value_parser = choices::<RampRole>())]
+    role: Option<RampRole>,
     /// Also compare a diffuse ramp with path-traced smoke of this medium, light by light.
     #[arg(long, value_name = "MEDIUM", value_parser = medium_names())]
     truth: Option<String>,
@@ -61,9 +61,9 @@ fn print_truth_error(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) 
     Ok(())
 }
 
-fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
+fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> {
     let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
-    let role = role.or_else(|| Role::of_name(name));
+    let role = role.or_else(|| RampRole::of_name(name));
     refuse_gradient(path)?;
     let mut findings = Vec::new();
     if !has_extension(path, "json") {

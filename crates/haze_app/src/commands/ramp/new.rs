@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use glam::UVec2;
 use haze::image::{CompressionEffort, write_png};
-use haze::ramp::{Ramp, Role};
+use haze::ramp::{Ramp, RampRole};
 use haze::{Error, FieldError};
 use haze_author::ramp::template::{TEMPLATES, Template};
 use image::Rgb;
@@ -23,8 +23,8 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", default_value = "neutral", value_parser = template_names())]
     template: String,
     /// Write an image with labelled axes to paint over instead, for ramps of this role.
-    #[arg(long, value_name = "ROLE", value_parser = choices::<Role>(), conflicts_with = "template")]
-    blank: Option<Role>,
+    #[arg(long, value_name = "ROLE", value_parser = choices::<RampRole>(), conflicts_with = "template")]
+    blank: Option<RampRole>,
     /// File to write: a recipe, `NAME.ramp.json`, or with --blank an image, `NAME.png`. It must not exist yet.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -56,15 +56,15 @@ pub fn run(Arguments { template, blank, output }: &Arguments) -> Result<(), Erro
 /// Height of the text on a blank, pixels.
 const TEXT_HEIGHT: f32 = 16.0;
 
-fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
+fn write_blank(output: &Path, role: RampRole) -> Result<(), Error> {
     let across = match role {
-        Role::Diffuse | Role::Backlight => ["away from the light", "facing it"],
-        Role::Scatter => ["thin", "thick"],
-        Role::Specular => ["at the light", "far from it: black"],
-        Role::Coverage => ["thin; black hides nothing", "thick; white hides all"],
-        Role::Age => ["born", "dies"],
+        RampRole::Diffuse | RampRole::Backlight => ["away from the light", "facing it"],
+        RampRole::Scatter => ["thin", "thick"],
+        RampRole::Specular => ["at the light", "far from it: black"],
+        RampRole::Coverage => ["thin; black hides nothing", "thick; white hides all"],
+        RampRole::Age => ["born", "dies"],
     };
-    let has_two_axes = matches!(role, Role::Specular | Role::Backlight);
+    let has_two_axes = matches!(role, RampRole::Specular | RampRole::Backlight);
     let size = UVec2::new(512, if has_two_axes { 256 } else { 64 });
     // The first template of the role is the background.
     let Some(template) = TEMPLATES.iter().find(|template| template.role == role) else { return Ok(()) };
@@ -80,7 +80,7 @@ fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
     write(size.x as f32 - 8.0 - text_width(TEXT_HEIGHT, &right), middle, &right);
     if has_two_axes {
         write(180.0, 4.0, "top: thick smoke");
-        let bottom = if role == Role::Specular { "bottom: no smoke: black" } else { "bottom: thin smoke" };
+        let bottom = if role == RampRole::Specular { "bottom: no smoke: black" } else { "bottom: thin smoke" };
         write(180.0, size.y as f32 - TEXT_HEIGHT - 6.0, bottom);
     }
     write_png(output, &picture.into(), CompressionEffort::Small)?;

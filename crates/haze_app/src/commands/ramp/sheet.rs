@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::UVec2;
-use haze::ramp::{Ramp, Role};
+use haze::ramp::{Ramp, RampRole};
 use haze::settings::{Backlight, CoverageMode, DiffuseMode, RenderPath, SoftScatterMode};
 use haze::{Error, FieldError, MaterialAssets, builtin};
 use haze_demo::shot::Shot;
@@ -30,8 +30,8 @@ pub struct Arguments {
     #[arg(long)]
     builtin: bool,
     /// Only ramps of this role, and ramps whose names do not tell their role.
-    #[arg(long, value_name = "ROLE", value_parser = choices::<Role>())]
-    role: Option<Role>,
+    #[arg(long, value_name = "ROLE", value_parser = choices::<RampRole>())]
+    role: Option<RampRole>,
 }
 
 /// Divisor of an image's sides that gives the size of a ramp with two axes.
@@ -42,7 +42,7 @@ const STRIP_DIVISOR: u32 = 10;
 /// A ramp on the sheet.
 struct Cell {
     name: String,
-    role: Role,
+    role: RampRole,
     source: Source,
 }
 
@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let backend = arguments.shot.run.backend()?;
     let mut sheet = render_sheet(&backend, &shots, columns, &arguments.shot.output, &ExportProgress::terminal())?;
     for (index, (cell, ramp)) in (0..).zip(&ramps) {
-        let has_two_axes = cell.role == Role::Specular;
+        let has_two_axes = cell.role == RampRole::Specular;
         let inset = if has_two_axes { size / INSET_DIVISOR } else { UVec2::new(size.x, size.y / STRIP_DIVISOR) };
         sheet.inset(index, &ramp_image(ramp, inset));
     }
@@ -91,7 +91,7 @@ impl Arguments {
         let mut cells = Vec::new();
         let mut add = |name: &str, source| {
             // A motif is another kind of image.
-            let named = Role::of_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
+            let named = RampRole::of_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
             if let Some(role) = named.filter(|role| self.role.is_none_or(|wanted| wanted == *role)) {
                 cells.push(Cell { name: name.into(), role, source });
             }
@@ -138,7 +138,7 @@ impl Cell {
 }
 
 /// Puts a ramp into a shot, and changes the settings so that the ramp is used.
-fn apply_ramp(shot: &mut Shot, role: Role, ramp: &Ramp) {
+fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
     for (system, material) in shot.preset.systems.iter_mut().zip(&mut shot.materials) {
         let settings = &mut system.settings;
         let MaterialAssets {
@@ -151,27 +151,27 @@ fn apply_ramp(shot: &mut Shot, role: Role, ramp: &Ramp) {
             ..
         } = material;
         let place = match role {
-            Role::Diffuse => {
+            RampRole::Diffuse => {
                 if settings.diffuse.mode == DiffuseMode::PaintedMotif {
                     settings.diffuse.mode = DiffuseMode::Ramp;
                 }
                 diffuse_ramp
             }
-            Role::Backlight => {
+            RampRole::Backlight => {
                 settings.diffuse.backlight = Backlight::Ramp;
                 backlight_ramp
             }
-            Role::Scatter => {
+            RampRole::Scatter => {
                 settings.soft_scatter.mode = SoftScatterMode::Ramp;
                 soft_scatter_ramp
             }
-            Role::Specular => specular_ramp,
-            Role::Coverage => {
+            RampRole::Specular => specular_ramp,
+            RampRole::Coverage => {
                 settings.coverage = CoverageMode::Ramp;
                 coverage_ramp
             }
             // Only forward smoke uses the age ramp.
-            Role::Age => {
+            RampRole::Age => {
                 settings.path = RenderPath::Forward;
                 settings.sprite.age_colour = 1.0;
                 age_ramp

@@ -51,16 +51,16 @@ mod tests {
         preset.systems.push(other);
         let loaded_materials = LoadedMaterials::new(&preset, load(&preset));
         let [first, second] = &loaded_materials.of(&preset)[..] else { panic!("two systems") };
-        assert!(!first.shares(second));
+        assert!(!first.shares_memory(second));
         let (first, second) = (first.clone(), second.clone());
         preset.systems.reverse();
         let swapped = loaded_materials.of(&preset);
-        assert!(swapped[0].shares(&second) && swapped[1].shares(&first));
+        assert!(swapped[0].shares_memory(&second) && swapped[1].shares_memory(&first));
         // Not loaded yet, so the former images of this index are used.
         preset.systems[0].material.diffuse_ramp = "mine.png".into();
-        assert!(loaded_materials.of(&preset)[0].shares(&first));
+        assert!(loaded_materials.of(&preset)[0].shares_memory(&first));
         // A reload of the same files gives the same images.
         let again = loaded_materials.reuse_equal(load(&Preset::load("column").unwrap()));
-        assert!(again[0].shares(&first));
+        assert!(again[0].shares_memory(&first));
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use haze::preset::Preset;
-use haze::settings::{Value, field_path, for_each_field, values};
+use haze::settings::{FieldValue, field_path, field_values, for_each_field};
 
 use super::light_defaults::light_name;
 
@@ -13,7 +13,7 @@ pub fn changed_fields(before: &Preset, after: &Preset) -> Vec<String> {
     let pairs = lists(before).into_iter().zip(lists(after));
     let lists: Vec<_> = pairs.filter(|(before, after)| before != after).map(|((list, _), _)| list).collect();
     let is_whole = |path: &str| !lists.iter().any(|list| is_below(path, list));
-    let fields = |preset| values(preset).into_iter().filter(|(path, _)| is_whole(path)).collect::<Vec<_>>();
+    let fields = |preset| field_values(preset).into_iter().filter(|(path, _)| is_whole(path)).collect::<Vec<_>>();
     let pairs = fields(before).into_iter().zip(fields(after));
     let changed = pairs.filter(|(before, after)| before != after).map(|((path, _), _)| path);
     changed.chain(lists.iter().map(|&list| list.to_owned())).collect()
@@ -36,8 +36,8 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
         "lights" => to.lights.clone_from(&from.lights),
         "systems" => to.systems.clone_from(&from.systems),
         _ => {
-            let values = values(from).into_iter().filter(|(field, _)| is_below(field, path));
-            let values: HashMap<String, Value> = values.collect();
+            let values = field_values(from).into_iter().filter(|(field, _)| is_below(field, path));
+            let values: HashMap<String, FieldValue> = values.collect();
             for_each_field(to, &mut |path, leaf| {
                 if let Some(value) = values.get(&field_path(path)) {
                     leaf.set(value);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use egui_gradient::GradientEditor;
 use haze::preset::{AssetFolders, Preset};
 use haze::ramp::Ramp;
-use haze::settings::{Value, set_field, values};
+use haze::settings::{FieldValue, field_values, set_field};
 use haze::{Error, MaterialAssets, builtin};
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, fit_image};
@@ -92,8 +92,8 @@ impl RampEdits {
         let Some((system, field)) = self.wanted.filter(|_| !document.is_built_in()) else { return Ok(()) };
         self.wanted = None;
         let field = format!("systems[{system}].material.{field}");
-        let named = values(&document.preset).into_iter().find(|(path, _)| *path == field);
-        let Some((_, Value::Text(name))) = named else { return Ok(()) };
+        let named = field_values(&document.preset).into_iter().find(|(path, _)| *path == field);
+        let Some((_, FieldValue::Text(name))) = named else { return Ok(()) };
         let copy = copy_of(&name, document.path())?;
         set_field(&mut document.preset, &field, &copy)?;
         Ok(())

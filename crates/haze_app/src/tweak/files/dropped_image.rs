@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 use haze::preset::{AssetFolders, MaterialNames, Preset};
-use haze::ramp::Role;
-use haze::settings::{Leaf, for_each_field, set_field};
+use haze::ramp::RampRole;
+use haze::settings::{FieldRef, for_each_field, set_field};
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::preset::{no_effect_reason, role_warnings};
@@ -76,7 +76,7 @@ impl DroppedImage {
 /// Returns the preset folder that contains a file, and the file's path relative to it.
 fn place_of(path: &Path, folders: &AssetFolders) -> Option<(PathBuf, String)> {
     let path = file_io::absolute(path);
-    let folders = folders.places(Path::new(".")).map(|folder| file_io::absolute(&folder));
+    let folders = folders.candidate_paths(Path::new(".")).map(|folder| file_io::absolute(&folder));
     let mut places = folders.filter_map(|folder| {
         let name = path.strip_prefix(&folder).ok()?.to_str()?.replace('\\', "/");
         Some((folder, name))
@@ -93,10 +93,10 @@ fn field_of_name(path: &Path) -> Option<&'static str> {
         return Some(field);
     }
     let word = name.split(['_', '.', '-']).next()?;
-    let role = Role::of_name(name);
+    let role = RampRole::of_name(name);
     let has_recipe = |field: &str| file_io::exists(&path.with_extension(format!("{field}.json")));
     let is_told =
-        |field: &&str| (role.is_some() && Role::of_field(field) == role) || *field == word || has_recipe(field);
+        |field: &&str| (role.is_some() && RampRole::of_field(field) == role) || *field == word || has_recipe(field);
     picture_fields().into_iter().find(is_told)
 }
 
@@ -138,7 +138,7 @@ fn layout(sheet: &Path, material: &MaterialNames) -> SpriteLayout {
 fn picture_fields() -> Vec<&'static str> {
     let mut fields = Vec::new();
     for_each_field(&mut MaterialNames::default(), &mut |path, leaf| {
-        let name = path.last().filter(|_| matches!(leaf, Leaf::Text(_)));
+        let name = path.last().filter(|_| matches!(leaf, FieldRef::Text(_)));
         fields.extend(name.map(|(name, _)| *name));
     });
     fields

@@ -168,7 +168,7 @@ impl HotReload {
         let pictures = relative_image_paths(&session.document.preset);
         // The recipe of a sprite also makes its detail image, even if the preset does not name that.
         let beside = pictures.iter().flat_map(|picture| recipe_paths(picture).chain([detail_of(picture)]));
-        let beside = beside.flat_map(|file| folders.places(&file).collect::<Vec<_>>());
+        let beside = beside.flat_map(|file| folders.candidate_paths(&file).collect::<Vec<_>>());
         self.watcher.set(session.document.files(&folders).into_iter().chain(beside).chain(shaders));
     }
 

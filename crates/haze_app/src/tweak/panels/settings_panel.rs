@@ -192,7 +192,7 @@ mod tests {
     use eframe::egui::{Role, Theme, Vec2};
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
     use egui_kittest::{Harness, Node};
-    use haze::settings::Value;
+    use haze::settings::FieldValue;
 
     use crate::tweak::panels::rows::value_text::shown_value;
     use crate::tweak::session::comparison::CompareWith;
@@ -311,7 +311,7 @@ mod tests {
         assert_eq!(undo_name(&harness).as_deref(), Some("exposure"));
         // The menu shows the value that would be copied.
         row_menu(&mut harness, "rise");
-        let value = shown_value(&Value::Number(saved.systems[0].emitter.buoyancy), "m/s²");
+        let value = shown_value(&FieldValue::Number(saved.systems[0].emitter.buoyancy), "m/s²");
         harness.get_by_label(&format!("Take {value} of the second picture")).click();
         harness.run_steps(3);
         assert_eq!(now(&harness), saved);

@@ -39,7 +39,7 @@ pub fn material(names: &MaterialNames, folder: &Path) -> Result<MaterialAssets, 
 
 /// Returns the path of an image, or the path where it is expected; empty if it is built in.
 pub fn place_of(name: &str, folders: &AssetFolders) -> PathBuf {
-    let place = |file| folders.find(file).ok().or_else(|| folders.places(file).next());
+    let place = |file| folders.find(file).ok().or_else(|| folders.candidate_paths(file).next());
     image_file_path(name).and_then(place).unwrap_or_default()
 }
 

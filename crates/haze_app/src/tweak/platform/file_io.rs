@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use haze::Error;
-use haze::assets::{file, json};
+use haze::assets::{bounded_read, json};
 pub use haze::image::{CompressionEffort, read_colour_png, read_png, write_png};
 use haze::image::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
@@ -24,17 +24,17 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
 
 /// Reads the bytes of an image file.
 pub fn read_picture(path: &Path) -> Result<Vec<u8>, Error> {
-    file::read(path, "PNG picture", MAX_BYTES)
+    bounded_read::read(path, "PNG picture", MAX_BYTES)
 }
 
 /// Reads the bytes of a recipe file.
 pub fn read_recipe(path: &Path) -> Result<Vec<u8>, Error> {
-    file::read(path, "recipe", json::MAX_BYTES)
+    bounded_read::read(path, "recipe", json::MAX_BYTES)
 }
 
 /// Reads the bytes of a particle file.
 pub fn read_particles(path: &Path) -> Result<Vec<u8>, Error> {
-    file::read(path, "CSV or PLY file", particle_files::MAX_FILE_BYTES)
+    bounded_read::read(path, "CSV or PLY file", particle_files::MAX_FILE_BYTES)
 }
 
 /// Writes a complete file, or leaves the old one.

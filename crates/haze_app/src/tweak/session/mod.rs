@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use glam::UVec2;
 use haze::preset::{AssetFolders, Preset};
-use haze::settings::{DebugView, Value, values};
+use haze::settings::{DebugView, FieldValue, field_values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 use haze_author::particle_files::ParticleFrames;
@@ -103,7 +103,7 @@ struct Changed {
 
 /// Values of the second image's settings that differ, by path, and the two presets that were compared.
 struct SecondDiff {
-    differing_values: HashMap<String, Value>,
+    differing_values: HashMap<String, FieldValue>,
     settings: Preset,
     preset: Preset,
 }
@@ -218,7 +218,7 @@ impl Session {
     }
 
     /// Returns the values of the second image's settings that differ, by path; `None` if it has no settings of its own.
-    pub fn second_diff(&self) -> Option<&HashMap<String, Value>> {
+    pub fn second_diff(&self) -> Option<&HashMap<String, FieldValue>> {
         self.second_diff.as_ref().map(|second| &second.differing_values)
     }
 
@@ -249,7 +249,8 @@ impl Session {
         let preset = &self.document.preset;
         if self.second_diff.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
             let paths: HashSet<_> = changed_fields(settings, preset).into_iter().collect();
-            let differing_values = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
+            let differing_values =
+                field_values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
             self.second_diff =
                 Some(SecondDiff { differing_values, settings: settings.clone(), preset: preset.clone() });
         }

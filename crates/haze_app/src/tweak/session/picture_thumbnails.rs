@@ -77,7 +77,7 @@ impl PictureThumbnails {
             let stamp = |name: &str| file(folders, name).and_then(|path| Stamp::of(&path));
             thumbs.retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == stamp(name));
         }
-        let builtins = builtin::of_role(role).iter().map(|builtin| builtin.name.to_owned());
+        let builtins = builtin::for_role(role).iter().map(|builtin| builtin.name.to_owned());
         inner.files.iter().cloned().chain(builtins).collect()
     }
 
@@ -93,7 +93,7 @@ impl PictureThumbnails {
         if let Some(thumb) = inner.thumbs.get(&key) {
             return thumb.texture.as_ref().map(TextureHandle::id);
         }
-        let source = match builtin::find(builtin::of_role(role), name) {
+        let source = match builtin::find(builtin::for_role(role), name) {
             Some(builtin) => ImageSource::Builtin(builtin),
             None => ImageSource::File(file(&inner.folders, name)?),
         };

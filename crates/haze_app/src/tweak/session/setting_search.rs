@@ -122,7 +122,7 @@ fn tab_of(path: &str) -> Tab {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haze::settings::values;
+    use haze::settings::field_values;
 
     fn first(text: &str) -> String {
         let preset = Preset::load("column").unwrap();
@@ -143,7 +143,7 @@ mod tests {
     fn every_setting_can_be_brought_into_view() {
         let preset = Preset::load("column").unwrap();
         let tooltips = Tooltips::of::<Preset>();
-        for (path, _) in values(&preset).into_iter().filter(|(path, _)| path.contains('.')) {
+        for (path, _) in field_values(&preset).into_iter().filter(|(path, _)| path.contains('.')) {
             let found = matches(&preset, &tooltips, &LightView::default(), &path.replace('_', " "));
             assert!(found.iter().any(|found| found.path == path), "{path}");
         }

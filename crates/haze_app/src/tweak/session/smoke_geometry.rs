@@ -36,7 +36,8 @@ impl SmokeGeometry {
             }
             self.of = Some((preset.systems.clone(), caches, time.to_bits()));
             let all = preset.systems.iter().zip(&self.systems);
-            self.bounds = all.map(|(system, particles)| particle_bounds(particles, system.settings.reach())).collect();
+            self.bounds =
+                all.map(|(system, particles)| particle_bounds(particles, system.settings.sprite_extent())).collect();
         }
         self
     }

@@ -42,7 +42,7 @@ impl SpritePreview {
         view: View,
         material: &MaterialAssets,
     ) -> TextureId {
-        let is_same = |last: &Self| last.view == view && last.material.shares(material);
+        let is_same = |last: &Self| last.view == view && last.material.shares_memory(material);
         if let Some(last) = painted.as_ref().filter(|last| is_same(last)) {
             return last.texture.id();
         }

@@ -113,7 +113,7 @@ impl PathTracedPuff {
         }
         let of = (wanted, settings.diffuse.backlight == Backlight::Ramp);
         let Some((_, traced)) = self.traced.as_ref().filter(|(of, _)| *of == wanted) else { return };
-        let is_made = |made: &Compared| made.of == of && made.material.shares(material);
+        let is_made = |made: &Compared| made.of == of && made.material.shares_memory(material);
         if !self.compared.as_ref().is_some_and(is_made) {
             let (sheet, response) = traced.compared(material, of.1, context);
             self.compared = Some(Compared { of, material: material.clone(), sheet, response });

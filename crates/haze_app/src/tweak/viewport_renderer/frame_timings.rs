@@ -76,7 +76,7 @@ impl FrameTimings {
         let times = self.stats.times.take().filter(|times| self.latest_frame.replace(times.frame) != Some(times.frame));
         self.waiting = if is_drawn || is_second_drawn { MAX_DELAY_FRAMES } else { self.waiting.saturating_sub(1) };
         if let Some(times) = &times {
-            self.add_times(times.passes.iter().filter(|pass| !pass.of_host).map(|pass| (pass.name, pass.ms)));
+            self.add_times(times.passes.iter().filter(|pass| !pass.is_host).map(|pass| (pass.name, pass.ms)));
         } else if !self.stats.is_timed && is_drawn {
             self.add_times(cpu_seconds.map(|seconds| (CPU_TIME, 1.0e3 * seconds)).into_iter());
         }

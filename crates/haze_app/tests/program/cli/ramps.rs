@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use haze::ramp::Role;
+use haze::ramp::RampRole;
 use haze_author::ramp::template::TEMPLATES;
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA};
 
@@ -236,10 +236,10 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
 #[test]
 fn a_blank_of_every_role_has_labelled_axes() {
     let folder = folder();
-    for role in Role::ALL {
+    for role in RampRole::ALL {
         let name = format!("{}_mine.png", role.name());
         let line = stdout_of(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
-        let size = if matches!(role, Role::Specular | Role::Backlight) { "512x256" } else { "512x64" };
+        let size = if matches!(role, RampRole::Specular | RampRole::Backlight) { "512x256" } else { "512x64" };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
         // Text at both ends: without it, a ramp changes little from one line to the next.
         let picture = haze::image::read_png(&folder.path().join(&name)).unwrap().to_luma8();

@@ -9,7 +9,7 @@ use super::condition::{
 use super::rule::{NoEffectRule, rule};
 use haze::assets::builtin;
 use haze::preset::PresetSystem;
-use haze::settings::{Backlight, CoverageMode, Order, RenderPath, SoftScatterMode, SpriteAnimation, Technique};
+use haze::settings::{Backlight, BlendOrder, CoverageMode, RenderPath, SoftScatterMode, SpriteAnimation, Technique};
 
 /// The first row that holds gives the reason.
 pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
@@ -113,14 +113,14 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     ),
     rule(
         "only with order weighted",
-        |s, _| s.settings.accumulate.order != Order::Weighted,
+        |s, _| s.settings.accumulate.order != BlendOrder::Weighted,
         &["settings.accumulate.depth_weight"],
     ),
     rule(
         "only on the paths tiled and auto, with order sorted",
         |s, _| {
             !matches!(s.settings.path, RenderPath::Tiled | RenderPath::Auto)
-                || s.settings.accumulate.order != Order::Sorted
+                || s.settings.accumulate.order != BlendOrder::Sorted
         },
         &["settings.accumulate.layers"],
     ),

@@ -95,7 +95,7 @@ fn bake_octaves(recipe: &SpriteRecipe, voxels: VoxelGrid, octaves: &[(f32, f32, 
                     if p.length_squared() > 1.0 + recipe.travel {
                         continue;
                     }
-                    let noise = cell.turning(p * recipe.noise_frequency * frequency);
+                    let noise = cell.phase_components(p * recipe.noise_frequency * frequency);
                     for (sum, noise) in value.iter_mut().zip(noise) {
                         *sum = sum.saturating_add((apply_lumps(noise, lumps) * weight * NOISE_SCALE) as i16);
                     }

@@ -19,7 +19,7 @@ use image::{Rgba, RgbaImage};
 
 use crate::path_trace::DensityVolume;
 use crate::sprite::detail::{bake_detail_frame, detail_size};
-use haze::assets::threads::parallel_for_each;
+use haze::assets::parallel::parallel_for_each;
 use haze::error::FieldError;
 use haze::settings::validate;
 use haze::sprite::Sprite;

@@ -104,7 +104,7 @@ fn a_saved_ramp_is_shown_and_a_broken_one_is_reported_until_it_is_fixed() {
     let before = bench.shown();
     let bright = bench.pictures();
     write_ramp(bench.folder.path(), 20);
-    bench.until(|bench| !bench.pictures().shares(&bright));
+    bench.until(|bench| !bench.pictures().shares_memory(&bright));
     let dark = bench.shown();
     assert!(dark < before - 3.0, "{before} {dark}");
     fs::write(bench.path("mine.png"), "no picture").unwrap();
@@ -152,11 +152,11 @@ fn a_shared_ramp_is_reloaded() {
     fs::rename(team.join("mine.png"), team.join("theirs.png")).unwrap();
     bench.session().assets = Some(team.clone());
     bench.session().document.preset.systems[0].material.diffuse_ramp = "theirs.png".into();
-    bench.until(|bench| !bench.pictures().shares(&own));
+    bench.until(|bench| !bench.pictures().shares_memory(&own));
     let theirs = bench.pictures();
     write_ramp(&team, 20);
     fs::rename(team.join("mine.png"), team.join("theirs.png")).unwrap();
-    bench.until(|bench| !bench.pictures().shares(&theirs));
+    bench.until(|bench| !bench.pictures().shares_memory(&theirs));
     assert_eq!(bench.said(), None);
 }
 
@@ -275,7 +275,7 @@ fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
             let shown = picture(&mut bench.window);
             write_ramp(bench.folder.path(), if index % 2 == 0 { 20 } else { 200 });
             let start = Instant::now();
-            bench.until(|bench| !bench.pictures().shares(&before));
+            bench.until(|bench| !bench.pictures().shares_memory(&before));
             let loaded = start.elapsed().as_millis();
             assert!(picture(&mut bench.window) != shown);
             (loaded, start.elapsed().as_millis())

@@ -1,7 +1,7 @@
 //! Field that names an image, chosen by thumbnail.
 
 use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, Vec2};
-use haze::ramp::Role;
+use haze::ramp::RampRole;
 use haze::settings::ImageRole;
 
 use crate::tweak::session::picture_thumbnails::{PictureThumbnails, SIZE};
@@ -40,10 +40,10 @@ pub fn gallery(
                     }
                 });
             };
-            let wanted = path.rsplit('.').next().and_then(Role::of_field);
+            let wanted = path.rsplit('.').next().and_then(RampRole::of_field);
             // A file whose name tells no role fits every field.
             let fits =
-                |name: &String| Role::of_name(name).is_none_or(|role| wanted.is_none_or(|wanted| role == wanted));
+                |name: &String| RampRole::of_name(name).is_none_or(|role| wanted.is_none_or(|wanted| role == wanted));
             let (fitting, others): (Vec<_>, Vec<_>) = thumbnails.names(ui.ctx(), role).into_iter().partition(fits);
             cells(ui, fitting);
             if !others.is_empty() {

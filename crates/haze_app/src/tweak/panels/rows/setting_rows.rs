@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Ui};
 use glam::Vec3;
-use haze::settings::{Choice, FieldVisitor, Fields, ImageRole, Value, field_path};
+use haze::settings::{Choice, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
 use haze_author::preset::Tooltips;
 
 use super::picture_gallery::gallery;
@@ -25,7 +25,7 @@ pub struct RowContext<'a> {
     /// Paths of the fields that differ from the preset on disk.
     pub changed: &'a HashSet<String>,
     /// Values of the second image's settings that differ, by path; `None` if it has no settings of its own.
-    pub second: Option<&'a HashMap<String, Value>>,
+    pub second: Option<&'a HashMap<String, FieldValue>>,
     /// The fields belong to the preset, so sheets of their values can be made.
     pub has_sheets: bool,
     /// Returns the reason why the field of a path has no effect.
@@ -251,7 +251,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
         });
     }
 
-    fn picture(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
+    fn image(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
         let thumbnails = self.context.thumbnails;
         self.row(name, ("", None), |ui, label, _, path, _| {
             gallery(ui, thumbnails, role, value, path).labelled_by(label.id);

@@ -14,7 +14,7 @@ pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "fade curve"));
     let plot = rect.with_max_y(rect.bottom() - TEXT_SIZE).shrink(2.0);
-    let reach = fade.reach();
+    let reach = fade.max_distance();
     let (from, to) = (-0.6 * reach, 1.4 * reach);
     let x = |distance: f32| plot.left() + (distance - from) / (to - from) * plot.width();
     let value = |distance| soft_fade(fade.curve, distance, fade.fade_scale, fade.contrast_power, fade.epsilon);

@@ -1,7 +1,7 @@
 //! Values as text for display and input.
 
 use glam::Vec3;
-use haze::settings::Value;
+use haze::settings::FieldValue;
 
 /// Formats a number with four significant digits, without trailing zeros.
 pub fn shown(value: f64) -> String {
@@ -19,16 +19,16 @@ pub fn grouped(number: u64) -> String {
 }
 
 /// Formats the value of a field with its unit.
-pub fn shown_value(value: &Value, unit: &str) -> String {
+pub fn shown_value(value: &FieldValue, unit: &str) -> String {
     let list = |vector: &Vec3| vector.to_array().map(|axis| shown(f64::from(axis))).join(", ");
     match value {
-        Value::Number(number) => shown(f64::from(*number)) + &suffix(unit),
-        Value::Whole(number) => number.to_string() + &suffix(unit),
-        Value::Vector(vector) => list(vector) + &suffix(unit),
-        Value::Flag(flag) => if *flag { "on" } else { "off" }.into(),
-        Value::Choice(name) => name.replace('_', " "),
-        Value::Text(text) if text.is_empty() => "nothing".into(),
-        Value::Text(text) => text.clone(),
+        FieldValue::Number(number) => shown(f64::from(*number)) + &suffix(unit),
+        FieldValue::Whole(number) => number.to_string() + &suffix(unit),
+        FieldValue::Vector(vector) => list(vector) + &suffix(unit),
+        FieldValue::Flag(flag) => if *flag { "on" } else { "off" }.into(),
+        FieldValue::Choice(name) => name.replace('_', " "),
+        FieldValue::Text(text) if text.is_empty() => "nothing".into(),
+        FieldValue::Text(text) => text.clone(),
     }
 }
 
@@ -77,13 +77,13 @@ mod tests {
     #[test]
     fn values_are_shown_with_their_units() {
         for (value, unit, text) in [
-            (Value::Number(0.25), "m", "0.25 m"),
-            (Value::Number(35.0), "degrees", "35°"),
-            (Value::Whole(4), "", "4"),
-            (Value::Vector(Vec3::new(1.0, -0.5, 0.0)), "m/s", "1, -0.5, 0 m/s"),
-            (Value::Flag(true), "", "on"),
-            (Value::Choice("depth_sprite_soft"), "", "depth sprite soft"),
-            (Value::Text(String::new()), "", "nothing"),
+            (FieldValue::Number(0.25), "m", "0.25 m"),
+            (FieldValue::Number(35.0), "degrees", "35°"),
+            (FieldValue::Whole(4), "", "4"),
+            (FieldValue::Vector(Vec3::new(1.0, -0.5, 0.0)), "m/s", "1, -0.5, 0 m/s"),
+            (FieldValue::Flag(true), "", "on"),
+            (FieldValue::Choice("depth_sprite_soft"), "", "depth sprite soft"),
+            (FieldValue::Text(String::new()), "", "nothing"),
         ] {
             assert_eq!(shown_value(&value, unit), text);
         }

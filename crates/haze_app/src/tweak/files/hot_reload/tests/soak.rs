@@ -126,7 +126,7 @@ fn reload(bench: &mut Bench, count: u32) {
             (3, true) => {
                 bench.said().is_none() && format!("{:?}", bench.session().shaders).contains(&format!("// {index}\\n"))
             }
-            (_, true) => bench.said().is_none() && !bench.pictures().shares(&pictures),
+            (_, true) => bench.said().is_none() && !bench.pictures().shares_memory(&pictures),
         });
         if index % 50 == 0 {
             picture(&mut bench.window);

@@ -1,0 +1,58 @@
+//! Reads the chunks of a PNG: checks that the file is complete and extracts its colour tags.
+//!
+//! Not by `png::Info`, which lacks the name of the colour profile, and whose reader must decode all pixels to find a
+//! truncated end.
+
+/// Colour tags of a PNG. (PNG 3, 4.3 "Colour spaces")
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ColourTags {
+    /// cICP: code points of primaries, transfer function and matrix, and the full-range flag.
+    pub cicp: Option<[u8; 4]>,
+    /// Name of the embedded ICC profile.
+    pub profile: Option<String>,
+    /// True if the file has an sRGB chunk.
+    pub srgb: bool,
+    /// gAMA: the encoding exponent, times 100000.
+    pub gamma: Option<u32>,
+    /// cHRM: x and y of white, red, green and blue, times 100000.
+    pub primaries: Option<[[u32; 2]; 4]>,
+}
+
+/// Reads the tags without decoding pixels. `None` if the file ends before its last chunk does.
+pub fn colour_tags(bytes: &[u8]) -> Option<ColourTags> {
+    let mut rest = bytes.get(8..)?;
+    let mut tags = ColourTags::default();
+    let mut has_pixels = false;
+    loop {
+        let (length, after) = rest.split_first_chunk()?;
+        let (kind, after) = after.split_first_chunk::<4>()?;
+        let length = u32::from_be_bytes(*length) as usize;
+        let data = after.get(..length)?;
+        // A 4-byte checksum follows the data.
+        rest = after.get(length.checked_add(4)?..)?;
+        match kind {
+            b"IEND" => return Some(tags),
+            b"IDAT" => has_pixels = true,
+            // Colour chunks are only valid before the pixels.
+            _ if has_pixels => {}
+            b"cICP" => tags.cicp = tags.cicp.or(data.try_into().ok()),
+            b"sRGB" => tags.srgb = true,
+            b"gAMA" => tags.gamma = tags.gamma.or(numbers(data).map(|[gamma]| gamma)),
+            b"cHRM" => {
+                let pairs = |[a, b, c, d, e, f, g, h]: [u32; 8]| [[a, b], [c, d], [e, f], [g, h]];
+                tags.primaries = tags.primaries.or(numbers(data).map(pairs));
+            }
+            b"iCCP" => {
+                let name = data.split(|&byte| byte == 0).next().unwrap_or_default();
+                tags.profile.get_or_insert_with(|| name.iter().take(79).map(|&byte| char::from(byte)).collect());
+            }
+            _ => {}
+        }
+    }
+}
+
+fn numbers<const N: usize>(data: &[u8]) -> Option<[u32; N]> {
+    let (numbers, rest) = data.as_chunks::<4>();
+    let numbers: [[u8; 4]; N] = numbers.try_into().ok()?;
+    rest.is_empty().then(|| numbers.map(u32::from_be_bytes))
+}

@@ -1,0 +1,159 @@
+//! Decoded images of a particle system: ramps, sprite flipbook, detail map, six-way maps and noise.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+
+use super::noise::NoiseVolume;
+use super::ramp::Ramp;
+use super::sprite::Sprite;
+use super::sprite::alpha_bounds::AlphaBounds;
+use crate::error::FieldError;
+use crate::formula::diffuse_bake::zonal_coefficients;
+use crate::formula::ramp::sample_ramp_2d;
+use crate::settings::{RampFilter, Settings};
+
+/// Decoded images of a particle system. The reference renderer samples these; the GPU renderer uploads them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialAssets {
+    /// Flipbook of normal maps.
+    pub sprite: Sprite,
+    /// Depth and motion of the sprite, one per frame: see [`sprite::detail`](crate::assets::sprite::detail). Required
+    /// by depth sprites and `sprite.motion`.
+    pub detail: Option<Sprite>,
+    /// Six-way light maps of the sprite, for [`Lighting::SixWay`](crate::settings::Lighting::SixWay): twice as many
+    /// frames as the sprite, of the same size. See [`sprite::six_way`](crate::assets::sprite::six_way).
+    pub six_way: Option<Sprite>,
+    /// Density noise of volumetric sprites.
+    pub noise: NoiseVolume,
+    /// Diffuse light. u (across) = dot(n, l)/2 + 1/2: 0 faces away from the light, 1 faces it. v (up) = amount times
+    /// `boost`.
+    pub diffuse_ramp: Ramp,
+    /// Diffuse light from behind, with the same axes, for [`Backlight::Ramp`](crate::settings::Backlight::Ramp).
+    pub backlight_ramp: Ramp,
+    /// Soft scatter by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
+    pub soft_scatter_ramp: Ramp,
+    /// Specular scatter by distance² (across) and amount (up).
+    pub specular_ramp: Ramp,
+    /// Painted image of a lit sphere, for [`DiffuseMode::PaintedMotif`](crate::settings::DiffuseMode::PaintedMotif).
+    pub motif: Ramp,
+    /// Particle colour by age; forward path only. One row. (MS)
+    pub age_ramp: Ramp,
+    /// Coverage by amount times `boost`, for [`CoverageMode::Ramp`](crate::settings::CoverageMode::Ramp): black is
+    /// transparent, white opaque. One row.
+    pub coverage_ramp: Ramp,
+}
+
+impl MaterialAssets {
+    /// True if both share the memory of every image. Cheap, unlike `==`.
+    pub fn shares_memory(&self, other: &Self) -> bool {
+        let sprite = |a: &Option<Sprite>, b: &Option<Sprite>| match (a, b) {
+            (Some(a), Some(b)) => a.shares_memory(b),
+            (None, None) => true,
+            _ => false,
+        };
+        self.sprite.shares_memory(&other.sprite)
+            && sprite(&self.detail, &other.detail)
+            && sprite(&self.six_way, &other.six_way)
+            && self.noise.shares_memory(&other.noise)
+            && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares_memory(b))
+    }
+
+    fn ramps(&self) -> [&Ramp; 7] {
+        [
+            &self.diffuse_ramp,
+            &self.soft_scatter_ramp,
+            &self.specular_ramp,
+            &self.motif,
+            &self.age_ramp,
+            &self.coverage_ramp,
+            &self.backlight_ramp,
+        ]
+    }
+
+    /// Sizes and frame counts, as validation and the view setup need them.
+    pub fn info(&self) -> MaterialInfo {
+        // v = 1: the row of fully opaque smoke.
+        let zonal = |ramp| {
+            zonal_coefficients(|cos| sample_ramp_2d(ramp, RampFilter::Bilinear, Vec2::new(cos * 0.5 + 0.5, 1.0)))
+        };
+        MaterialInfo {
+            sprite_size: self.sprite.size() as f32,
+            alpha_bounds: Arc::new(AlphaBounds::new(&self.sprite, self.six_way.as_ref())),
+            frame_count: self.sprite.frame_count() as f32,
+            detail: self.detail.as_ref().map(|detail| DetailInfo {
+                frame_count: detail.frame_count(),
+                lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
+            }),
+            six_way: self.six_way.as_ref().map(|maps| (maps.size(), maps.frame_count())),
+            zonal: zonal(&self.diffuse_ramp),
+            backlight_zonal: zonal(&self.backlight_ramp),
+        }
+    }
+}
+
+/// Properties of a material's images that preparing a frame needs.
+#[derive(Clone, Debug)]
+pub struct MaterialInfo {
+    /// Side of one frame of the sprite, texels.
+    pub sprite_size: f32,
+    /// Frames of the sprite, followed by those of the six-way maps.
+    pub alpha_bounds: Arc<AlphaBounds>,
+    /// Frames of the sprite.
+    pub frame_count: f32,
+    /// The detail map, if there is one.
+    pub detail: Option<DetailInfo>,
+    /// Frame size in texels and frame count of the six-way maps.
+    pub six_way: Option<(u32, u32)>,
+    /// Zonal harmonic coefficients of the diffuse ramp.
+    pub zonal: [Vec3; 3],
+    /// Zonal harmonic coefficients of the backlight ramp.
+    pub backlight_zonal: [Vec3; 3],
+}
+
+/// Properties of a detail map that preparing a frame needs.
+#[derive(Clone, Copy, Debug)]
+pub struct DetailInfo {
+    /// Frames of the detail map.
+    pub frame_count: u32,
+    /// log2 of the sprite's size over the detail map's size.
+    pub lod: f32,
+}
+
+impl MaterialInfo {
+    /// Returns an error if the settings need an image that the material of system `index` lacks.
+    pub fn validate(&self, index: usize, settings: &Settings) -> Result<(), FieldError> {
+        let refuse = |field: &str, value: String, expected: String| {
+            Err(FieldError::new(format!("systems[{index}].{field}"), value, expected))
+        };
+        let frames = self.frame_count as u32;
+        match self.six_way {
+            None if settings.is_six_way() => {
+                let expected =
+                    "\"normals\", or six-way maps in the material, as `haze sprite bake --six-way` makes them";
+                return refuse("settings.lighting", "\"six_way\"".into(), expected.into());
+            }
+            Some((size, count)) if (size, count) != (self.sprite_size as u32, 2 * frames) => {
+                let expected = format!("twice the sprite's frames, {}, of {} texels", 2 * frames, self.sprite_size);
+                return refuse("material.six_way", format!("{count} frames of {size} texels"), expected);
+            }
+            _ => {}
+        }
+        let Some(detail) = &self.detail else {
+            let expected =
+                || "another value, or a material with a detail map, as `haze sprite bake` makes it".to_owned();
+            if settings.technique.is_depth_sprite() {
+                return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected());
+            }
+            if settings.sprite.motion > 0.0 {
+                return refuse("settings.sprite.motion", settings.sprite.motion.to_string(), expected());
+            }
+            return Ok(());
+        };
+        if detail.frame_count != frames {
+            let expected = format!("as many as the sprite has, {}", self.frame_count);
+            return refuse("material.detail", format!("{} frames", detail.frame_count), expected);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,36 @@
+//! Roles of ramps.
+
+use crate::settings::choice;
+
+choice! {
+    /// Use of a ramp; `ramps/README.md` describes the axes.
+    RampRole {
+        /// Diffuse light by the angle between normal and light.
+        #[default]
+        Diffuse = "diffuse",
+        /// Diffuse light from behind, by the same angle.
+        Backlight = "backlight",
+        /// Soft scatter, by amount.
+        Scatter = "scatter",
+        /// Specular scatter of a light behind the smoke, by distance and amount.
+        Specular = "specular",
+        /// Coverage by amount.
+        Coverage = "coverage",
+        /// Particle colour by age.
+        Age = "age",
+    }
+}
+
+impl RampRole {
+    /// Returns the role from a file name: `specular_moon.png` is a specular ramp.
+    pub fn of_name(name: &str) -> Option<Self> {
+        let first = name.split(['_', '.', '-']).next().unwrap_or_default();
+        Self::ALL.iter().copied().find(|role| role.name() == first)
+    }
+
+    /// Returns the role from a material field's name: `soft_scatter_ramp` holds a scatter ramp.
+    pub fn of_field(field: &str) -> Option<Self> {
+        let field = field.strip_suffix("_ramp")?;
+        Self::ALL.iter().copied().find(|role| field.ends_with(role.name()))
+    }
+}

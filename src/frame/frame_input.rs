@@ -1,0 +1,148 @@
+//! Input of one frame.
+
+use glam::Vec3;
+
+use super::bounds::Bounds;
+use super::emitter_snapshot::EmitterSnapshot;
+use super::light::Light;
+use super::material::Material;
+use super::particle::Particle;
+use super::view::View;
+use crate::settings::{BlendOrder, DebugView, Settings};
+
+/// Input of [`Renderer::prepare`](crate::Renderer::prepare) for one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// The camera.
+    pub view: View,
+    /// Depth of the opaque scene, already rendered in this encoder or an earlier one.
+    pub scene_depth: SceneDepth<'a>,
+    /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
+    pub lights: &'a [Light],
+    /// Particle systems, in any order. They are drawn far to near.
+    pub systems: &'a [System<'a>],
+    /// Seconds from any start. The noise of volumetric sprites rises with time.
+    pub time: f32,
+    /// Up direction of the world, along which the noise rises; need not be unit length.
+    pub up: Vec3,
+    /// Debug views that may be shown of this frame; [`DebugView::Final`] for a normal image. All of them share one
+    /// accumulation, except [`DebugView::Overdraw`], which needs a pass of its own.
+    pub debug_views: &'a [DebugView],
+}
+
+impl<'a> Frame<'a> {
+    /// Frame without lights and systems; y is up.
+    pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
+        let debug_views = &[DebugView::Final];
+        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, debug_views }
+    }
+}
+
+/// Depth of the opaque scene at full resolution: single-sampled, with `TEXTURE_BINDING` usage, as large as the host's
+/// colour target. `docs/depth.md` has a table of which of the two is read and which is tested.
+#[derive(Clone, Copy, Debug)]
+pub enum SceneDepth<'a> {
+    /// Depth buffer written with the view's projection: a 2D view of its depth aspect.
+    Buffer(&'a wgpu::TextureView),
+    /// `R32Float` target with linear view depth in metres. Values from 1e6 up mean that there is no surface.
+    Linear(&'a wgpu::TextureView),
+    /// Both, of the same scene. The buffer is read, with two exceptions: systems of the technique
+    /// [`SoftLinear`](crate::settings::Technique::SoftLinear), and backends (OpenGL) that cannot read a buffer that is
+    /// attached to the pass.
+    Both {
+        /// As in [`SceneDepth::Buffer`].
+        buffer: &'a wgpu::TextureView,
+        /// As in [`SceneDepth::Linear`].
+        linear: &'a wgpu::TextureView,
+    },
+}
+
+impl<'a> SceneDepth<'a> {
+    /// The depth buffer, if there is one.
+    pub fn buffer(&self) -> Option<&'a wgpu::TextureView> {
+        match self {
+            Self::Buffer(view) | Self::Both { buffer: view, .. } => Some(view),
+            Self::Linear(_) => None,
+        }
+    }
+
+    /// The linear target, if there is one.
+    pub fn linear(&self) -> Option<&'a wgpu::TextureView> {
+        match self {
+            Self::Linear(view) | Self::Both { linear: view, .. } => Some(view),
+            Self::Buffer(_) => None,
+        }
+    }
+}
+
+/// One particle system: sprites that are accumulated together and lit as one body.
+#[derive(Clone, Copy, Debug)]
+pub struct System<'a> {
+    /// Identifies the system from frame to frame, whatever its position in the list. Must be unique within a frame.
+    pub key: u64,
+    /// The sprites, in any order.
+    pub particles: Particles<'a>,
+    /// World-space box that contains every sprite with its corners: [`Settings::sprite_extent`] radii around each
+    /// particle. It decides which pixels are lit, which lights reach the smoke, and whether the system is visible.
+    /// Sprites outside the box may be cut off; a box that is too large costs time. `None` measures a slice with
+    /// [`particle_bounds`](crate::frame::particle_bounds).
+    pub bounds: Option<Bounds>,
+    /// View depth, metres, of the plane on which light is evaluated, and by which systems are drawn far to near. It
+    /// should move without jumps. The mean depth of the sprites, weighted by amount and area, is best; `None` uses it
+    /// for a slice. For a buffer `None` uses the middle of the part of `bounds` in front of the viewer, which jumps
+    /// when `bounds` does.
+    pub depth: Option<f32>,
+    /// Settings of the system.
+    pub settings: &'a Settings,
+    /// Ramps and sprite images.
+    pub material: &'a Material,
+}
+
+impl<'a> System<'a> {
+    /// System with a measured box. If a frame has more than one system, give each a `key`.
+    pub const fn new(particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
+        Self { key: 0, particles, bounds: None, depth: None, settings, material }
+    }
+}
+
+/// Source of the sprites.
+#[derive(Clone, Copy, Debug)]
+pub enum Particles<'a> {
+    /// Particles in memory. [`Renderer::prepare`](crate::Renderer::prepare) sorts and uploads them. A sprite with a
+    /// number that is not finite or out of range is skipped.
+    Slice(&'a [Particle]),
+    /// Particles on the GPU, in the layout of [`Particle`], with `VERTEX` usage. Requires `System::bounds`.
+    Buffer {
+        /// Contains `count` particles from `offset` on.
+        buffer: &'a wgpu::Buffer,
+        /// Bytes before the first particle: a multiple of 4, or of 16 if compute shaders read the buffer because of
+        /// `path` or `is_sorted`.
+        offset: u64,
+        /// Number of particles to draw.
+        count: u32,
+        /// True if the particles are ordered back to front. If they are not and their order matters, the GPU sorts
+        /// them, at equal depth by index. That needs compute shaders and `STORAGE` usage.
+        is_sorted: bool,
+    },
+    /// Particles of an emitter at one time. The path `tiled` evaluates them on the GPU, with differences from
+    /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre
+    /// and second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is
+    /// [`EmitterSnapshot::bounds`]. The mean depth is taken from a sample of about a thousand.
+    Emitter(&'a EmitterSnapshot),
+}
+
+impl Particles<'_> {
+    /// Number of particles, including invisible ones.
+    pub fn count(&self) -> u32 {
+        match *self {
+            Self::Slice(particles) => particles.len() as u32,
+            Self::Buffer { count, .. } => count,
+            Self::Emitter(emission) => emission.count(),
+        }
+    }
+
+    /// True for a buffer that is not sorted although its order matters.
+    pub fn need_sorting(&self, settings: &Settings) -> bool {
+        matches!(self, Self::Buffer { is_sorted: false, .. }) && settings.order() == BlendOrder::Sorted
+    }
+}

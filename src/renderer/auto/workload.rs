@@ -1,0 +1,68 @@
+//! Estimate of a system's accumulation workload from a sample of its sprites.
+
+use glam::UVec2;
+
+use crate::frame::Particle;
+use crate::settings::{BlendOrder, Layers, Settings, Technique};
+use crate::view_setup::{SpriteProjector, TexelGrid, optical_depth};
+
+/// Maximum number of sprites sampled; the estimate takes about ten microseconds.
+const SAMPLE: usize = 256;
+/// Overdraw assumed for sprites that the CPU does not know, and the optical depth of each.
+const ASSUMED_LAYERS: f64 = 16.0;
+const ASSUMED_DEPTH: f64 = 0.05;
+
+/// Accumulation workload of a system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathWorkload {
+    /// Technique of the sprites.
+    pub technique: Technique,
+    /// Number of sprites, times `debug_loop`.
+    pub sprites: f64,
+    /// Texels that the sprites cover, counted once per sprite.
+    pub fragments: f64,
+    /// Size of the target, texels.
+    pub size: UVec2,
+    /// Mean optical depth of a sprite, −ln(1 − amount), over the texels that it covers; 0 if no layer may be skipped.
+    pub optical_depth: f64,
+    /// Noise lookups per fragment of a volumetric sprite: octaves times march steps.
+    pub lookups: f64,
+    /// True if only the number of sprites is known.
+    pub is_assumed: bool,
+}
+
+/// Estimates the workload of `sprites` sprites on a target. `known`: particles that stand for all, and the number of
+/// sprites that each represents.
+pub(crate) fn estimate_workload(
+    projector: &SpriteProjector<'_>,
+    grid: &TexelGrid,
+    sprites: u32,
+    known: Option<(&[Particle], u32)>,
+    settings: &Settings,
+) -> PathWorkload {
+    let texels = grid.size.as_dvec2().element_product();
+    let loops = f64::from(settings.sprite.debug_loop);
+    let (fragments, depth) = match known {
+        None => (ASSUMED_LAYERS * texels, ASSUMED_DEPTH),
+        Some((particles, each)) => {
+            let step = particles.len().div_ceil(SAMPLE).max(1);
+            let sample = particles.iter().step_by(step).filter(|particle: &&Particle| particle.is_visible());
+            let (areas, depths) = projector.coverages(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
+                // `optical_depth` is the mean over the whole square; only the share that is not trimmed is covered.
+                let depth = f64::from(optical_depth(sprite.particle, settings)) / sprite.share.max(1.0e-6);
+                (areas + sprite.texels, depths + sprite.texels * depth)
+            });
+            (areas * step as f64 * f64::from(each), depths / f64::max(areas, 1.0e-9))
+        }
+    };
+    let stops = settings.accumulate.layers == Layers::Visible && settings.order() == BlendOrder::Sorted;
+    PathWorkload {
+        technique: settings.technique,
+        sprites: f64::from(sprites) * loops,
+        fragments: fragments * loops,
+        size: grid.size,
+        optical_depth: if stops { depth } else { 0.0 },
+        lookups: f64::from(settings.volumetric.march_steps * settings.volumetric.noise_octaves),
+        is_assumed: known.is_none(),
+    }
+}

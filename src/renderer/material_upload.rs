@@ -1,0 +1,245 @@
+//! Upload of materials: sprite images, ramps and noise.
+
+use glam::UVec2;
+
+use super::gpu::Gpu;
+use super::gpu::capabilities::array_layers;
+use crate::assets::material_assets::MaterialAssets;
+use crate::assets::noise::NoiseVolume;
+use crate::assets::ramp::Ramp;
+use crate::assets::sprite::Sprite;
+use crate::assets::sprite::alpha_bounds::AlphaBounds;
+use crate::error::FieldError;
+use crate::frame::Material;
+
+/// Samplers and textures that every material binds.
+#[derive(Debug)]
+pub(crate) struct SharedTextures {
+    /// For ramps and sprites: clamps at the border.
+    linear: wgpu::Sampler,
+    /// For noise: repeats.
+    repeat: wgpu::Sampler,
+    /// Placeholder for a missing detail map. No shader reads it, but the binding must be filled.
+    no_detail: wgpu::TextureView,
+}
+
+impl SharedTextures {
+    pub fn new(gpu: &Gpu<'_>) -> Self {
+        let sampler = |label, address_mode| {
+            gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some(label),
+                address_mode_u: address_mode,
+                address_mode_v: address_mode,
+                address_mode_w: address_mode,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            })
+        };
+        let no_detail = Sprite::with_levels(1, 1, vec![[128, 128, 128, 0]]);
+        Self {
+            linear: sampler("haze linear", wgpu::AddressMode::ClampToEdge),
+            repeat: sampler("haze repeat", wgpu::AddressMode::Repeat),
+            no_detail: upload_sprite(gpu, "haze no detail", &no_detail, None, &mut 0),
+        }
+    }
+}
+
+/// Uploads the images and binds them.
+///
+/// # Errors
+/// Names an image that is too large for the device, or six-way maps that do not fit the sprite.
+pub(crate) fn create_material(
+    gpu: &Gpu<'_>,
+    layout: &wgpu::BindGroupLayout,
+    shared: &SharedTextures,
+    context: u64,
+    assets: &MaterialAssets,
+) -> Result<Material, FieldError> {
+    validate_sizes(&gpu.device.limits(), assets)?;
+    let mut bytes = 0;
+    let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, assets.six_way.as_ref(), &mut bytes);
+    let info = assets.info();
+    let alpha_bounds = upload_filled(gpu, &info.alpha_bounds, &mut bytes);
+    let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, None, &mut bytes));
+    let noise = upload_noise(gpu, &assets.noise, &mut bytes);
+    let mut ramp = |label, ramp| upload_ramp(gpu, label, ramp, &mut bytes);
+    let diffuse_ramp = ramp("haze diffuse_ramp", &assets.diffuse_ramp);
+    let soft_scatter_ramp = ramp("haze soft_scatter_ramp", &assets.soft_scatter_ramp);
+    let specular_ramp = ramp("haze specular_ramp", &assets.specular_ramp);
+    let motif = ramp("haze painted_motif", &assets.motif);
+    let age_ramp = ramp("haze age_ramp", &assets.age_ramp);
+    let coverage_ramp = ramp("haze coverage_ramp", &assets.coverage_ramp);
+    let backlight_ramp = ramp("haze backlight_ramp", &assets.backlight_ramp);
+    let texture = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+    let sampler =
+        |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
+    let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("haze material"),
+        layout,
+        entries: &[
+            texture(0, &sprite),
+            texture(1, &diffuse_ramp),
+            texture(2, &soft_scatter_ramp),
+            texture(3, &specular_ramp),
+            texture(4, &motif),
+            sampler(5, &shared.linear),
+            texture(6, detail.as_ref().unwrap_or(&shared.no_detail)),
+            texture(7, &age_ramp),
+            texture(8, &noise),
+            sampler(9, &shared.repeat),
+            texture(10, &coverage_ramp),
+            texture(11, &alpha_bounds),
+            texture(12, &backlight_ramp),
+        ],
+    });
+    Ok(Material { context, bind_group, info, bytes })
+}
+
+/// Refuses images that are too large for the device, and six-way maps that do not fit the sprite.
+fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), FieldError> {
+    let check = |name: &str, side: u32, max: u32| {
+        if side <= max {
+            return Ok(());
+        }
+        Err(FieldError::new(
+            format!("material.{name}"),
+            format!("{side} texels"),
+            format!("at most {max} on this device"),
+        ))
+    };
+    let flat = limits.max_texture_dimension_2d;
+    let ramps = [
+        ("diffuse_ramp", &assets.diffuse_ramp),
+        ("soft_scatter_ramp", &assets.soft_scatter_ramp),
+        ("specular_ramp", &assets.specular_ramp),
+        ("motif", &assets.motif),
+        ("age_ramp", &assets.age_ramp),
+        ("coverage_ramp", &assets.coverage_ramp),
+        ("backlight_ramp", &assets.backlight_ramp),
+    ];
+    for (name, ramp) in ramps {
+        check(name, ramp.size().max_element(), flat)?;
+    }
+    for (name, sprite) in [("sprite", Some(&assets.sprite)), ("detail", assets.detail.as_ref())] {
+        let Some(sprite) = sprite else { continue };
+        check(name, sprite.size(), flat)?;
+        check(name, array_layers(sprite.frame_count()), limits.max_texture_array_layers)?;
+    }
+    if let Some(maps) = &assets.six_way {
+        if maps.size() != assets.sprite.size() {
+            let expected = format!("the size of the sprite, {}", assets.sprite.size());
+            return Err(FieldError::new("material.six_way", format!("{} texels", maps.size()), expected));
+        }
+        let layers = array_layers(assets.sprite.frame_count() + maps.frame_count());
+        if layers > limits.max_texture_array_layers {
+            let max = limits.max_texture_array_layers;
+            let expected = format!("at most {max} on this device, with the sprite's own");
+            return Err(FieldError::new("material.six_way", format!("{} frames", maps.frame_count()), expected));
+        }
+    }
+    check("noise", assets.noise.size(), limits.max_texture_dimension_3d)
+}
+
+fn upload_ramp(gpu: &Gpu<'_>, label: &str, ramp: &Ramp, bytes: &mut u64) -> wgpu::TextureView {
+    let size = extent(ramp.size(), 1);
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let data = ramp.bytes();
+    *bytes += data.len() as u64;
+    gpu.queue.write_texture(texture.as_image_copy(), &data, layout(8 * size.width, size.height), size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn upload_noise(gpu: &Gpu<'_>, noise: &NoiseVolume, bytes: &mut u64) -> wgpu::TextureView {
+    let size = extent(UVec2::splat(noise.size()), noise.size());
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("haze noise"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    *bytes += noise.bytes().len() as u64;
+    gpu.queue.write_texture(texture.as_image_copy(), noise.bytes(), layout(4 * size.width, size.height), size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Uploads a sprite as an array texture with all mip levels. `after`: further frames of the same size, appended.
+fn upload_sprite(
+    gpu: &Gpu<'_>,
+    label: &str,
+    sprite: &Sprite,
+    after: Option<&Sprite>,
+    bytes: &mut u64,
+) -> wgpu::TextureView {
+    let layers = array_layers(sprite.frame_count() + after.map_or(0, Sprite::frame_count));
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: extent(UVec2::splat(sprite.size()), layers),
+        mip_level_count: sprite.level_count(),
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for level in 0..sprite.level_count() {
+        let size = sprite.level_size(level);
+        *bytes += 4 * u64::from(size) * u64::from(size) * u64::from(layers);
+        let mut first = 0;
+        for sprite in std::iter::once(sprite).chain(after) {
+            let origin = wgpu::Origin3d { z: first, ..wgpu::Origin3d::ZERO };
+            gpu.queue.write_texture(
+                wgpu::TexelCopyTextureInfo { mip_level: level, origin, ..texture.as_image_copy() },
+                sprite.level_bytes(level),
+                layout(4 * size, size),
+                extent(UVec2::splat(size), sprite.frame_count()),
+            );
+            first += sprite.frame_count();
+        }
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
+}
+
+/// Uploads the alpha bounds of a sprite: one texel per mip level and frame.
+fn upload_filled(gpu: &Gpu<'_>, alpha_bounds: &AlphaBounds, bytes: &mut u64) -> wgpu::TextureView {
+    let size = extent(alpha_bounds.size(), 1);
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("haze sprite filled"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let data = alpha_bounds.bytes();
+    *bytes += data.len() as u64;
+    gpu.queue.write_texture(texture.as_image_copy(), data, layout(16 * size.width, size.height), size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn extent(size: UVec2, layers: u32) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers }
+}
+
+fn layout(bytes_per_row: u32, rows: u32) -> wgpu::TexelCopyBufferLayout {
+    wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes_per_row), rows_per_image: Some(rows) }
+}

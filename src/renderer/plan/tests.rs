@@ -1,0 +1,153 @@
+//! Tests of planning.
+
+use super::*;
+use crate::settings::{DiffuseMode, FadeCurve, RenderPath};
+use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
+
+fn inputs() -> PipelineInputs<'static> {
+    PipelineInputs {
+        host: HostPass { depth_format: Some(Depth32Float), ..HostPass::color_only(Rgba16Float) },
+        exact_filtering: false,
+        read_only_depth: true,
+        tiles: Some(true),
+        scene_depth: SceneDepthKind::Both(Depth24Plus),
+        reversed: false,
+        mirrored: false,
+        size: UVec2::new(1280, 720),
+        debug_views: &[DebugView::Final],
+    }
+}
+
+fn deferred<'a>(inputs: &PipelineInputs<'a>, settings: &Settings) -> DeferredPlan<'a> {
+    match plan(inputs, settings, false) {
+        Plan::Deferred(plan) => plan,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn planned_depth_reads_and_tests_match_the_table_in_the_docs() {
+    let table = include_str!("../../../docs/depth.md");
+    let rows = table.lines().filter(|line| ["| Buffer ", "| Linear ", "| Both "].iter().any(|k| line.starts_with(k)));
+    let mut seen = 0;
+    for row in rows {
+        let cells: Vec<_> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let [depth, technique, source, backend, read, compared, tested] = cells[..] else { panic!("{row}") };
+        let inputs = PipelineInputs {
+            scene_depth: match depth {
+                "Buffer" => SceneDepthKind::Buffer(Depth24Plus),
+                "Linear" => SceneDepthKind::Linear,
+                _ => SceneDepthKind::Both(Depth24Plus),
+            },
+            read_only_depth: backend != "OpenGL",
+            ..inputs()
+        };
+        // "soft" in the table stands for all other techniques.
+        let techniques =
+            Technique::ALL.iter().filter(|t| (**t == Technique::SoftLinear) == (technique == "soft_linear"));
+        for &technique in techniques {
+            let mut settings = Settings { technique, ..Settings::default() };
+            settings.accumulate.depth_source = source.parse().unwrap();
+            let plan = deferred(&inputs, &settings);
+            assert_eq!(plan.reads_linear, read == "linear", "{row}");
+            assert_eq!(plan.accumulate.host_depth, compared == "host's", "{row}");
+            assert_eq!(plan.depth_downsample.is_some(), compared == "reduced", "{row}");
+            let test = match tested {
+                "reduced" => DepthTest::Reduced,
+                "copy" => DepthTest::Copy,
+                _ => DepthTest::Host(Depth24Plus, false),
+            };
+            assert_eq!(plan.accumulate.depth_test, test, "{row}");
+            assert_eq!(plan.depth_copy.is_some(), tested == "copy", "{row}");
+            settings.soft_fade.curve = FadeCurve::Always;
+            let always = deferred(&inputs, &settings).accumulate.depth_test;
+            assert_eq!(always, if technique.is_soft() { DepthTest::InShader } else { test }, "{row}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 60, "{seen}");
+}
+
+#[test]
+fn each_stage_plans_only_the_passes_that_it_shows() {
+    for &debug_view in DebugView::ALL {
+        let mut settings = Settings::default();
+        let inputs = PipelineInputs { debug_views: &[debug_view], ..inputs() };
+        let shown = deferred(&inputs, &settings);
+        let glows = matches!(debug_view, DebugView::Final | DebugView::SpecularScatter);
+        assert_eq!(shown.specular_scatter.is_some(), glows, "{debug_view:?}");
+        let debug_views: Vec<_> = shown.transfers().map(|key| key.debug_view).collect();
+        let is_drawn = debug_view != DebugView::SpecularScatter;
+        assert_eq!(debug_views, if is_drawn { vec![debug_view] } else { vec![] });
+        assert_eq!(shown.overdraw.is_some(), debug_view == DebugView::Overdraw);
+        assert!(!shown.accumulate.overdraw);
+        settings.specular_scatter.intensity = 0.0;
+        assert_eq!(deferred(&inputs, &settings).specular_scatter, None);
+        // Forward sprites are lit as they are drawn: there are no intermediate stages to show.
+        settings.path = RenderPath::Forward;
+        let shows_lit_smoke = matches!(debug_view, DebugView::Final | DebugView::Combined);
+        assert_eq!(plan(&inputs, &settings, false) != Plan::Skip, shows_lit_smoke, "{debug_view:?}");
+    }
+}
+
+#[test]
+fn only_the_modes_cubemap_and_motif_bake_light() {
+    for &mode in DiffuseMode::ALL {
+        let mut settings = Settings::default();
+        settings.diffuse.mode = mode;
+        let bakes = matches!(mode, DiffuseMode::Cubemap | DiffuseMode::Motif);
+        assert_eq!(deferred(&inputs(), &settings).diffuse_bake.is_some(), bakes, "{mode:?}");
+    }
+}
+
+#[test]
+fn light_target_is_planned_only_for_final_images_at_reduced_resolution() {
+    let mut settings = Settings::default();
+    assert_eq!(deferred(&inputs(), &settings).light_target, None);
+    settings.accumulate.lighting_resolution = LightingResolution::Target;
+    for &debug_view in DebugView::ALL {
+        let inputs = PipelineInputs { debug_views: &[debug_view], ..inputs() };
+        let shown = deferred(&inputs, &settings);
+        let shows_lit_smoke = matches!(debug_view, DebugView::Final | DebugView::Combined);
+        assert_eq!(shown.light_target.is_some(), shows_lit_smoke, "{debug_view:?}");
+        assert_eq!(shown.transfers().any(|key| key.lit), shows_lit_smoke, "{debug_view:?}");
+    }
+    let all = PipelineInputs { debug_views: DebugView::ALL, ..inputs() };
+    let lit: Vec<_> = deferred(&all, &settings).transfers().filter(|key| key.lit).map(|key| key.debug_view).collect();
+    assert_eq!(lit, [DebugView::Final, DebugView::Combined]);
+    settings.accumulate.scale = 1;
+    assert_eq!(deferred(&inputs(), &settings).light_target, None);
+    settings.accumulate.max_side = 1279;
+    assert!(deferred(&inputs(), &settings).light_target.is_some());
+}
+
+#[test]
+fn one_of_each_covers_every_pass() {
+    for read_only_depth in [true, false] {
+        let [Plan::Deferred(deferred), Plan::Deferred(lit), Plan::Forward(_), Plan::Deferred(tiled)] =
+            plans_covering_every_pass(read_only_depth, Some(true))
+        else {
+            panic!()
+        };
+        assert!(deferred.light_target.is_none() && lit.light_target.is_some());
+        assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
+        assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
+        assert!(tiled.tiled.is_some() && deferred.tiled.is_none());
+    }
+}
+
+#[test]
+fn transfer_key_follows_mirroring_reversed_depth_and_missing_depth_attachment() {
+    let transfer = |inputs: &PipelineInputs, back_faces| match plan(inputs, &Settings::default(), back_faces) {
+        Plan::Deferred(plan) => plan.transfer,
+        other => panic!("{other:?}"),
+    };
+    let plain = transfer(&inputs(), false);
+    assert!(!plain.back_faces && !plain.mirrored && !plain.reversed);
+    assert!(transfer(&inputs(), true).back_faces);
+    assert!(transfer(&PipelineInputs { mirrored: true, ..inputs() }, false).mirrored);
+    assert!(transfer(&PipelineInputs { reversed: true, ..inputs() }, false).reversed);
+    // Without a depth attachment, back faces are drawn.
+    let untested = PipelineInputs { host: HostPass::color_only(Rgba16Float), ..inputs() };
+    assert!(transfer(&untested, false).back_faces);
+}

@@ -1,0 +1,56 @@
+//! Shader modules from sources, with compiler errors located in the file that contains them.
+
+use std::convert::Infallible;
+
+use super::compose::Composed;
+use super::naga_messages::{marked_location, to_wgsl_terms};
+use super::sources::Sources;
+use crate::error::Error;
+use crate::renderer::gpu::error_scopes::{poll_once, with_error_scopes};
+use crate::renderer::gpu::pipeline::Shader;
+
+/// Creates the embedded shader of a pass.
+pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Result<Shader, Infallible> {
+    // A test composes every embedded shader, so this cannot fail. The device would report an empty module like any
+    // other error.
+    let composed = Sources::embedded().compose(&file_of(name)).unwrap_or_default();
+    Ok(Shader { module: create(device, name, &composed), path: composed.path })
+}
+
+/// Creates the shader of a pass from sources that may contain errors.
+///
+/// # Errors
+/// [`Error::Shader`]: the first error.
+pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources: &Sources) -> Result<Shader, Error> {
+    let composed = sources.compose(&file_of(name))?;
+    let mut module = None;
+    let created = with_error_scopes(device, || module.insert(create(device, name, &composed)).clone());
+    match created {
+        Ok(module) => Ok(Shader { module, path: composed.path }),
+        Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
+            let info = module.and_then(|module| poll_once(module.get_compilation_info()));
+            match info.and_then(|info| info.messages.into_iter().next()) {
+                Some(wgpu::CompilationMessage { message, location: Some(place), .. }) => {
+                    let naga_location = || {
+                        let line = place.line_number as usize;
+                        (line, composed.column(line, place.line_position as usize))
+                    };
+                    let (line, column) = marked_location(&message, &composed.text).unwrap_or_else(naga_location);
+                    composed.error_at(line, column, &to_wgsl_terms(&message))
+                }
+                _ => composed.error_at(1, 1, &reason),
+            }
+        })),
+    }
+}
+
+fn file_of(name: &str) -> String {
+    format!("{name}.wgsl")
+}
+
+fn create(device: &wgpu::Device, name: &'static str, composed: &Composed) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(name),
+        source: wgpu::ShaderSource::Wgsl(composed.text.as_str().into()),
+    })
+}

@@ -1,0 +1,85 @@
+//! Sprites, shared by accumulate and forward, and the variants of `shaders/lib/sprite_vertex.wgsl` and
+//! `sprite_fragment.wgsl`.
+
+use crate::frame::Particle;
+use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
+use crate::settings::{FadeCurve, Settings, SpriteAnimation, Technique};
+
+/// Layout of the instance buffer: one [`Particle`] per sprite.
+pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<Particle>() as u64,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
+};
+
+/// Sprite options that select a pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct SpriteKey {
+    technique: Technique,
+    animation: SpriteAnimation,
+    debug_sprite: bool,
+    six_way: bool,
+    motion: bool,
+    curve: FadeCurve,
+    linear_depth: bool,
+    exact_filtering: bool,
+}
+
+impl SpriteKey {
+    /// `linear_depth`: true if the host's depth is linear.
+    pub fn new(settings: &Settings, linear_depth: bool, exact_filtering: bool) -> Self {
+        Self {
+            technique: settings.technique,
+            animation: settings.sprite.animation,
+            debug_sprite: settings.sprite.debug_sprite,
+            six_way: settings.is_six_way(),
+            motion: settings.sprite.motion > 0.0,
+            curve: settings.soft_fade.curve,
+            linear_depth,
+            exact_filtering,
+        }
+    }
+
+    pub fn is_flat(&self) -> bool {
+        self.technique.is_flat()
+    }
+
+    /// Returns the override constants of the shared files, followed by the pass's own.
+    pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
+        let shared = [
+            enum_constant!("TECHNIQUE", self.technique),
+            enum_constant!("SPRITE_ANIMATION", self.animation),
+            bool_constant("DEBUG_SPRITE", self.debug_sprite),
+            bool_constant("SIX_WAY", self.six_way),
+            bool_constant("MOTION", self.motion),
+            enum_constant!("FADE_CURVE", self.curve),
+            bool_constant("LINEAR_DEPTH", self.linear_depth),
+            bool_constant("EXACT_FILTERING", self.exact_filtering),
+        ];
+        shared.into_iter().chain(of_pass).collect()
+    }
+}
+
+/// A range of sprites in a buffer.
+#[derive(Clone, Debug)]
+pub(crate) struct Sprites {
+    pub buffer: wgpu::Buffer,
+    /// Offset of the first sprite, bytes.
+    pub offset: u64,
+    pub count: u32,
+    /// Number of times that all of them are drawn.
+    pub loops: u32,
+    /// True if they are known to be back to front.
+    pub is_sorted: bool,
+    /// True if haze has sorted them, by view depth; a host may sort by another measure of depth.
+    pub by_view_depth: bool,
+}
+
+impl Sprites {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.buffer.slice(self.offset..));
+        for _ in 0..self.loops {
+            pass.draw(0..4, 0..self.count);
+        }
+    }
+}

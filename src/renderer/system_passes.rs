@@ -1,0 +1,213 @@
+//! Passes that one frame records for a system, with all their bindings.
+
+use std::sync::Arc;
+
+use super::auto::PathWorkload;
+use super::frame_bindings::DepthBindings;
+use super::gpu::Gpu;
+use super::gpu::record::begin_compute;
+use super::gpu::timing::Timing;
+use super::pass::Groups;
+use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
+use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
+use super::pass::depth_sort::DepthSort;
+use super::pass::diffuse_bake::DiffuseBake;
+use super::pass::emit::Emit;
+use super::pass::forward::Forward;
+use super::pass::light_target::LightTarget;
+use super::pass::specular_scatter::SpecularScatter;
+use super::pass::transfer::Transfer;
+use super::pipelines::Pipelines;
+use super::plan::{DeferredPlan, ForwardPlan};
+use super::sprite_instances::Sprites;
+use super::system_targets::{ReadyTargets, TargetInputs};
+use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
+use crate::settings::DebugView;
+use crate::view_setup::SystemSetup;
+
+/// Pass that produces a system's particles on the GPU, if their buffer cannot be drawn as is.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "as SystemPasses")]
+pub(crate) enum ParticlePass {
+    /// Evaluates an emitter.
+    Emit(Emit),
+    /// Sorts a host's particles back to front.
+    DepthSort(DepthSort, Groups),
+}
+
+impl ParticlePass {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        match self {
+            Self::Emit(emit) => emit.record(&mut begin_compute(encoder, "emit", timing)),
+            Self::DepthSort(sort, groups) => sort.record(&mut begin_compute(encoder, "sort", timing), groups),
+        }
+    }
+}
+
+/// Passes that draw a system.
+#[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one per system, built in place; a box would cost an allocation per frame"
+)]
+pub(crate) enum SystemPasses {
+    Forward(Forward),
+    Deferred(DeferredPasses),
+}
+
+/// Passes of the deferred path, in execution order.
+#[derive(Debug)]
+pub(crate) struct DeferredPasses {
+    pub depth_downsample: Option<Downsample>,
+    pub depth_copy: Option<Downsample>,
+    pub diffuse_bake: Option<DiffuseBake>,
+    pub accumulate: AccumulatePasses,
+    pub overdraw: Option<Accumulate>,
+    pub light_target: Option<LightTarget>,
+    pub transfer: Transfer,
+    pub specular_scatter: Option<SpecularScatter>,
+    pub sprites: Sprites,
+}
+
+/// Accumulation by either path.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "as SystemPasses")]
+pub(crate) enum AccumulatePasses {
+    Raster(Accumulate),
+    Tiled(TiledPasses),
+}
+
+impl AccumulatePasses {
+    pub fn is_tiled(&self) -> bool {
+        matches!(self, Self::Tiled(_))
+    }
+
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        match self {
+            Self::Raster(accumulate) => accumulate.record(encoder, timing),
+            Self::Tiled(passes) => passes.record(encoder, timing),
+        }
+    }
+}
+
+/// Resources from which a system's passes are built.
+pub(crate) struct PassBuilder<'a> {
+    pub gpu: Gpu<'a>,
+    pub pipelines: &'a Pipelines,
+    pub groups: Groups,
+    pub sprites: Sprites,
+}
+
+/// State of the path `tiled` that a system keeps between frames, and its workload.
+pub(crate) struct TiledContext<'a> {
+    pub system: &'a mut TiledSystem,
+    pub workload: Option<&'a PathWorkload>,
+}
+
+impl PassBuilder<'_> {
+    pub fn forward(self, plan: &ForwardPlan) -> SystemPasses {
+        let pipeline = self.pipelines.forward(self.gpu.device, plan.key);
+        SystemPasses::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
+    }
+
+    /// `depth`: the host depth that the plan reads. `host_depth`: the host's depth buffer, for a hardware depth test
+    /// against it.
+    pub fn deferred(
+        self,
+        plan: &DeferredPlan<'_>,
+        tiles: TiledContext<'_>,
+        targets: ReadyTargets<'_>,
+        setup: &SystemSetup,
+        depth: &DepthBindings,
+        host_depth: Option<&wgpu::TextureView>,
+    ) -> SystemPasses {
+        let Self { gpu, pipelines, groups, sprites } = self;
+        let device = gpu.device;
+        let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
+        let size = setup.rect.size;
+        let downsample = |key: Option<DepthDownsampleKey>, target: &Option<wgpu::TextureView>| {
+            Some(Downsample {
+                pipeline: pipelines.depth_downsample(device, key?),
+                target: target.clone()?,
+                size,
+                frame: groups.frame.clone(),
+                system: groups.system.clone(),
+            })
+        };
+        let accumulate = |key: AccumulateKey, targets: &Arc<[wgpu::TextureView]>| Accumulate {
+            pipeline: pipelines.accumulate(device, key),
+            targets: targets.clone(),
+            tested_depth: match key.depth_test {
+                DepthTest::InShader => None,
+                DepthTest::Reduced => accumulation.reduced_depth.clone(),
+                DepthTest::Copy => accumulation.depth_copy.clone(),
+                DepthTest::Host(..) => host_depth.cloned(),
+            },
+            size,
+            groups: groups.clone(),
+            inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
+            sprites: sprites.clone(),
+        };
+        let lights = setup.uniform.light_count;
+        SystemPasses::Deferred(DeferredPasses {
+            depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
+            depth_copy: downsample(plan.depth_copy, &accumulation.depth_copy),
+            diffuse_bake: plan.diffuse_bake.map(|key| DiffuseBake {
+                pipeline: pipelines.diffuse_bake(device, key),
+                faces: baked_diffuse.faces.clone(),
+                groups: groups.clone(),
+            }),
+            accumulate: match (plan.tiled, &pipelines.tiled) {
+                (Some(keys), Some(tiled)) => {
+                    let inputs = TiledInputs {
+                        sprites: &sprites,
+                        size,
+                        format: keys.accumulate.format,
+                        extra_attachment: keys.accumulate.extra_attachment,
+                        attachments: &accumulation.attachments,
+                        depth: accumulation.reduced_depth.as_ref().unwrap_or(&depth.depth),
+                        workload: tiles.workload,
+                    };
+                    AccumulatePasses::Tiled(tiles.system.write(&gpu, tiled, keys, &groups, &inputs))
+                }
+                _ => AccumulatePasses::Raster(accumulate(plan.accumulate, &accumulation.attachments)),
+            },
+            overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
+            light_target: plan.light_target.zip(accumulation.lit.as_ref()).map(|(key, target)| LightTarget {
+                pipeline: pipelines.light_target(device, key),
+                target: target.clone(),
+                size,
+                groups: groups.clone(),
+                inputs: inputs.transfer.clone(),
+            }),
+            transfer: transfer_pass(device, pipelines, plan, &groups, inputs),
+            specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
+                pipeline: pipelines.specular_scatter(device, key),
+                groups: groups.clone(),
+                inputs: inputs.transfer.clone(),
+                lights,
+            }),
+            sprites: sprites.clone(),
+        })
+    }
+}
+
+fn transfer_pass(
+    device: &wgpu::Device,
+    pipelines: &Pipelines,
+    plan: &DeferredPlan<'_>,
+    groups: &Groups,
+    inputs: &TargetInputs,
+) -> Transfer {
+    let mut by_debug_view = [const { None }; DebugView::ALL.len()];
+    for key in plan.transfers() {
+        by_debug_view[key.debug_view as usize] = Some(pipelines.transfer(device, key));
+    }
+    Transfer {
+        pipelines: by_debug_view,
+        groups: groups.clone(),
+        inputs: inputs.transfer.clone(),
+        overdraw_inputs: inputs.overdraw.clone(),
+        lit_inputs: inputs.lit.clone(),
+    }
+}

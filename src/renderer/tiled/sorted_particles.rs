@@ -1,0 +1,104 @@
+//! Sort of a host's particles back to front on the GPU.
+
+use super::sort_buffers::SortBuffers;
+use super::storage_buffers::bind;
+use super::tile_buffers::ParticleRange;
+use super::tiled_pipelines::TiledPipelines;
+use crate::formula::uniforms::TilesUniform;
+use crate::frame::Particle;
+use crate::renderer::gpu::Gpu;
+use crate::renderer::gpu::idle_counter::IdleCounter;
+use crate::renderer::gpu::record::uniform_buffer;
+use crate::renderer::memory_use::TiledMemory;
+use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
+use crate::renderer::pass::sort::{BLOCK, Sort};
+use crate::renderer::sprite_instances::Sprites;
+
+/// Buffers for the sorted particles of one system, kept between frames.
+#[derive(Debug, Default)]
+pub(crate) struct SortedParticles {
+    buffers: Option<DepthSortBuffers>,
+    idle: IdleCounter,
+}
+
+#[derive(Debug)]
+struct DepthSortBuffers {
+    capacity: u32,
+    uniform: wgpu::Buffer,
+    sort: SortBuffers,
+    particles: wgpu::Buffer,
+    /// Bind group with the host's own buffer; recreated when that is another.
+    inputs: Option<(ParticleRange, wgpu::BindGroup)>,
+}
+
+impl SortedParticles {
+    /// Prepares the buffers and the pass that sorts `sprites` into them. Returns the sorted sprites and the pass.
+    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, sprites: &Sprites) -> (Sprites, DepthSort) {
+        let count = sprites.count;
+        let buffers = self.buffers.as_ref().map_or(0, |buffers| buffers.capacity);
+        let should_release = self.idle.tick(count.next_power_of_two() <= buffers / 4);
+        if count > buffers || should_release {
+            self.buffers = None;
+        }
+        let buffers =
+            self.buffers.get_or_insert_with(|| DepthSortBuffers::new(gpu.device, tiled, count.next_power_of_two()));
+        let range = ParticleRange::new(&tiled.limits, sprites);
+        let uniform =
+            TilesUniform { count, first: range.first, blocks: count.div_ceil(BLOCK), ..TilesUniform::default() };
+        gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
+        let buffer = buffers.particles.clone();
+        let sorted = Sprites { buffer, offset: 0, is_sorted: true, by_view_depth: true, ..*sprites };
+        let sort = DepthSort {
+            depth_keys: tiled.depth_sort(gpu.device, DepthSortKey::DepthKeys),
+            sort: Sort {
+                pipelines: tiled.sort(gpu.device, count),
+                ping_pong: buffers.sort.ping_pong.clone(),
+                keys: count,
+            },
+            gather_particles: tiled.depth_sort(gpu.device, DepthSortKey::GatherParticles),
+            inputs: buffers.bind(gpu.device, tiled, range),
+            particles: count,
+        };
+        (sorted, sort)
+    }
+
+    /// Returns the bytes of GPU memory held.
+    pub fn memory(&self) -> TiledMemory {
+        self.buffers.as_ref().map_or(TiledMemory::default(), |buffers| {
+            let [keys, counts] = buffers.sort.bytes();
+            TiledMemory {
+                sorted: buffers.particles.size() + buffers.uniform.size(),
+                keys,
+                counts,
+                ..TiledMemory::default()
+            }
+        })
+    }
+}
+
+impl DepthSortBuffers {
+    fn new(device: &wgpu::Device, tiled: &TiledPipelines, capacity: u32) -> Self {
+        let uniform = uniform_buffer(device, "haze depth_sort", size_of::<TilesUniform>() as u64);
+        let particles = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("haze sorted particles"),
+            size: u64::from(capacity) * size_of::<Particle>() as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
+            mapped_at_creation: false,
+        });
+        Self { capacity, sort: SortBuffers::new(device, tiled, &uniform, capacity), uniform, particles, inputs: None }
+    }
+
+    fn bind(&mut self, device: &wgpu::Device, tiled: &TiledPipelines, range: ParticleRange) -> wgpu::BindGroup {
+        match &self.inputs {
+            Some((bound, group)) if *bound == range => group.clone(),
+            _ => {
+                let own = [self.sort.keys(), self.sort.indices(), &self.particles];
+                let resources = [self.uniform.as_entire_binding(), range.binding()];
+                let resources = resources.into_iter().chain(own.map(wgpu::Buffer::as_entire_binding));
+                let group = bind(device, &tiled.layouts.depth_sort, resources);
+                self.inputs = Some((range, group.clone()));
+                group
+            }
+        }
+    }
+}

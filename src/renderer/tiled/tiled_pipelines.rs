@@ -1,0 +1,241 @@
+//! Layouts, shaders and pipelines of the tiled passes.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::UVec2;
+
+use crate::error::Error;
+use crate::formula::uniforms::{EmitterUniform, TilesUniform};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineVariants, Shader};
+use crate::renderer::layouts::Layouts;
+use crate::renderer::pass::depth_sort::{self, DepthSortKey};
+use crate::renderer::pass::emit;
+use crate::renderer::pass::sort::{self, SortKey};
+use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
+use crate::renderer::pass::tile_bin::{self, TileBinKey};
+use crate::renderer::pass::tile_gather::{self, TileGatherKey};
+use crate::renderer::pass::tile_project::{self, TileProjectKey};
+use crate::renderer::pass::tile_refine::{self, TileRefineKey};
+use crate::renderer::targets::{storage_target, tiled_formats};
+
+/// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
+#[derive(Debug)]
+pub(crate) struct TiledPipelines {
+    pub layouts: TiledLayouts,
+    /// True for cooperative traversal, false for per-invocation traversal; false at first on CPUs only.
+    cooperative: AtomicBool,
+    /// Queried once, because every query copies all limits.
+    pub limits: wgpu::Limits,
+    /// Placeholder of one texel for each target format, bound in place of targets that a system does not have.
+    pub placeholders: [wgpu::TextureView; 4],
+    emit: PipelineVariants<(), ComputePipelineDescription>,
+    depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
+    project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
+    sort: PipelineVariants<SortKey, ComputePipelineDescription>,
+    gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
+    bin: PipelineVariants<TileBinKey, ComputePipelineDescription>,
+    refine: PipelineVariants<TileRefineKey, ComputePipelineDescription>,
+    accumulate: PipelineVariants<TileAccumulateKey, ComputePipelineDescription>,
+}
+
+/// Bind group layouts of the tiled passes.
+#[derive(Debug)]
+pub(crate) struct TiledLayouts {
+    pub emit: wgpu::BindGroupLayout,
+    pub depth_sort: wgpu::BindGroupLayout,
+    pub project: wgpu::BindGroupLayout,
+    pub sort: wgpu::BindGroupLayout,
+    pub gather: wgpu::BindGroupLayout,
+    pub bin: wgpu::BindGroupLayout,
+    pub refine: wgpu::BindGroupLayout,
+    pub accumulate: wgpu::BindGroupLayout,
+}
+
+/// Pipeline keys of a system's tiled passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TiledKeys {
+    pub project: TileProjectKey,
+    pub accumulate: TileAccumulateKey,
+}
+
+impl TiledKeys {
+    /// Returns the key of tile_refine. `None` for cooperative traversal, in which each workgroup filters its bin's list
+    /// itself.
+    fn refine(&self) -> Option<TileRefineKey> {
+        let TileAccumulateKey { sprite, host_depth, cooperative, stops, .. } = self.accumulate;
+        (!cooperative).then_some(TileRefineKey { sprite, host_depth, stops })
+    }
+}
+
+/// Pipelines in the order of [`sort::keys`]. An array, so that a frame allocates nothing for it.
+type SortPipelines = [Option<(SortKey, wgpu::ComputePipeline)>; sort::MAX_PIPELINES];
+
+/// Pipelines of one system.
+pub(crate) struct SystemPipelines {
+    pub project: wgpu::ComputePipeline,
+    pub sort: Option<SortPipelines>,
+    pub gather: wgpu::ComputePipeline,
+    pub bin: [Option<(TileBinKey, wgpu::ComputePipeline)>; tile_bin::MAX_PIPELINES],
+    /// Present for per-invocation traversal.
+    pub refine: Option<wgpu::ComputePipeline>,
+    pub accumulate: wgpu::ComputePipeline,
+}
+
+impl TiledPipelines {
+    /// Creates layouts and shader modules. `shader` returns the shader of a pass by name; `cache` is the host's
+    /// pipeline cache, if the backend supports one.
+    pub fn new<E>(
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        cache: Option<&wgpu::PipelineCache>,
+        shader: impl Fn(&'static str) -> Result<Shader, E>,
+    ) -> Result<Self, E> {
+        let own = TiledLayouts::new(device);
+        let with = |inputs| [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material), Some(inputs)];
+        macro_rules! variants {
+            ($pass:ident, $groups:expr) => {{
+                let name = stringify!($pass);
+                PipelineVariants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
+            }};
+        }
+        Ok(Self {
+            cooperative: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
+            limits: device.limits(),
+            placeholders: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
+            emit: variants!(emit, &[Some(&own.emit)]),
+            depth_sort: variants!(depth_sort, &with(&own.depth_sort)),
+            project: variants!(tile_project, &with(&own.project)),
+            sort: variants!(sort, &[Some(&own.sort)]),
+            gather: variants!(tile_gather, &[Some(&own.gather)]),
+            bin: variants!(tile_bin, &[Some(&own.bin)]),
+            refine: variants!(tile_refine, &with(&own.refine)),
+            accumulate: variants!(tile_accumulate, &with(&own.accumulate)),
+            layouts: own,
+        })
+    }
+
+    /// Returns true for cooperative traversal, false for per-invocation traversal.
+    pub fn cooperative(&self) -> bool {
+        self.cooperative.load(Ordering::Relaxed)
+    }
+
+    pub fn set_cooperative(&self, cooperative: bool) {
+        self.cooperative.store(cooperative, Ordering::Relaxed);
+    }
+
+    /// Returns the number of pipelines compiled so far.
+    pub fn pipeline_count(&self) -> usize {
+        self.emit.len()
+            + self.depth_sort.len()
+            + self.project.len()
+            + self.sort.len()
+            + self.gather.len()
+            + self.bin.len()
+            + self.refine.len()
+            + self.accumulate.len()
+    }
+
+    /// Compiles the pipelines for these keys, or returns the shader error.
+    pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
+        self.emit.check(device, ())?;
+        self.project.check(device, keys.project)?;
+        self.compile_sort(device)?;
+        for either in [true, false] {
+            self.gather.check(device, TileGatherKey { sorted: either })?;
+            tile_bin::keys(keys.accumulate.cooperative, either).try_for_each(|key| self.bin.check(device, key))?;
+        }
+        keys.refine().into_iter().try_for_each(|key| self.refine.check(device, key))?;
+        self.accumulate.check(device, keys.accumulate)
+    }
+
+    /// Compiles the pipelines that sort a host's particles back to front.
+    pub fn compile_depth_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
+        self.depth_sort.check(device, DepthSortKey::DepthKeys)?;
+        self.depth_sort.check(device, DepthSortKey::GatherParticles)?;
+        self.compile_sort(device)
+    }
+
+    fn compile_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
+        sort::all_keys(self.cooperative()).try_for_each(|key| self.sort.check(device, key))
+    }
+
+    /// Returns the pipeline that evaluates emitters.
+    pub fn emit(&self, device: &wgpu::Device) -> wgpu::ComputePipeline {
+        self.emit.get(device, ())
+    }
+
+    pub fn depth_sort(&self, device: &wgpu::Device, key: DepthSortKey) -> wgpu::ComputePipeline {
+        self.depth_sort.get(device, key)
+    }
+
+    /// Returns the pipelines that sort `count` keys.
+    pub fn sort(&self, device: &wgpu::Device, count: u32) -> SortPipelines {
+        let mut keys = sort::keys(self.cooperative(), count).map(|key| (key, self.sort.get(device, key)));
+        std::array::from_fn(|_| keys.next())
+    }
+
+    /// Returns the pipelines of a system with `count` sprites. `sorts`: true if the sprites are unsorted and their
+    /// order matters.
+    pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> SystemPipelines {
+        let bin_keys = tile_bin::keys(keys.accumulate.cooperative, count <= tile_bin::MAX_SPRITES_SINGLE_DISPATCH);
+        let mut bin = bin_keys.map(|key| (key, self.bin.get(device, key)));
+        SystemPipelines {
+            project: self.project.get(device, keys.project),
+            sort: sorts.then(|| self.sort(device, count)),
+            gather: self.gather.get(device, TileGatherKey { sorted: sorts }),
+            bin: std::array::from_fn(|_| bin.next()),
+            refine: keys.refine().map(|key| self.refine.get(device, key)),
+            accumulate: self.accumulate.get(device, keys.accumulate),
+        }
+    }
+}
+
+impl TiledLayouts {
+    fn new(device: &wgpu::Device) -> Self {
+        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let uniform_of = |size: usize| wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        };
+        let uniform = uniform_of(size_of::<TilesUniform>());
+        let (read, written) = (
+            buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+        );
+        let depth = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let target = |format| wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format,
+            view_dimension: wgpu::TextureViewDimension::D2,
+        };
+        let layout = |label, types: &[wgpu::BindingType]| {
+            let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty,
+                count: None,
+            };
+            let entries: Vec<_> = (0..).zip(types).map(entry).collect();
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+        };
+        let [float, byte, weights, six_way] = tiled_formats().map(target);
+        Self {
+            emit: layout("haze emit inputs", &[uniform_of(size_of::<EmitterUniform>()), written]),
+            depth_sort: layout("haze depth_sort inputs", &[uniform, read, written, written, written]),
+            project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
+            sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
+            gather: layout("haze tile_gather inputs", &[uniform, read, read, read, written, written, written]),
+            bin: layout("haze tile_bin inputs", &[uniform, read, read, written, written, written, written]),
+            refine: layout("haze tile_refine inputs", &[uniform, read, read, read, depth, written]),
+            accumulate: layout(
+                "haze tile_accumulate inputs",
+                &[uniform, read, read, read, read, read, depth, float, byte, weights, six_way],
+            ),
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Validation of a frame for the GPU renderer.
+
+use glam::UVec2;
+
+use super::auto::PathReason;
+use super::context::Shared;
+use super::gpu::host_pass::HostPass;
+use super::plan::reads_linear_target;
+use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
+use crate::error::FieldError;
+use crate::frame::validate_input::{
+    validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up,
+};
+use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
+use crate::settings::{DepthSource, RenderPath, Technique};
+
+/// Validates everything except the view's matrices.
+///
+/// # Errors
+/// Names the first field that is not valid.
+pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> Result<(), FieldError> {
+    validate_time_and_up(frame.time, frame.up)?;
+    let size = validate_scene_depth(frame)?;
+    if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
+        let View { size: pixels, origin, .. } = frame.view;
+        let value = format!("{}x{} from ({}, {})", pixels.x, pixels.y, origin.x, origin.y);
+        let expected = format!("the size of the scene depth, {}x{}, or a part of it", size.x, size.y);
+        return Err(FieldError::new("view.size", value, expected));
+    }
+    let reads_attached = host.depth_format.is_some() && frame.scene_depth.linear().is_none();
+    if reads_attached && !shared.read_only_depth && host.sample_count == 1 {
+        let expected = "SceneDepth::Linear or Both, or a descriptor with depth_format None: this backend (OpenGL) \
+                        cannot sample the depth buffer that the pass tests";
+        return Err(FieldError::new("scene_depth", "Buffer", expected));
+    }
+    validate_lights(frame.lights)?;
+    for (index, system) in frame.systems.iter().enumerate() {
+        if let Some(other) = frame.systems[..index].iter().position(|other| other.key == system.key) {
+            let expected = format!("a unique key; systems[{other}] has the same one");
+            return Err(FieldError::new(format!("systems[{index}].key"), system.key, expected));
+        }
+        validate_system(shared, index, frame, system)?;
+    }
+    Ok(())
+}
+
+/// Returns the size of the host's targets, pixels.
+pub(crate) fn host_size(scene_depth: &SceneDepth<'_>) -> UVec2 {
+    let (SceneDepth::Buffer(view) | SceneDepth::Linear(view) | SceneDepth::Both { buffer: view, .. }) = scene_depth;
+    UVec2::new(view.texture().width(), view.texture().height())
+}
+
+fn validate_scene_depth(frame: &Frame<'_>) -> Result<UVec2, FieldError> {
+    let size = host_size(&frame.scene_depth);
+    if let Some(buffer) = frame.scene_depth.buffer() {
+        let is_depth = buffer.texture().format().has_depth_aspect();
+        validate_depth_texture(size, buffer, is_depth, "a depth format for the depth buffer")?;
+    }
+    if let Some(linear) = frame.scene_depth.linear() {
+        let is_linear = linear.texture().format() == wgpu::TextureFormat::R32Float;
+        validate_depth_texture(size, linear, is_linear, "R32Float for the linear target")?;
+    }
+    Ok(size)
+}
+
+fn validate_depth_texture(
+    size: UVec2,
+    depth: &wgpu::TextureView,
+    format_fits: bool,
+    expected: &str,
+) -> Result<(), FieldError> {
+    let texture = depth.texture();
+    let refuse = |value: String, expected: &str| Err(FieldError::new("scene_depth", value, expected));
+    if (texture.width(), texture.height()) != (size.x, size.y) {
+        let value = format!("{}x{}", texture.width(), texture.height());
+        return refuse(value, &format!("the size of the other depth, {}x{}", size.x, size.y));
+    }
+    if texture.sample_count() != 1 {
+        return refuse(format!("{} samples", texture.sample_count()), "1 sample; resolve the depth buffer first");
+    }
+    if !format_fits {
+        return refuse(format!("{:?}", texture.format()), expected);
+    }
+    if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+        return refuse(format!("usage {:?}", texture.usage()), "a usage that includes TEXTURE_BINDING");
+    }
+    Ok(())
+}
+
+fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
+    validate_settings(index, system.settings, frame.view.size)?;
+    if system.settings.path == RenderPath::Tiled && shared.tiles().is_none() {
+        let expected =
+            "\"raster\", or a device with compute shaders and WebGPU's default limits; OpenGL is not supported";
+        return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
+    }
+    validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
+    let field = |name: &str| format!("systems[{index}].{name}");
+    validate_particles(shared, system, &field)?;
+    if system.material.context != shared.number {
+        let expected = "a material created by this renderer's context; renderers share materials by sharing a context";
+        return Err(FieldError::new(field("material"), "a material of another context", expected));
+    }
+    system.material.info.validate(index, system.settings)?;
+    if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {
+        let expected = "\"soft\", or a scene_depth that is SceneDepth::Linear or Both";
+        return Err(FieldError::new(field("settings.technique"), "\"soft_linear\"", expected));
+    }
+    if system.settings.accumulate.depth_source == DepthSource::Host && !system.settings.is_forward() {
+        let attachable = frame.scene_depth.buffer().is_some_and(|buffer| {
+            let texture = buffer.texture();
+            texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT) && !texture.format().has_stencil_aspect()
+        });
+        let is_read = !reads_linear_target(frame.scene_depth.kind(), shared.read_only_depth, system.settings);
+        if !attachable || (is_read && !shared.read_only_depth) {
+            let expected = "\"reduced\", or a scene_depth that has a depth buffer without stencil, with \
+                            RENDER_ATTACHMENT usage, and on OpenGL a linear target as well";
+            return Err(FieldError::new(field("settings.accumulate.depth_source"), "\"host\"", expected));
+        }
+    }
+    Ok(())
+}
+
+/// Returns the reason why the path `auto` cannot choose `tiled` for a system; `None` if it can.
+pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &System<'_>) -> Option<PathReason> {
+    let Some(tiled) = &shared.pipelines.tiled else { return Some(PathReason::TiledUnsupported) };
+    let (count, is_readable) = match system.particles {
+        Particles::Slice(particles) => (particles.len() as u64, true),
+        Particles::Buffer { buffer, offset, count, .. } => {
+            let is_storage = buffer.usage().contains(wgpu::BufferUsages::STORAGE);
+            (u64::from(count), is_storage && offset.is_multiple_of(PARTICLE_ALIGNMENT))
+        }
+        Particles::Emitter(emission) => (u64::from(emission.count()), true),
+    };
+    if !is_readable {
+        return Some(PathReason::BufferNotReadable);
+    }
+    (count > tiled.limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES).then_some(PathReason::TooManyParticles)
+}
+
+fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
+    let size = size_of::<Particle>() as u64;
+    let is_tiled = system.settings.path == RenderPath::Tiled;
+    let needs_sorting = system.particles.need_sorting(system.settings);
+    if needs_sorting && shared.pipelines.tiled.is_none() {
+        let expected = "true, the order \"weighted\", or a slice: sorting a buffer needs compute shaders and \
+                        WebGPU's default limits; OpenGL is not supported";
+        return Err(FieldError::new(field("particles.is_sorted"), false, expected));
+    }
+    let limits = shared.device.limits();
+    let mut max_count = limits.max_buffer_size / size;
+    if is_tiled {
+        max_count = max_count.min(limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES);
+    } else if needs_sorting {
+        max_count = max_count.min(limits.max_storage_buffer_binding_size / size);
+    }
+    match system.particles {
+        Particles::Slice(particles) => validate_count(particles.len() as u64, max_count, field)?,
+        Particles::Emitter(emission) => {
+            validate_count(u64::from(emission.count()), max_count, field)?;
+            let bounds = emission.bounds(system.settings.sprite_extent());
+            let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
+            if !bounds.is_empty() && !is_finite {
+                let expected = "an emission of an emitter that Emitter::validate accepts";
+                return Err(FieldError::new(field("particles"), "an emission whose bounds are not finite", expected));
+            }
+        }
+        Particles::Buffer { buffer, offset, count, .. } => {
+            validate_count(u64::from(count), max_count, field)?;
+            if system.bounds.is_none() {
+                let expected = "the bounding box of the particles: the CPU does not read a GPU buffer";
+                return Err(FieldError::new(field("bounds"), "None", expected));
+            }
+            let is_read = is_tiled || needs_sorting;
+            let alignment = if is_read { PARTICLE_ALIGNMENT } else { wgpu::VERTEX_ALIGNMENT };
+            if !offset.is_multiple_of(alignment) {
+                let expected = format!("a multiple of {alignment}");
+                return Err(FieldError::new(field("particles.offset"), offset, expected));
+            }
+            let needed = offset.saturating_add(u64::from(count) * size);
+            let mut usage = wgpu::BufferUsages::VERTEX;
+            usage.set(wgpu::BufferUsages::STORAGE, is_read);
+            if buffer.size() < needed || !buffer.usage().contains(usage) {
+                let value = format!("{} bytes, usage {:?}", buffer.size(), buffer.usage());
+                let expected = format!("at least {needed} bytes, usage {usage:?}");
+                return Err(FieldError::new(field("particles"), value, expected));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn validate_count(count: u64, max_count: u64, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
+    if count > max_count {
+        let value = format!("{count} particles");
+        return Err(FieldError::new(field("particles"), value, format!("at most {max_count} on this device")));
+    }
+    Ok(())
+}

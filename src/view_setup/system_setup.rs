@@ -1,0 +1,187 @@
+//! One particle system in a view: the texels of its target, and its uniforms.
+
+use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
+
+use super::optical_depth::optical_depths;
+use super::projected_bounds::{TargetRect, project_bounds, target_rect};
+use super::smoke_extent::SmokeExtent;
+use super::sprite_projector::TexelGrid;
+use super::view_geometry::ViewGeometry;
+use crate::assets::material_assets::MaterialInfo;
+use crate::formula::depth::SKY_VIEW_DEPTH;
+use crate::formula::diffuse_bake::add_light;
+use crate::formula::lighting::{backlight_weight, direction_to_viewer, sample_light};
+use crate::formula::uniforms::{LightUniform, SystemUniform};
+use crate::frame::{Bounds, Particle};
+use crate::settings::{Backlight, BlendOrder, DepthSource, DiffuseMode, Settings};
+
+/// Properties of a system before it is placed in a view.
+#[derive(Clone, Copy, Debug)]
+pub struct SystemInput<'a> {
+    pub bounds: &'a Bounds,
+    /// View depth that the host chose for lighting, metres.
+    pub depth: Option<f32>,
+    /// Empty if the particles are on the GPU.
+    pub particles: &'a [Particle],
+    /// Number of particles that each of them represents.
+    pub particles_per_sample: u32,
+    pub settings: &'a Settings,
+    pub material: &'a MaterialInfo,
+    /// Lights that reach the system, view space.
+    pub lights: &'a [LightUniform],
+    /// Unit length.
+    pub up: Vec3,
+    /// Seconds.
+    pub time: f32,
+}
+
+/// A visible system.
+#[derive(Clone, Copy, Debug)]
+pub struct SystemSetup {
+    pub rect: TargetRect,
+    /// Size of the bounding box on the screen, pixels.
+    pub pixels: UVec2,
+    pub uniform: SystemUniform,
+    /// True if the transfer draws the back faces of the box: it reaches to or behind the near plane, or its sprites
+    /// show through the scene.
+    pub back_faces: bool,
+    /// View depth of the smoke's centre, metres.
+    pub distance: f32,
+    /// The same in the host's view space, metres.
+    pub lit_depth: f32,
+}
+
+impl SystemSetup {
+    /// Returns the texel grid of the system's target.
+    pub fn grid(&self) -> TexelGrid {
+        TexelGrid { origin: self.rect.origin.as_vec2(), scale: self.uniform.scale, size: self.rect.size }
+    }
+}
+
+/// Places a system in the view; `None` if it is out of sight. `targets`: size of the host's targets, pixels; the view
+/// may be a part of them.
+pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
+    let SystemInput { bounds, depth, particles, particles_per_sample, settings, material, lights, up, time } = *system;
+    let projected = project_bounds(bounds, view)?;
+    let extent = SmokeExtent::new(view, particles, settings.sprite.size, bounds, &projected, depth);
+    // A sample does not include the farthest particle.
+    let farthest = if particles_per_sample == 1 { extent.farthest } else { projected.far };
+    let accumulate = &settings.accumulate;
+    let scale = accumulate.effective_scale(view.size);
+    let rect = match accumulate.depth_source {
+        DepthSource::Reduced => target_rect(&projected, scale, view.size),
+        // All attachments of a pass must have one size.
+        DepthSource::Host => TargetRect { origin: -view.origin.as_ivec2(), size: targets },
+    };
+
+    let uniform = SystemUniform {
+        bounds_min: bounds.min,
+        bounds_near: projected.near,
+        bounds_max: bounds.max,
+        smoke_near: extent.near,
+        centre: extent.centre,
+        smoke_far: extent.far,
+        opacity: accumulate.opacity,
+        scatter_colour: settings.soft_scatter.scatter_colour,
+        scatter_amount: settings.soft_scatter.scatter_amount,
+        ambient_colour: settings.soft_scatter.ambient_colour,
+        scatter_smooth: settings.soft_scatter.scatter_smooth,
+        target_from_ndc: target_from_ndc(&rect, scale, view.size),
+        target_origin: rect.origin.as_vec2(),
+        target_size: rect.size.as_vec2(),
+        scale: scale as f32,
+        depth_limit: (projected.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
+        smoke_depth_limit: (farthest.min(projected.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
+        padding: [0.0; 3],
+        six_way_colour: settings.diffuse.six_way_colour,
+        six_way_anisotropy: settings.diffuse.six_way_anisotropy,
+        sprite_size: material.sprite_size,
+        frame_count: material.frame_count,
+        boost: settings.boost,
+        fade_scale: settings.soft_fade.fade_scale,
+        contrast_power: settings.soft_fade.contrast_power,
+        epsilon: settings.soft_fade.epsilon,
+        near_fade_start: settings.soft_fade.near_fade_start,
+        near_fade_end: settings.soft_fade.near_fade_end,
+        diffuse_intensity: settings.diffuse.intensity,
+        soft_scatter_intensity: settings.soft_scatter.intensity,
+        specular_scatter_size: settings.specular_scatter.size,
+        specular_scatter_intensity: settings.specular_scatter.intensity,
+        light_count: lights.len() as u32,
+        size: settings.sprite.size,
+        motion: settings.sprite.motion,
+        age_colour: settings.sprite.age_colour,
+        detail_lod: material.detail.map_or(0.0, |detail| detail.lod),
+        billboard_radius: settings.spherical_billboard.radius,
+        billboard_density: settings.spherical_billboard.density,
+        density: settings.density.density,
+        noise_size: settings.volumetric.noise_size,
+        volume_opacity: settings.volumetric.opacity,
+        march_steps: settings.volumetric.march_steps,
+        noise_octaves: settings.volumetric.noise_octaves,
+        noise_offset: noise_offset(view, settings, up, time),
+        show_through_distance: settings.show_through_distance(),
+        depth_weight: accumulate.depth_weight,
+        front_knots: match settings.order() {
+            BlendOrder::Sorted => [Vec4::ZERO; 4],
+            BlendOrder::Weighted => optical_depths(view, particles, particles_per_sample, settings, &extent),
+        },
+        spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
+    };
+    // If sprites show through the scene, the scene may hide the front of the box.
+    let back_faces = projected.near <= view.depth.near || uniform.show_through_distance > 0.0;
+    let distance = -uniform.centre.z;
+    let pixels = projected.max - projected.min;
+    Some(SystemSetup { rect, pixels, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
+}
+
+/// Projects the diffuse ramp's response to all lights, as seen at `centre`, to spherical harmonics; zeros in other
+/// diffuse modes.
+fn spherical_harmonics(
+    view: &ViewGeometry,
+    settings: &Settings,
+    material: &MaterialInfo,
+    lights: &[LightUniform],
+    centre: Vec3,
+) -> [Vec4; 9] {
+    let mut sum = [Vec4::ZERO; 9];
+    if settings.diffuse.mode != DiffuseMode::SphericalHarmonics {
+        return sum;
+    }
+    let orthographic = if view.depth.orthographic { 1.0 } else { 0.0 };
+    let to_viewer = direction_to_viewer(centre, orthographic);
+    for light in lights {
+        let sample = sample_light(light, centre);
+        let colour = light.colour * sample.attenuation;
+        let backlight = match settings.diffuse.backlight {
+            Backlight::Same => 0.0,
+            Backlight::Ramp => backlight_weight(sample.direction, to_viewer),
+        };
+        let zonal = std::array::from_fn(|l| material.zonal[l].lerp(material.backlight_zonal[l], backlight));
+        add_light(&mut sum, &zonal, sample.direction, colour);
+    }
+    sum
+}
+
+/// Returns the position of the eye in the noise, which rises with time. The position is wrapped to one tile, so that
+/// f32 is precise enough after hours and far from the world's origin.
+fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f32) -> Vec3 {
+    let volumetric = &settings.volumetric;
+    let seconds = if settings.sprite.freeze_animation { 0.0 } else { f64::from(time) };
+    let eye = view.view_from_world.as_dmat4().inverse().w_axis.truncate();
+    let place = eye - up.as_dvec3() * (f64::from(volumetric.scroll_speed) * seconds);
+    let size = f64::from(volumetric.noise_size);
+    DVec3::from(place.to_array().map(|axis| axis.rem_euclid(size))).as_vec3()
+}
+
+/// Returns scale (xy) and offset (zw) from the view's NDC to the target's.
+///
+/// A pixel p is at texel p / scale − origin of the target. In x, with p = (ndc/2 + 1/2)·W and target NDC = 2·t/w − 1:
+/// scale = W / (s·w), offset = (W/s − 2·origin) / w − 1. In y, which points up in NDC and down in texels, the offset
+/// has the opposite sign.
+fn target_from_ndc(rect: &TargetRect, scale: u32, picture: UVec2) -> Vec4 {
+    let texels = picture.as_vec2() / scale as f32;
+    let size = rect.size.as_vec2();
+    let offset = (texels - 2.0 * rect.origin.as_vec2()) / size - Vec2::ONE;
+    Vec4::new(texels.x / size.x, texels.y / size.y, offset.x, -offset.y)
+}
