@@ -33,25 +33,25 @@ pub fn shared_context(gpu: &Headless) -> Option<&'static Context> {
 }
 
 /// Returns true if the path `tiled` is available (not on OpenGL); otherwise prints that the test is skipped.
-pub fn has_tiles() -> bool {
-    let has_tiles = gpu().adapter.get_info().backend != wgpu::Backend::Gl;
-    if !has_tiles {
+pub fn is_tiled_available() -> bool {
+    let is_tiled_available = gpu().adapter.get_info().backend != wgpu::Backend::Gl;
+    if !is_tiled_available {
         eprintln!("skipped: the path tiled is not available on OpenGL");
     }
-    has_tiles
+    is_tiled_available
 }
 
 /// Lowest PSNR of two correct renderers, dB. They differ by f16 rounding, by the order of f32 operations, and by edges
 /// that are snapped to 1/256 pixel: 57 to 84 dB on llvmpipe, with Vulkan and OpenGL. The mistakes in
 /// properties/mutants.rs give 12 to 36.
-pub const AGREEMENT: f32 = 54.0;
+pub const MIN_PSNR: f32 = 54.0;
 
 /// Lowest PSNR of images with hard steps, which may fall on either side of a pixel, dB. Sprites with the debug
 /// checkerboard give 45 dB on an NVIDIA H200 and 68 dB on llvmpipe. Ramps sampled at the nearest texel give 50 dB on
 /// llvmpipe, because of four pixels in five thousand.
 pub const MIN_PSNR_WITH_STEPS: f32 = 44.0;
 
-/// Returns the PSNR of two images of smoke over the stage's backdrop, dB; see [`psnr_over`].
+/// Returns the PSNR of two images of smoke over the scene's backdrop, dB; see [`psnr_over`].
 pub fn psnr(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
     let behind = Image::new(a.size, BACKDROP);
     psnr_over([a, b], [&behind, &behind])

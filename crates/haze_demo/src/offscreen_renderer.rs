@@ -6,8 +6,10 @@ use std::time::{Duration, Instant};
 use glam::{UVec2, Vec3, Vec4};
 
 use super::capture::Capture;
-use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRenderer, SceneTargets, texture, whole};
-use super::shot::{Shot, Source};
+use super::scene_renderer::{
+    COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRenderer, SceneTargets, default_view, texture,
+};
+use super::shot::{ParticleSource, Shot};
 use crate::headless::Headless;
 use haze::assets::image::Image;
 use haze::assets::material::MaterialAssets;
@@ -29,7 +31,7 @@ pub struct OffscreenContext {
     haze: Context,
     scene: Arc<SceneRenderer>,
     /// Materials that existing renderers have uploaded. Shared images are uploaded once.
-    materials: Arc<Mutex<Vec<Weak<Uploaded>>>>,
+    materials: Arc<Mutex<Vec<Weak<UploadedMaterial>>>>,
     /// True to attach the scene's depth buffer to the smoke pass: it is not sampled there, or the device supports
     /// read-only depth.
     attaches_depth: bool,
@@ -90,14 +92,14 @@ impl OffscreenContext {
         Ok(self.with_context(Context::with_shaders(&self.device, &self.queue, None, sources)?))
     }
 
-    fn upload(&self, assets: &MaterialAssets) -> Result<Arc<Uploaded>, Error> {
+    fn upload(&self, assets: &MaterialAssets) -> Result<Arc<UploadedMaterial>, Error> {
         let mut materials = self.materials.lock().unwrap_or_else(PoisonError::into_inner);
         materials.retain(|uploaded| uploaded.strong_count() > 0);
         if let Some(uploaded) = materials.iter().filter_map(Weak::upgrade).find(|one| one.assets.shares(assets)) {
             return Ok(uploaded);
         }
         let material = self.haze.create_material(&self.device, &self.queue, assets)?;
-        let uploaded = Arc::new(Uploaded { assets: assets.clone(), material });
+        let uploaded = Arc::new(UploadedMaterial { assets: assets.clone(), material });
         materials.push(Arc::downgrade(&uploaded));
         Ok(uploaded)
     }
@@ -105,7 +107,7 @@ impl OffscreenContext {
 
 /// Images of a system in memory and on the GPU.
 #[derive(Debug)]
-struct Uploaded {
+struct UploadedMaterial {
     assets: MaterialAssets,
     material: Material,
 }
@@ -115,8 +117,8 @@ struct Uploaded {
 pub struct OffscreenRenderer {
     context: OffscreenContext,
     renderer: Renderer,
-    materials: Vec<Arc<Uploaded>>,
-    set: Option<Set>,
+    materials: Vec<Arc<UploadedMaterial>>,
+    sized: Option<SizedTargets>,
 }
 
 /// GPU memory of an off-screen renderer, bytes.
@@ -139,10 +141,10 @@ impl OffscreenMemory {
 
 /// Resources that depend on the image size.
 #[derive(Debug)]
-struct Set {
+struct SizedTargets {
     targets: SceneTargets,
     /// Inputs of the scene that the targets currently show.
-    drawn: Option<SceneInputs>,
+    scene_inputs: Option<SceneInputs>,
     pictures: [Option<wgpu::Texture>; DebugView::ALL.len()],
 }
 
@@ -168,7 +170,7 @@ impl OffscreenRenderer {
             ..Descriptor::default()
         };
         let renderer = Renderer::new(&context.device, &context.queue, &descriptor)?;
-        Ok(Self { context: context.clone(), renderer, materials: Vec::new(), set: None })
+        Ok(Self { context: context.clone(), renderer, materials: Vec::new(), sized: None })
     }
 
     /// Returns haze's renderer.
@@ -194,7 +196,7 @@ impl OffscreenRenderer {
         OffscreenMemory {
             smoke: self.renderer.memory_use(),
             materials: self.materials.iter().map(|uploaded| uploaded.material.memory_use()).sum(),
-            scene: self.set.as_ref().map_or(0, Set::bytes),
+            scene: self.sized.as_ref().map_or(0, SizedTargets::bytes),
         }
     }
 
@@ -214,28 +216,33 @@ impl OffscreenRenderer {
         self.upload(&shot.materials)?;
         let OffscreenContext { device, queue, scene, attaches_depth, .. } = &self.context;
         let size = shot.size.max(UVec2::ONE);
-        let set = match &mut self.set {
-            Some(set) if set.size() == size => set,
-            set => set.insert(Set { targets: scene.targets(size), drawn: None, pictures: Default::default() }),
+        let sized = match &mut self.sized {
+            Some(sized) if sized.size() == size => sized,
+            sized => sized.insert(SizedTargets {
+                targets: scene.targets(size),
+                scene_inputs: None,
+                pictures: Default::default(),
+            }),
         };
         let view = shot.preset.camera.view(size);
-        let drawn = SceneInputs { environment: shot.preset.environment, lights: shot.preset.lights.clone(), view };
-        if set.drawn.as_ref() != Some(&drawn) {
-            scene.record(encoder, &set.targets, &shot.scene(), &view);
-            set.drawn = Some(drawn);
+        let scene_inputs =
+            SceneInputs { environment: shot.preset.environment, lights: shot.preset.lights.clone(), view };
+        if sized.scene_inputs.as_ref() != Some(&scene_inputs) {
+            scene.record(encoder, &sized.targets, &shot.scene(), &view);
+            sized.scene_inputs = Some(scene_inputs);
         }
         let sources = shot.sources();
         let systems: Vec<_> = (0..)
             .zip(sources.iter().zip(&self.materials))
             .map(|(key, ((source, settings), uploaded))| {
                 let particles = match source {
-                    Source::Particles(particles) => Particles::Slice(particles),
-                    Source::EmitterSnapshot(emission) => Particles::Emitter(emission),
+                    ParticleSource::Particles(particles) => Particles::Slice(particles),
+                    ParticleSource::EmitterSnapshot(emission) => Particles::Emitter(emission),
                 };
                 System { key, ..System::new(particles, settings, &uploaded.material) }
             })
             .collect();
-        let depth = &set.targets.depth;
+        let depth = &sized.targets.depth;
         let frame = Frame {
             lights: &shot.preset.lights,
             systems: &systems,
@@ -244,7 +251,7 @@ impl OffscreenRenderer {
             stages,
             ..Frame::new(
                 view,
-                match &set.targets.linear {
+                match &sized.targets.linear {
                     Some(linear) => SceneDepth::Both { buffer: depth, linear },
                     None => SceneDepth::Buffer(depth),
                 },
@@ -252,19 +259,19 @@ impl OffscreenRenderer {
         };
         self.renderer.prepare(device, queue, encoder, &frame)?;
         for &stage in stages {
-            let picture = set.pictures[stage as usize]
+            let picture = sized.pictures[stage as usize]
                 .get_or_insert_with(|| texture(device, "demo picture", size, COLOUR_FORMAT));
             // Debug views other than the final image are shown on black.
             let mut load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
             if stage == DebugView::Final {
-                let colour = &set.targets.colour;
+                let colour = &sized.targets.colour;
                 encoder.copy_texture_to_texture(colour.as_image_copy(), picture.as_image_copy(), colour.size());
                 load = wgpu::LoadOp::Load;
             }
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("smoke"),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &whole(picture),
+                    view: &default_view(picture),
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
@@ -283,8 +290,8 @@ impl OffscreenRenderer {
 
     /// Forces the scene to be redrawn in the next frame. Call it if the last recorded encoder was dropped without being
     /// submitted.
-    pub fn forget(&mut self) {
-        self.set.iter_mut().for_each(|set| set.drawn = None);
+    pub fn invalidate_scene(&mut self) {
+        self.sized.iter_mut().for_each(|sized| sized.scene_inputs = None);
     }
 
     /// Compiles the pipelines that a shot needs.
@@ -307,13 +314,13 @@ impl OffscreenRenderer {
 
     /// Returns the output image of a debug view as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
     pub fn picture(&self, stage: DebugView) -> Option<&wgpu::Texture> {
-        self.set.as_ref()?.pictures[stage as usize].as_ref()
+        self.sized.as_ref()?.pictures[stage as usize].as_ref()
     }
 
     /// Records copies of the last frame's intermediate targets, after the frame in the same encoder. `None` if no frame
     /// was recorded, and on OpenGL, which cannot copy depth.
     pub fn capture(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Capture> {
-        let targets = &self.set.as_ref().filter(|_| self.context.copies_depth)?.targets;
+        let targets = &self.sized.as_ref().filter(|_| self.context.copies_depth)?.targets;
         let systems: Vec<_> = (0..).zip(&self.materials).map(|(key, _)| self.renderer.targets(key)).collect();
         let scene = [targets.depth.texture(), &targets.colour];
         Some(Capture::record(&self.context.device, encoder, scene, &systems))
@@ -321,7 +328,7 @@ impl OffscreenRenderer {
 
     /// Returns the scene's view depth, `R32Float`, metres, if the device can render to it.
     pub fn linear_depth(&self) -> Option<&wgpu::Texture> {
-        self.set.as_ref()?.targets.linear.as_ref().map(wgpu::TextureView::texture)
+        self.sized.as_ref()?.targets.linear.as_ref().map(wgpu::TextureView::texture)
     }
 
     /// Draws a shot and waits for the device. Returns the time from submission to completion.
@@ -351,8 +358,8 @@ impl OffscreenRenderer {
         self.materials.truncate(assets.len());
         for (index, assets) in assets.iter().enumerate() {
             match self.materials.get_mut(index) {
-                Some(slot) if slot.assets.shares(assets) => {}
-                Some(slot) => *slot = self.context.upload(assets)?,
+                Some(uploaded) if uploaded.assets.shares(assets) => {}
+                Some(uploaded) => *uploaded = self.context.upload(assets)?,
                 None => self.materials.push(self.context.upload(assets)?),
             }
         }
@@ -360,7 +367,7 @@ impl OffscreenRenderer {
     }
 }
 
-impl Set {
+impl SizedTargets {
     fn size(&self) -> UVec2 {
         UVec2::new(self.targets.colour.width(), self.targets.colour.height())
     }

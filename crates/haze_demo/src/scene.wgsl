@@ -304,7 +304,7 @@ fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) ve
 @group(1) @binding(0) var paint: texture_2d<f32>;
 
 // Alpha of paint without a box.
-const NOTHING: f32 = -1.0;
+const NO_BOX: f32 = -1.0;
 
 // Returns the direction of the ray through a position in the image, pixels.
 fn ray_direction(place: vec2f) -> vec3f {
@@ -330,11 +330,11 @@ fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         paints[i] = textureLoad(paint, first + vec2i(i & 1, i >> 1u), 0);
     }
     let pixel_angle = length(ray_direction(position.xy + vec2f(0.0, 1.0)) - ray_direction(position.xy));
-    let is_one = paints[0].a == paints[1].a && paints[0].a == paints[2].a && paints[0].a == paints[3].a;
+    let is_one_face = paints[0].a == paints[1].a && paints[0].a == paints[2].a && paints[0].a == paints[3].a;
     var lit = array<vec3f, 4>();
-    for (var i = 0; i < select(4, 1, is_one); i++) {
+    for (var i = 0; i < select(4, 1, is_one_face); i++) {
         let offset = vec2f(vec2i(i & 1, i >> 1u)) * 0.5 - 0.25;
-        let direction = ray_direction(position.xy + select(offset, vec2f(0.0), is_one));
+        let direction = ray_direction(position.xy + select(offset, vec2f(0.0), is_one_face));
         let face = u32(max(paints[i].a, 0.0));
         let b = boxes[face / 6u];
         let normal = face_normal(face % 6u);
@@ -352,7 +352,7 @@ fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var weights = 0.0;
     for (var i = 0; i < 4; i++) {
         let reflectance = select(paints[i].rgb, vec3f(1.0), paints[i].a < 0.0);
-        let colour = reflectance * lit[select(i, 0, is_one)];
+        let colour = reflectance * lit[select(i, 0, is_one_face)];
         let weight = 1.0 / (1.0 + max(colour.r, max(colour.g, colour.b)));
         sum += colour * weight;
         weights += weight;

@@ -142,7 +142,7 @@ impl SceneRenderer {
     /// Creates targets of a size in pixels.
     pub fn targets(&self, size: UVec2) -> SceneTargets {
         let texture = |label, size, format| texture(&self.device, label, size, format);
-        let target = |label, size, format| whole(&texture(label, size, format));
+        let target = |label, size, format| default_view(&texture(label, size, format));
         let paint = target("demo scene paint", size * 2, COLOUR_FORMAT);
         let buffer = |size| {
             self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -182,7 +182,7 @@ impl SceneRenderer {
         for (buffer, bytes) in targets.buffers.iter().zip(contents) {
             self.queue.write_buffer(buffer, 0, bytes);
         }
-        let occluders = whole(&self.occluder_texture(&scene.occluders));
+        let occluders = default_view(&self.occluder_texture(&scene.occluders));
         let buffer = |binding: usize| wgpu::BindGroupEntry {
             binding: binding as u32,
             resource: targets.buffers[binding].as_entire_binding(),
@@ -195,19 +195,19 @@ impl SceneRenderer {
         });
         let count = scene.boxes.len() as u32;
         {
-            let mut pass = begin(encoder, Some((&targets.paint, NOTHING)), Some(&targets.paint_depth));
+            let mut pass = begin_pass(encoder, Some((&targets.paint, NO_BOX)), Some(&targets.paint_depth));
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(&self.paint);
             pass.draw(0..36, 0..count);
         }
         {
-            let mut pass = begin(encoder, targets.linear.as_ref().zip(Some(NO_SURFACE)), Some(&targets.depth));
+            let mut pass = begin_pass(encoder, targets.linear.as_ref().zip(Some(NO_SURFACE)), Some(&targets.depth));
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(&self.depth);
             pass.draw(0..36, 0..count);
         }
         {
-            let mut pass = begin(encoder, Some((&whole(&targets.colour), wgpu::Color::BLACK)), None);
+            let mut pass = begin_pass(encoder, Some((&default_view(&targets.colour), wgpu::Color::BLACK)), None);
             pass.set_bind_group(0, &group, &[]);
             pass.set_bind_group(1, &targets.paint_group, &[]);
             pass.set_pipeline(&self.light);
@@ -252,16 +252,16 @@ pub(crate) fn texture(device: &wgpu::Device, label: &str, size: UVec2, format: w
     })
 }
 
-pub(crate) fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
+pub(crate) fn default_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Clear value of paint. `NOTHING` in scene.wgsl.
-const NOTHING: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
+/// Clear value of paint. `NO_BOX` in scene.wgsl.
+const NO_BOX: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
 /// Clear value of linear depth.
 const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::Color::BLACK };
 
-fn begin<'a>(
+fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     colour: Option<(&wgpu::TextureView, wgpu::Color)>,
     depth: Option<&wgpu::TextureView>,

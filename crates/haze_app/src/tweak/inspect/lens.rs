@@ -134,5 +134,5 @@ impl Lens {
 
 fn read(side: Side, shot: Shot, capture: &Capture) -> Result<Seen, Error> {
     let none = || Error::Device("the texels of the image could not be read back".into());
-    Ok(Seen { side, witness: capture.read().ok_or_else(none)?.of(shot) })
+    Ok(Seen { side, witness: capture.read().ok_or_else(none)?.with_shot(shot) })
 }

@@ -15,7 +15,7 @@ use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 pub struct HostKind {
     pub color_format: wgpu::TextureFormat,
     /// Formats of the additional colour attachments of the pass.
-    pub further: Vec<wgpu::TextureFormat>,
+    pub additional_attachments: Vec<wgpu::TextureFormat>,
     pub depth_format: wgpu::TextureFormat,
     /// Sample count of the pass. The depth buffer passed to haze always has one sample.
     pub samples: u32,
@@ -29,7 +29,7 @@ impl Default for HostKind {
     fn default() -> Self {
         Self {
             color_format: wgpu::TextureFormat::Rgba16Float,
-            further: Vec::new(),
+            additional_attachments: Vec::new(),
             depth_format: wgpu::TextureFormat::Depth32Float,
             samples: 1,
             gamma_target: false,
@@ -70,53 +70,53 @@ impl TestScene {
     }
 
     pub fn try_on_gpu(&self, gpu: &Headless) -> Result<RenderedFrame, Error> {
-        let mut host = Host::sharing(gpu, self)?;
+        let mut host = Host::with_shared_context(gpu, self)?;
         host.draw(gpu, self)?;
         Ok(RenderedFrame { picture: host.picture(gpu)?, renderer: host.renderer })
     }
 }
 
 impl Host {
-    pub fn new(gpu: &Headless, stage: &TestScene) -> Result<Self, Error> {
-        Self::on(gpu, stage, None)
+    pub fn new(gpu: &Headless, scene: &TestScene) -> Result<Self, Error> {
+        Self::with_context(gpu, scene, None)
     }
 
     /// Creates a host on the context that tests share. Only for comparing images: on a shared context, counts of
     /// created resources and compiled pipelines mean nothing.
-    pub fn sharing(gpu: &Headless, stage: &TestScene) -> Result<Self, Error> {
-        Self::on(gpu, stage, shared_context(gpu))
+    pub fn with_shared_context(gpu: &Headless, scene: &TestScene) -> Result<Self, Error> {
+        Self::with_context(gpu, scene, shared_context(gpu))
     }
 
     /// Creates a host whose renderer uses `context`, or its own context if `None`.
-    pub fn on(gpu: &Headless, stage: &TestScene, context: Option<&Context>) -> Result<Self, Error> {
-        let kind = &stage.host;
-        let further: Vec<_> = kind.further.iter().copied().map(Some).collect();
+    pub fn with_context(gpu: &Headless, scene: &TestScene, context: Option<&Context>) -> Result<Self, Error> {
+        let kind = &scene.host;
+        let additional_attachments: Vec<_> = kind.additional_attachments.iter().copied().map(Some).collect();
         let descriptor = Descriptor {
             context,
             color_format: kind.color_format,
-            further_color_formats: &further,
-            depth_format: stage.attach_depth.then_some(kind.depth_format),
+            further_color_formats: &additional_attachments,
+            depth_format: scene.attach_depth.then_some(kind.depth_format),
             sample_count: kind.samples,
             gamma_target: kind.gamma_target,
             exact_filtering: kind.exact_filtering,
         };
         let renderer = Renderer::new(&gpu.device, &gpu.queue, &descriptor)?;
-        let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material)?;
-        let size = kind.target_size.unwrap_or(stage.view.size);
+        let material = renderer.create_material(&gpu.device, &gpu.queue, &scene.material)?;
+        let size = kind.target_size.unwrap_or(scene.view.size);
         let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let colour = gpu.target("host colour", size, kind.color_format);
         let resolved = (kind.samples > 1).then(|| whole(&colour));
         let mut attachments: Vec<_> = std::iter::once(kind.color_format)
-            .chain(kind.further.iter().copied())
+            .chain(kind.additional_attachments.iter().copied())
             .map(|format| whole(&target(gpu, size, format, kind.samples)))
             .collect();
         if resolved.is_none() {
             attachments[0] = whole(&colour);
         }
-        let depth = depth_buffer(gpu, stage, size, 1);
+        let depth = depth_buffer(gpu, scene, size, 1);
         let attached_depth =
-            if kind.samples > 1 { depth_buffer(gpu, stage, size, kind.samples) } else { depth.clone() };
-        let linear = upload(gpu, &pad_to_target(&stage.linear_depth(), stage.view.origin, size));
+            if kind.samples > 1 { depth_buffer(gpu, scene, size, kind.samples) } else { depth.clone() };
+        let linear = upload(gpu, &pad_to_target(&scene.linear_depth(), scene.view.origin, size));
         // A depth-stencil buffer is sampled through a view of its depth aspect only.
         let depth_aspect = wgpu::TextureViewDescriptor {
             aspect: if kind.depth_format.has_stencil_aspect() {
@@ -141,14 +141,14 @@ impl Host {
     }
 
     /// Draws one frame: clears to the backdrop, then draws the smoke.
-    pub fn draw(&mut self, gpu: &Headless, stage: &TestScene) -> Result<(), Error> {
-        self.draw_particles(gpu, stage, Particles::Slice(&stage.particles))
+    pub fn draw(&mut self, gpu: &Headless, scene: &TestScene) -> Result<(), Error> {
+        self.draw_particles(gpu, scene, Particles::Slice(&scene.particles))
     }
 
-    pub fn draw_particles(&mut self, gpu: &Headless, stage: &TestScene, particles: Particles<'_>) -> Result<(), Error> {
+    pub fn draw_particles(&mut self, gpu: &Headless, scene: &TestScene, particles: Particles<'_>) -> Result<(), Error> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.prepare(gpu, &mut encoder, stage, particles)?;
-        self.render(&mut encoder, stage);
+        self.prepare(gpu, &mut encoder, scene, particles)?;
+        self.render(&mut encoder, scene);
         if let Some(timing) = &self.timing {
             timing.resolve(&mut encoder);
         }
@@ -156,9 +156,9 @@ impl Host {
     }
 
     /// Draws particles from a GPU buffer in their given order, without sorting.
-    pub fn draw_buffer(&mut self, gpu: &Headless, stage: &TestScene, particles: &[Particle]) -> Result<(), Error> {
+    pub fn draw_buffer(&mut self, gpu: &Headless, scene: &TestScene, particles: &[Particle]) -> Result<(), Error> {
         let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
-        self.draw_particles(gpu, stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true })
+        self.draw_particles(gpu, scene, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true })
     }
 
     /// Records `prepare`, the first half of a frame.
@@ -166,23 +166,23 @@ impl Host {
         &mut self,
         gpu: &Headless,
         encoder: &mut wgpu::CommandEncoder,
-        stage: &TestScene,
+        scene: &TestScene,
         particles: Particles<'_>,
     ) -> Result<(), Error> {
-        let system = System { bounds: stage.bounds, ..System::new(particles, &stage.settings, &self.material) };
+        let system = System { bounds: scene.bounds, ..System::new(particles, &scene.settings, &self.material) };
         let frame = Frame {
-            lights: &stage.lights,
+            lights: &scene.lights,
             systems: &[system],
-            time: stage.time,
-            stages: stage.stages.unwrap_or(std::slice::from_ref(&stage.debug_view)),
-            ..Frame::new(stage.view, scene_depth(stage.depth, &self.depth, &self.linear))
+            time: scene.time,
+            stages: scene.stages.unwrap_or(std::slice::from_ref(&scene.debug_view)),
+            ..Frame::new(scene.view, scene_depth(scene.depth, &self.depth, &self.linear))
         };
         self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
     }
 
     /// Records the host's pass, the second half of a frame.
-    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, stage: &TestScene) {
-        let clear = if stage.host.gamma_target {
+    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) {
+        let clear = if scene.host.gamma_target {
             gamma_target_colour(BACKDROP.truncate()).extend(BACKDROP.w)
         } else {
             BACKDROP
@@ -207,7 +207,7 @@ impl Host {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("host"),
             color_attachments: &attachments,
-            depth_stencil_attachment: stage.attach_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
+            depth_stencil_attachment: scene.attach_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.attached_depth,
                 depth_ops: None,
                 stencil_ops: None,
@@ -215,7 +215,7 @@ impl Host {
             timestamp_writes: self.timing.as_ref().and_then(|timing| timing.host_pass("host")),
             ..Default::default()
         });
-        self.renderer.render_stage(&mut pass, stage.debug_view);
+        self.renderer.render_stage(&mut pass, scene.debug_view);
     }
 
     /// Reads back the colour target as floats. sRGB formats are decoded to linear light.
@@ -224,7 +224,7 @@ impl Host {
     }
 
     /// Reads back additional attachment number `index`.
-    pub fn further(&self, gpu: &Headless, index: usize) -> Image<Vec4> {
+    pub fn additional_attachments(&self, gpu: &Headless, index: usize) -> Image<Vec4> {
         let texels = gpu.read_rgba16float(&convert_to_rgba16float(gpu, self.attachments[index + 1].texture())).unwrap();
         Image { size: self.size, texels }
     }
@@ -297,10 +297,10 @@ fn upload(gpu: &Headless, values: &Image<f32>) -> wgpu::Texture {
     gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytemuck::cast_slice(&values.texels))
 }
 
-/// Creates a depth buffer that contains the stage's scene.
-fn depth_buffer(gpu: &Headless, stage: &TestScene, size: UVec2, samples: u32) -> wgpu::Texture {
-    let values = upload(gpu, &pad_to_target(&stage.ndc_depth(), stage.view.origin, size));
-    let depth = target(gpu, size, stage.host.depth_format, samples);
+/// Creates a depth buffer that contains the scene's scene.
+fn depth_buffer(gpu: &Headless, scene: &TestScene, size: UVec2, samples: u32) -> wgpu::Texture {
+    let values = upload(gpu, &pad_to_target(&scene.ndc_depth(), scene.view.origin, size));
+    let depth = target(gpu, size, scene.host.depth_format, samples);
     let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @builtin(frag_depth) f32 {
         return textureLoad(values, vec2i(p.xy), 0).r;
     }";
