@@ -14,8 +14,8 @@ use haze_author::particle_files;
 use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::without_effect;
 
-use crate::common::{gpu, is_tiled_available};
 use crate::every_setting::{OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY, SettingMutator};
+use crate::gpu::{gpu, is_tiled_available};
 use crate::test_host::Host;
 use crate::test_scene::TestScene;
 

@@ -8,7 +8,8 @@ use haze::builtin;
 use haze::image::Image;
 use haze::settings::*;
 
-use crate::common::{MIN_PSNR, MIN_PSNR_WITH_STEPS, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, MIN_PSNR_WITH_STEPS, psnr};
 use crate::test_scene::{DepthKind, TestScene};
 
 const SIZE: UVec2 = UVec2::new(96, 54);

@@ -6,7 +6,8 @@ use haze::settings::{DebugView, DiffuseMode, RenderPath, Technique};
 use haze::{Light, LightKind, Particle};
 use haze_reference::{Frame, System};
 
-use crate::common::{MIN_PSNR, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{BACKDROP, TestScene};
 
 const SIZE: UVec2 = UVec2::new(96, 64);

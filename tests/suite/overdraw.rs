@@ -8,7 +8,7 @@ use haze::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze::{Overdraw, Particle, Particles, View, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 

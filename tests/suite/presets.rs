@@ -11,7 +11,8 @@ use haze::settings::*;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
-use crate::common::{MIN_PSNR, gpu, psnr_over};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr_over};
 
 /// Loads a preset with the path `raster` in place of `auto`, whose choice depends on the machine. `tiled.rs` compares
 /// the path `tiled` with `raster`.

@@ -10,7 +10,7 @@ use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_reference::{Probe, SystemProbe};
 
-use crate::common::{gpu, is_tiled_available};
+use crate::gpu::{gpu, is_tiled_available};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 

@@ -10,7 +10,8 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Context, Error, SceneDepthKind, WarmUp, wgpu};
 use tempfile::TempDir;
 
-use crate::common::{gpu, is_tiled_available, psnr};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::psnr;
 use crate::test_host::Host;
 use crate::test_scene::{TestScene, six_way_of};
 

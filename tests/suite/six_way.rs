@@ -7,7 +7,8 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Light, LightKind, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::{MIN_PSNR, gpu, is_tiled_available, psnr};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{TestScene, six_way_of};
 use crate::tiled;
 

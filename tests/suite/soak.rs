@@ -7,7 +7,7 @@ use glam::UVec2;
 use haze::shader::{self, Sources};
 use haze::{Context, wgpu};
 
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::hosts::retained_resources::SystemsFixture;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;

@@ -16,7 +16,7 @@ use haze_author::noise::NoiseRecipe;
 use haze_author::sprite::six_way::six_way_layout;
 use haze_reference;
 
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::test_host::HostKind;
 
 /// All inputs of a frame, in memory.

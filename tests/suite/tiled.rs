@@ -18,7 +18,8 @@ use haze::{Bounds, Context, Error, Particle, Particles, wgpu};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 
-use crate::common::{MIN_PSNR, MIN_PSNR_WITH_STEPS, gpu, is_tiled_available, psnr};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::{MIN_PSNR, MIN_PSNR_WITH_STEPS, psnr};
 use crate::techniques;
 use crate::test_host::{Host, convert_to_rgba16float};
 use crate::test_scene::TestScene;
@@ -190,7 +191,7 @@ fn tiled_path_agrees_on_every_preset() {
         let raster = renderer(&shot, RenderPath::Raster, Layers::All);
         for &layers in Layers::ALL {
             let tiled = renderer(&shot, RenderPath::Tiled, layers);
-            let apart = crate::common::psnr_over([&tiled, &raster], [&behind, &behind]);
+            let apart = crate::psnr::psnr_over([&tiled, &raster], [&behind, &behind]);
             println!("{}, {} layers: {apart:.1} dB", preset.name, layers.name());
             assert!(apart >= MIN_PSNR_TO_RASTER, "{}: {apart:.1} dB", preset.name);
         }

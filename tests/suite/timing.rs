@@ -1,14 +1,17 @@
 //! GPU time per pass, on a device with timestamp queries.
 
+mod cost_tables;
+mod queries;
+
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, RenderPath};
+use haze::settings::{DiffuseMode, LightingResolution, RenderPath};
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::{gpu, is_tiled_available};
+use crate::gpu::gpu;
 use crate::resource_counter;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;
@@ -215,118 +218,6 @@ fn without_timestamps_inside_passes_only_whole_passes_are_measured() {
 }
 
 #[test]
-fn dropped_encoders_do_not_disturb_later_results() {
-    let Some(gpu) = timed_gpu() else { return };
-    let scene = scene();
-    let (mut host, timing) = timed_host(gpu, &scene);
-    let first = draw_and_measure(gpu, &mut host, &timing, &scene);
-    // More rounds than there are read-back buffers and queries.
-    for round in 0..200 {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        host.prepare(gpu, &mut encoder, &scene, Particles::Slice(&scene.particles)).unwrap();
-        if round % 3 > 0 {
-            host.render(&mut encoder, &scene);
-        }
-        if round % 3 > 1 {
-            timing.resolve(&mut encoder);
-        }
-    }
-    assert_eq!(timing.latest(), Some(first));
-    for _ in 0..2 {
-        let times = draw_and_measure(gpu, &mut host, &timing, &scene);
-        assert_eq!((pass_names(&times), times.discarded), (DEFERRED_PASSES.to_vec(), 0));
-    }
-}
-
-#[test]
-fn host_pass_queries_from_before_a_second_prepare_are_harmless() {
-    let Some(gpu) = timed_gpu() else { return };
-    let mut scene = scene();
-    scene.attach_depth = false;
-    let (mut host, timing) = timed_host(gpu, &scene);
-    let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu, &mut encoder(), &scene, Particles::Slice(&scene.particles)).unwrap();
-    let timestamp_writes = timing.host_pass("host");
-    let mut encoder = encoder();
-    host.prepare(gpu, &mut encoder, &scene, Particles::Slice(&scene.particles)).unwrap();
-    let view = host.colour.create_view(&wgpu::TextureViewDescriptor::default());
-    let attachment = wgpu::RenderPassColorAttachment {
-        view: &view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations::default(),
-    };
-    host.renderer.render(&mut encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(attachment)],
-        timestamp_writes,
-        ..Default::default()
-    }));
-    timing.resolve(&mut encoder);
-    // wgpu rejects a pass that writes one query twice.
-    gpu.submit(encoder).unwrap();
-    let times = result_after(&timing, None);
-    assert_eq!((pass_names(&times).len(), times.discarded), (5, 0), "{times:?}");
-}
-
-#[test]
-fn only_resolved_frames_are_measured() {
-    let Some(gpu) = timed_gpu() else { return };
-    let mut scene = scene();
-    let (mut host, timing) = timed_host(gpu, &scene);
-    host.timing = None;
-    scene.settings.path = RenderPath::Forward;
-    host.draw(gpu, &scene).unwrap();
-    scene.settings.path = RenderPath::Auto;
-    host.timing = Some(timing.clone());
-    let times = draw_and_measure(gpu, &mut host, &timing, &scene);
-    assert_eq!((pass_names(&times), times.discarded), (DEFERRED_PASSES.to_vec(), 0));
-}
-
-#[test]
-fn unused_and_excess_host_labels_count_as_discarded() {
-    let Some(gpu) = timed_gpu() else { return };
-    let scene = scene();
-    let (mut host, timing) = timed_host(gpu, &scene);
-    let mut discarded = |asked| {
-        let given = (0..asked).filter(|_| timing.host_pass("unused").is_some()).count();
-        let times = draw_and_measure(gpu, &mut host, &timing, &scene);
-        assert_eq!(pass_names(&times).contains(&"host"), given < 32);
-        assert!(!pass_names(&times).contains(&"unused"));
-        times.discarded
-    };
-    assert_eq!(discarded(0), 0);
-    // The query of the unused label still holds what the host's pass wrote in the previous frame.
-    assert_eq!(discarded(1), 1);
-    // 32 labels are never written; 8 more and the host's own pass do not fit.
-    assert_eq!(discarded(40), 32 + 8 + 1);
-    assert_eq!(discarded(0), 0);
-}
-
-#[test]
-fn frames_beyond_the_read_back_buffers_are_not_measured() {
-    if timed_gpu().is_none() {
-        return;
-    }
-    // A separate device, so that no other thread's poll delivers results later.
-    let gpu = &Headless::with(wgpu::Limits::default(), FEATURES).unwrap();
-    let scene = scene();
-    let (mut host, timing) = timed_host(gpu, &scene);
-    let recorded = |_| {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        timing.resolve(&mut encoder);
-        encoder
-    };
-    let held = [(); 4].map(recorded);
-    host.draw(gpu, &scene).unwrap();
-    assert_eq!(timing.latest(), None);
-    for encoder in held {
-        gpu.submit(encoder).unwrap();
-    }
-    let times = draw_and_measure(gpu, &mut host, &timing, &scene);
-    assert_eq!((pass_names(&times), times.frame, times.discarded), (DEFERRED_PASSES.to_vec(), 5, 0));
-}
-
-#[test]
 fn steady_frames_with_timing_create_no_resources() {
     let Some(gpu) = timed_gpu() else { return };
     let scene = scene();
@@ -336,69 +227,4 @@ fn steady_frames_with_timing_create_no_resources() {
         let created = resource_counter::count(|| host.draw(gpu, &scene).unwrap());
         assert_eq!(created, 0);
     }
-}
-
-/// Median GPU time of the sum of `passes` for every scene, milliseconds. The scenes are drawn in turn.
-fn medians(gpu: &Headless, stages: &[TestScene], passes: &[&str]) -> Vec<f32> {
-    let mut hosts: Vec<_> = stages.iter().map(|scene| timed_host(gpu, scene)).collect();
-    let mut all = vec![Vec::new(); stages.len()];
-    for turn in 0..24 {
-        for ((scene, (host, timing)), times) in stages.iter().zip(&mut hosts).zip(&mut all) {
-            let drawn = draw_and_measure(gpu, host, timing, scene);
-            let ms: f32 = drawn.passes.iter().filter(|pass| passes.contains(&pass.name)).map(|pass| pass.ms).sum();
-            assert!(ms > 0.0, "no time for {passes:?}");
-            // The first four rounds warm up.
-            if turn >= 4 {
-                times.push(ms);
-            }
-        }
-    }
-    all.iter_mut().for_each(|times| times.sort_by(f32::total_cmp));
-    all.iter().map(|times| times[times.len() / 2]).collect()
-}
-
-/// Prints the figures of docs/six_way.md and docs/light.md.
-#[test]
-#[ignore = "prints figures for the docs"]
-fn prints_cost_of_six_way_lighting_and_ramps() {
-    let Some(gpu) = timed_gpu() else { return };
-    let mut scene = TestScene::new(UVec2::new(1280, 720));
-    scene.particles.iter_mut().for_each(|particle| particle.radius = 1.6);
-    let other = |change: fn(&mut Settings)| {
-        let mut other = scene.clone();
-        change(&mut other.settings);
-        other
-    };
-    let raster: [(RenderPath, &[&str]); 2] =
-        [(RenderPath::Raster, &["accumulate"]), (RenderPath::Raster, &["transfer"])];
-    let tiled: [(RenderPath, &[&str]); 2] = [
-        (RenderPath::Tiled, &["tile_project", "sort", "tile_bin", "tile_refine", "tile_accumulate"]),
-        (RenderPath::Tiled, &["tile_accumulate"]),
-    ];
-    let tiled = if is_tiled_available() { &tiled[..] } else { &[] };
-    for scale in [1, 2] {
-        for &(path, passes) in raster.iter().chain(tiled) {
-            let pair = [Lighting::Normals, Lighting::SixWay].map(|lighting| {
-                let mut scene = scene.clone();
-                (scene.settings.path, scene.settings.lighting) = (path, lighting);
-                scene.settings.accumulate.scale = scale;
-                scene
-            });
-            let times = medians(gpu, &pair, passes);
-            println!(
-                "1/{scale} {}: normals {:.3} ms, six-way {:.3} ms, {:.2}",
-                passes.join(" + "),
-                times[0],
-                times[1],
-                times[1] / times[0]
-            );
-        }
-    }
-    // A ramp with one row, one with several rows, and a second ramp for light from behind.
-    let mut two_axes = scene.clone();
-    two_axes.material.diffuse_ramp = scene.material.backlight_ramp.clone();
-    let backlit = other(|settings| settings.diffuse.backlight = Backlight::Ramp);
-    let times = medians(gpu, &[scene.clone(), two_axes, backlit], &["transfer"]);
-    let [one, two, behind] = times[..] else { return };
-    println!("transfer: one axis {one:.3} ms, two axes {:.2}, light from behind {:.2}", two / one, behind / one);
 }

@@ -7,7 +7,7 @@ use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{TonemapPass, TonemapUniform, exposure, tonemap};
 
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::resource_counter;
 use crate::test_host::convert_to_rgba16float;
 

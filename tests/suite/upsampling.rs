@@ -7,8 +7,8 @@ use haze::image::Image;
 use haze::settings::{DebugView, LightingResolution, Upsample};
 use haze_demo::shot::Shot;
 
-use crate::common::psnr;
 use crate::presets::render_on_gpu;
+use crate::psnr::psnr;
 
 const SIZE: UVec2 = UVec2::new(640, 360);
 

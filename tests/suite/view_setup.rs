@@ -9,7 +9,7 @@ use haze::settings::{DebugView, DiffuseMode};
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Light, LightKind, Particle};
 
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 

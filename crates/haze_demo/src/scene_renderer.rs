@@ -16,7 +16,8 @@ pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 
 pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::stage::Stage)s of a device.
+/// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a
+/// device.
 #[derive(Debug)]
 pub(crate) struct SceneRenderer {
     device: wgpu::Device,
@@ -57,7 +58,8 @@ impl SceneTargets {
 impl SceneRenderer {
     /// Compiles the pipelines. `draws_linear`: the adapter can render to `R32Float`.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, draws_linear: bool) -> Self {
-        let source = shader::compose(include_str!("scene.wgsl")).unwrap_or_default();
+        let source = shader::compose(concat!(include_str!("scene_materials.wgsl"), include_str!("scene.wgsl")))
+            .unwrap_or_default();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("demo scene"),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -84,42 +86,8 @@ impl SceneRenderer {
         let masks = texture(wgpu::TextureSampleType::Uint);
         let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform), entry(3, masks)]);
         let paint_layout = layout(&[entry(0, texture(wgpu::TextureSampleType::Float { filterable: false }))]);
-        type Fragment<'a> = Option<(&'a str, wgpu::TextureFormat)>;
-        let pipeline = |vertex, fragment: Fragment<'_>, groups: &[Option<&wgpu::BindGroupLayout>], depth: bool| {
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("demo scene"),
-                bind_group_layouts: groups,
-                immediate_size: 0,
-            });
-            let targets = [fragment.map(|(_, format)| format.into())];
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("demo scene"),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some(vertex),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: depth.then(|| wgpu::DepthStencilState {
-                    format: DEPTH_FORMAT,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::LessEqual),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
-                }),
-                multisample: wgpu::MultisampleState::default(),
-                fragment: fragment.map(|(entry_point, _)| wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
+        let pipeline =
+            |vertex, fragment, groups: &[_], depth| scene_pipeline(&module, device, groups, vertex, fragment, depth);
         let linear = draws_linear.then_some(("linear_fragment", LINEAR_FORMAT));
         let scene_group = [Some(&scene_layout)];
         Self {
@@ -233,6 +201,51 @@ impl SceneRenderer {
         self.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&masks.texels), rows, size);
         texture
     }
+}
+
+/// Creates a pipeline from entry points of the scene's shader. `fragment` is an entry point with the format it writes;
+/// `depth`: tests and writes the depth buffer.
+fn scene_pipeline(
+    module: &wgpu::ShaderModule,
+    device: &wgpu::Device,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+    vertex: &str,
+    fragment: Option<(&str, wgpu::TextureFormat)>,
+    depth: bool,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("demo scene"),
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    });
+    let targets = [fragment.map(|(_, format)| format.into())];
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("demo scene"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: depth.then(|| wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::LessEqual),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: fragment.map(|(entry_point, _)| wgpu::FragmentState {
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }
 
 /// Creates a texture that can be rendered to, sampled and copied.

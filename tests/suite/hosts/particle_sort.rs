@@ -6,7 +6,7 @@ use haze::{Bounds, Particle, Particles, wgpu};
 use haze_demo::headless::Headless;
 
 use super::{SIZE, rejected_field};
-use crate::common::{gpu, is_tiled_available};
+use crate::gpu::{gpu, is_tiled_available};
 use crate::resource_counter;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;

@@ -7,7 +7,8 @@ use haze::settings::*;
 use haze::{Context, Descriptor, Error, Frame, Renderer, SceneDepth, wgpu};
 
 use super::{SIZE, device_with_optional_features, encoder, rejected_field, slice};
-use crate::common::{MIN_PSNR, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_host::{Host, HostKind};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 

@@ -6,7 +6,7 @@ use haze::{Bounds, Error, Frame, Particle, Particles, SceneDepth, Settings, Syst
 use haze_demo::headless::Headless;
 
 use super::{SIZE, encoder, rejected_field};
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 

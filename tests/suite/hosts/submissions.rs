@@ -3,7 +3,8 @@
 use glam::{Mat4, vec3};
 
 use super::{SIZE, encoder, rejected_field, slice};
-use crate::common::{gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::psnr;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;
 

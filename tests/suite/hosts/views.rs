@@ -7,7 +7,8 @@ use haze::image::Image;
 use haze::settings::*;
 
 use super::{SIZE, rejected_field};
-use crate::common::{MIN_PSNR, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 /// Transforms the world of a scene by `turn`, which may mirror it. In view space nothing changes.

@@ -6,7 +6,7 @@ use haze::settings::*;
 use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, WarmUp, wgpu};
 
 use super::{SIZE, device_with_optional_features, rejected_field};
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::test_host::Host;
 use crate::test_scene::{DepthKind, TestScene};
 
@@ -100,8 +100,7 @@ fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
 #[test]
 #[ignore = "a measurement, to be run by hand"]
 fn measure_cpu_time_of_prepare() {
-    for path in RenderPath::ALL.iter().filter(|&&path| path != RenderPath::Tiled || crate::common::is_tiled_available())
-    {
+    for path in RenderPath::ALL.iter().filter(|&&path| path != RenderPath::Tiled || crate::gpu::is_tiled_available()) {
         let mut scene = TestScene::new(glam::UVec2::new(1280, 720));
         scene.settings.path = *path;
         let prepare = |host: &mut Host, scene: &TestScene| {

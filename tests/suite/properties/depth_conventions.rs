@@ -6,7 +6,8 @@ use haze::settings::{DebugView, DiffuseMode, RenderPath};
 use haze::{Bounds, wgpu};
 
 use super::SIZE;
-use crate::common::{MIN_PSNR, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 fn reversed(projection: Mat4) -> Mat4 {

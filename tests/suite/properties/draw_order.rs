@@ -8,7 +8,8 @@ use haze_reference::blend_unit::{premultiplied_over, quantise};
 use proptest::prelude::*;
 
 use super::SIZE;
-use crate::common::{MIN_PSNR, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 

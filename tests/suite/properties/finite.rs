@@ -5,7 +5,7 @@ use haze::settings::RenderPath;
 use haze::{Bounds, Particle};
 
 use super::SIZE;
-use crate::common::{gpu, non_finite_texels};
+use crate::gpu::{gpu, non_finite_texels};
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 

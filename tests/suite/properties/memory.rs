@@ -5,7 +5,7 @@ use haze::settings::{DiffuseMode, LightingResolution};
 use haze::{Bounds, wgpu};
 
 use super::SIZE;
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::resource_counter;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;

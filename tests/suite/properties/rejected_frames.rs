@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3};
 use haze::{Bounds, Error, Particles, wgpu};
 
 use super::SIZE;
-use crate::common::gpu;
+use crate::gpu::gpu;
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 

@@ -7,7 +7,8 @@ use haze::settings::{DepthSource, DiffuseMode, RenderPath, Upsample};
 use haze::{Light, Particle};
 
 use super::SIZE;
-use crate::common::{MIN_PSNR, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 

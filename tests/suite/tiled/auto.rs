@@ -5,7 +5,7 @@ use haze::settings::*;
 use haze::{Bounds, Particles, PathCosts, PathModel, PathModelSource, PathReason};
 
 use super::{scene, storage_buffer};
-use crate::common::{gpu, is_tiled_available};
+use crate::gpu::{gpu, is_tiled_available};
 use crate::resource_counter;
 use crate::test_host::Host;
 

@@ -6,7 +6,8 @@ use haze::settings::*;
 use haze::{Particles, TiledMemory, wgpu};
 
 use super::{MIN_PSNR_TO_RASTER, scene};
-use crate::common::{gpu, is_tiled_available, psnr};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::psnr;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;
 

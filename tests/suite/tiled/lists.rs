@@ -6,7 +6,8 @@ use haze::settings::*;
 use haze::{Bounds, Particle, Particles, shader, wgpu};
 
 use super::{scene, storage_buffer};
-use crate::common::{gpu, is_tiled_available, psnr};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::psnr;
 use crate::resource_counter;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;
