@@ -19,7 +19,7 @@ use haze_reference::blend_unit::premultiplied_over;
 const ROUNDING: f32 = 1e-6;
 
 #[track_caller]
-fn is(found: f32, expected: f32) {
+fn assert_close(found: f32, expected: f32) {
     assert!((found - expected).abs() <= ROUNDING * expected.abs().max(1.0), "{found} is not {expected}");
 }
 
@@ -42,11 +42,11 @@ fn accumulate(encoding: NormalEncoding, layers: &[(Vec3, f32)]) -> Vec4 {
 fn amounts_add_like_opacities() {
     // 1 - 0.5 · 0.5 · 0.5 · 0.5.
     let four = accumulate(NormalEncoding::Signed, &[(Vec3::Z, 0.5); 4]);
-    is(four.w, 0.9375);
+    assert_close(four.w, 0.9375);
     // "RGB is still blended": the last layer counts half, the one below it a quarter.
     let two = accumulate(NormalEncoding::Signed, &[(Vec3::X, 0.5), (Vec3::Y, 0.5)]);
     assert_close_vector(two.xyz(), vec3(0.25, 0.5, 0.0));
-    is(two.w, 0.75);
+    assert_close(two.w, 0.75);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn diffuse_coordinate_runs_from_behind_to_in_front() {
     for (to_light, place) in
         [(Vec3::NEG_Z, 0.0), (Vec3::X, 0.5), (vec3(0.0, 0.75_f32.sqrt(), 0.5), 0.75), (Vec3::Z, 1.0)]
     {
-        is(diffuse_coordinate(Vec3::Z, to_light), place);
+        assert_close(diffuse_coordinate(Vec3::Z, to_light), place);
     }
 }
 
@@ -80,20 +80,20 @@ fn soft_scatter_weight_is_a_smoothstep_of_the_amount() {
     // smoothstep(0.2, 0.2 + 0.4, A): x²(3 - 2x) at 0, ¼, ½, ¾ and 1.
     for (amount, weight) in [(0.1, 0.0), (0.2, 0.0), (0.3, 0.15625), (0.4, 0.5), (0.5, 0.84375), (0.6, 1.0), (0.9, 1.0)]
     {
-        is(soft_scatter_weight(amount, 0.2, 0.4), weight);
+        assert_close(soft_scatter_weight(amount, 0.2, 0.4), weight);
     }
 }
 
 #[test]
 fn coverage_is_the_amount_times_the_boost() {
-    is(coverage(0.2, 3.0), 0.6);
-    is(coverage(0.5, 3.0), 1.0);
+    assert_close(coverage(0.2, 3.0), 0.6);
+    assert_close(coverage(0.5, 3.0), 1.0);
 }
 
 #[test]
 fn specular_scatter_fades_while_the_light_passes_through_the_box() {
     for (light, fade) in [(3.0, 0.0), (4.0, 0.0), (5.0, 0.25), (8.0, 1.0), (9.0, 1.0)] {
-        is(specular_scatter_fade(light, 4.0, 8.0), fade);
+        assert_close(specular_scatter_fade(light, 4.0, 8.0), fade);
     }
 }
 
@@ -103,10 +103,10 @@ fn specular_scatter_fades_while_the_light_passes_through_the_box() {
 fn the_linear_fade_is_the_scaled_difference() {
     let fade = |distance| soft_fade(FadeCurve::Linear, distance, 2.0, 1.0, 0.0);
     for (distance, expected) in [(-0.1, 0.0), (0.0, 0.0), (0.125, 0.25), (0.5, 1.0), (3.0, 1.0)] {
-        is(fade(distance), expected);
+        assert_close(fade(distance), expected);
     }
     // Below epsilon the fragment is discarded.
-    is(soft_fade(FadeCurve::Linear, 0.125, 2.0, 1.0, 0.126), 0.0);
+    assert_close(soft_fade(FadeCurve::Linear, 0.125, 2.0, 1.0, 0.126), 0.0);
 }
 
 #[test]
@@ -116,18 +116,18 @@ fn the_contrast_fade_is_as_printed() {
     for (x, power, expected) in
         [(0.25, 1.0, 0.25), (0.25, 2.0, 0.125), (0.25, 3.0, 0.0625), (0.75, 2.0, 0.875), (0.125, 0.5, 0.25)]
     {
-        is(fade_contrast(x, power), expected);
+        assert_close(fade_contrast(x, power), expected);
     }
     for power in [0.1, 0.5, 1.0, 1.5, 2.0, 4.0, 16.0] {
-        is(fade_contrast(0.0, power), 0.0);
-        is(fade_contrast(0.5, power), 0.5);
-        is(fade_contrast(1.0, power), 1.0);
+        assert_close(fade_contrast(0.0, power), 0.0);
+        assert_close(fade_contrast(0.5, power), 0.5);
+        assert_close(fade_contrast(1.0, power), 1.0);
         let mut before = 0.0;
         for step in 0..=100_i16 {
             let x = f32::from(step) / 100.0;
             let fade = fade_contrast(x, power);
             // "Symmetric at the central point (0.5, 0.5)", and monotonic.
-            is(fade + fade_contrast(1.0 - x, power), 1.0);
+            assert_close(fade + fade_contrast(1.0 - x, power), 1.0);
             assert!(fade >= before, "{fade} at {x} after {before}, power {power}");
             before = fade;
         }
@@ -138,12 +138,12 @@ fn the_contrast_fade_is_as_printed() {
 fn the_exponential_fade_is_not_symmetric_and_ends_short() {
     // 1 - 2^(-2 · (2x)^c): ¾ in the middle for every c, 15/16 at the end for c = 1, 255/256 for c = 2.
     for power in [0.5, 1.0, 2.0, 8.0] {
-        is(fade_exponential(0.0, power), 0.0);
-        is(fade_exponential(0.5, power), 0.75);
+        assert_close(fade_exponential(0.0, power), 0.0);
+        assert_close(fade_exponential(0.5, power), 0.75);
     }
-    is(fade_exponential(0.25, 1.0), 0.5);
-    is(fade_exponential(1.0, 1.0), 0.9375);
-    is(fade_exponential(1.0, 2.0), 255.0 / 256.0);
+    assert_close(fade_exponential(0.25, 1.0), 0.5);
+    assert_close(fade_exponential(1.0, 1.0), 0.9375);
+    assert_close(fade_exponential(1.0, 2.0), 255.0 / 256.0);
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn the_always_fade_ends_behind_the_surface() {
     // 1 - saturate(softness · (sprite - scene)).
     let fade = |distance| soft_fade(FadeCurve::Always, distance, 2.0, 1.0, 0.0);
     for (distance, expected) in [(1.0, 1.0), (0.0, 1.0), (-0.25, 0.5), (-0.5, 0.0), (-2.0, 0.0)] {
-        is(fade(distance), expected);
+        assert_close(fade(distance), expected);
     }
 }
 
@@ -164,28 +164,28 @@ fn view_depth_inverts_the_projection() {
     // plane, zbuf = 1.
     let standard = coefficients(1.0, 10.0, false, false);
     for z in [1.0, 2.0, 4.0, 10.0] {
-        is(depth::view_depth_from_ndc_depth(10.0 * (z - 1.0) / (9.0 * z), standard), z);
+        assert_close(depth::view_depth_from_ndc_depth(10.0 * (z - 1.0) / (9.0 * z), standard), z);
     }
-    is(depth::view_depth_from_ndc_depth(0.25, coefficients(0.5, f32::INFINITY, true, false)), 2.0);
-    is(depth::view_depth_from_ndc_depth(0.25, coefficients(2.0, 10.0, false, true)), 4.0);
-    is(depth::view_depth_from_ndc_depth(0.25, coefficients(2.0, 10.0, true, true)), 8.0);
+    assert_close(depth::view_depth_from_ndc_depth(0.25, coefficients(0.5, f32::INFINITY, true, false)), 2.0);
+    assert_close(depth::view_depth_from_ndc_depth(0.25, coefficients(2.0, 10.0, false, true)), 4.0);
+    assert_close(depth::view_depth_from_ndc_depth(0.25, coefficients(2.0, 10.0, true, true)), 8.0);
 }
 
 #[test]
 fn sprites_near_the_camera_fade() {
     // A smoothstep between the two distances.
     for (view_depth, fade) in [(0.5, 0.0), (1.0, 0.0), (1.5, 0.15625), (2.0, 0.5), (3.0, 1.0), (9.0, 1.0)] {
-        is(near_fade(view_depth, 1.0, 3.0), fade);
+        assert_close(near_fade(view_depth, 1.0, 3.0), fade);
     }
 }
 
 #[test]
 fn volume_amounts_follow_the_beer_lambert_law() {
     // Spherical billboards: 1 - exp(-ρ (1 - d/r) Δs). A density of ln 2 over one metre lets half the light through.
-    is(spherical_billboard_amount(std::f32::consts::LN_2, 0.0, 1.0, 1.0), 0.5);
-    is(spherical_billboard_amount(std::f32::consts::LN_2, 0.5, 1.0, 2.0), 0.5);
-    is(spherical_billboard_amount(5.0, 1.0, 1.0, 1.0), 0.0);
-    is(density_amount(std::f32::consts::LN_2, 2.0), 0.75);
+    assert_close(spherical_billboard_amount(std::f32::consts::LN_2, 0.0, 1.0, 1.0), 0.5);
+    assert_close(spherical_billboard_amount(std::f32::consts::LN_2, 0.5, 1.0, 2.0), 0.5);
+    assert_close(spherical_billboard_amount(5.0, 1.0, 1.0, 1.0), 0.0);
+    assert_close(density_amount(std::f32::consts::LN_2, 2.0), 0.75);
 }
 
 // MS
@@ -204,17 +204,17 @@ fn ray_sphere_gives_entry_exit_and_distance() {
     // The exit is clamped to the scene's depth ("the rear exit point"), the entry to the near plane.
     assert_close_vector(ahead(deep, 4.5, 5.5), vec3(4.5, 5.5, 0.0));
     // A texel that stands out by half a radius is nearer by half a radius.
-    is(depth_sprite_depth(5.0, 0.5, 2.0), 4.0);
+    assert_close(depth_sprite_depth(5.0, 0.5, 2.0), 4.0);
 }
 
 // light
 
 #[test]
 fn point_lights_fall_off_with_the_square_of_the_distance() {
-    is(distance_attenuation(4.0, 0.0, 0.0), 0.25);
+    assert_close(distance_attenuation(4.0, 0.0, 0.0), 0.25);
     // At half its range, a light is multiplied by (1 - 1/16)²; at its range it is 0.
-    is(distance_attenuation(4.0, 0.25, 0.0), 0.25 * 0.878_906_25);
-    is(distance_attenuation(16.0, 0.25, 0.0), 0.0);
+    assert_close(distance_attenuation(4.0, 0.25, 0.0), 0.25 * 0.878_906_25);
+    assert_close(distance_attenuation(16.0, 0.25, 0.0), 0.0);
 }
 
 #[test]
@@ -262,7 +262,7 @@ fn spherical_harmonics_match_published_values() {
 fn srgb_matches_the_standard() {
     // IEC 61966-2-1.
     for (linear, encoded) in [(0.0, 0.0), (0.001, 0.012_92), (0.214_041, 0.5), (0.5, 0.735_357), (1.0, 1.0)] {
-        is(colour::srgb_from_linear(linear), encoded);
-        is(colour::linear_from_srgb(encoded), linear);
+        assert_close(colour::srgb_from_linear(linear), encoded);
+        assert_close(colour::linear_from_srgb(encoded), linear);
     }
 }

@@ -7,7 +7,7 @@ use haze::settings::Budget;
 use proptest::prelude::*;
 
 /// Share of the budget that the time at a finer scale must stay below.
-const ROOM: f32 = 0.85;
+const HEADROOM: f32 = 0.85;
 
 /// Milliseconds at scale 1: a fixed part, and a part that falls with the square of the scale.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +58,7 @@ fn budget(milliseconds: f32) -> Budget {
 }
 
 /// Counts how often a list of scales changes direction.
-fn turns(scales: &[u32]) -> usize {
+fn reversals(scales: &[u32]) -> usize {
     let is_finer: Vec<_> = scales.windows(2).map(|pair| pair[1] < pair[0]).collect();
     is_finer.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }
@@ -79,7 +79,7 @@ proptest! {
         // Tolerance for f32 sums of 64 times.
         prop_assert!(load.ms(settled) <= 2.0 * 1.0001 || settled == max_scale, "{} ms at {settled}", load.ms(settled));
         let finer = load.ms(settled.max(2) - 1);
-        prop_assert!(settled == min_scale || finer > ROOM * 2.0 * 0.999, "{finer} ms finer than {settled}");
+        prop_assert!(settled == min_scale || finer > HEADROOM * 2.0 * 0.999, "{finer} ms finer than {settled}");
     }
 
     #[test]
@@ -92,8 +92,8 @@ proptest! {
         let scales = host.scales(20_000, |_| load, 0.2);
         // Noise may cross a threshold that is near, once.
         let [ms, finer_ms] = [scales[0], scales[0].max(2) - 1].map(|scale| load.ms(scale) / 2.0);
-        let may_change = [ms, finer_ms].iter().any(|ms| (0.85 * ROOM..1.1).contains(ms));
-        prop_assert!(turns(&scales) <= 1 && (scales.len() == 1 || may_change), "{:?}", scales);
+        let may_change = [ms, finer_ms].iter().any(|ms| (0.85 * HEADROOM..1.1).contains(ms));
+        prop_assert!(reversals(&scales) <= 1 && (scales.len() == 1 || may_change), "{:?}", scales);
         let last = *scales.last().unwrap();
         prop_assert!(load.ms(last) <= 2.0 * 1.05 || last == 16, "{} ms at {last}", load.ms(last));
     }
@@ -130,8 +130,8 @@ fn a_slowly_changing_load_is_followed_without_reversals() {
     let at = |t: f32| Load { fixed: 0.2 * t, falling: t };
     let up = host.scales(4000, |frame| at(1.0 + frame as f32 / 400.0), 0.1);
     let down = host.scales(4000, |frame| at(11.0 - frame as f32 / 400.0), 0.1);
-    assert!(turns(&up) == 0 && up.first() == Some(&1) && up.last() > Some(&3), "{up:?}");
-    assert!(turns(&down) == 0, "{down:?}");
+    assert!(reversals(&up) == 0 && up.first() == Some(&1) && up.last() > Some(&3), "{up:?}");
+    assert!(reversals(&down) == 0, "{down:?}");
     assert_eq!(host.scales(2000, |_| at(1.0), 0.1).last(), Some(&1));
 }
 
@@ -155,7 +155,7 @@ fn a_periodic_load_is_not_followed_for_ever() {
         host.scales(6000, load, 0.1);
         let scales = host.scales(12_000, load, 0.1);
         // Once the chooser waits longer than a period, it still knows the peak in the trough.
-        assert!(turns(&scales) <= 1, "{period}: {scales:?}");
+        assert!(reversals(&scales) <= 1, "{period}: {scales:?}");
     }
 }
 

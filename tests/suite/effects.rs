@@ -14,9 +14,9 @@ use haze_author::particle_files;
 use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::no_effect_reason;
 
-use crate::common::{gpu, has_tiles};
 use crate::every_setting::{OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY, SettingMutator};
-use crate::host::Host;
+use crate::gpu::{gpu, is_tiled_available};
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 const SIZE: UVec2 = UVec2::new(48, 27);
@@ -48,14 +48,14 @@ impl PresetCase {
         Self { preset, material, caches }
     }
 
-    fn stage(&self) -> TestScene {
-        let mut stage = TestScene::new(SIZE);
+    fn scene(&self) -> TestScene {
+        let mut scene = TestScene::new(SIZE);
         let system = &self.preset.systems[0];
-        particle_files::particles(system, self.caches[0].as_ref(), self.preset.time, &mut stage.particles);
-        stage.lights.clone_from(&self.preset.lights);
-        (stage.settings, stage.time) = (system.settings_at_height(SIZE.y), self.preset.time);
-        stage.material = self.material.clone();
-        stage
+        particle_files::particles(system, self.caches[0].as_ref(), self.preset.time, &mut scene.particles);
+        scene.lights.clone_from(&self.preset.lights);
+        (scene.settings, scene.time) = (system.settings_at_height(SIZE.y), self.preset.time);
+        scene.material = self.material.clone();
+        scene
     }
 
     /// Returns a copy in which field number `skip` has its alternative number `value`, the path of the field, and true
@@ -84,9 +84,9 @@ impl PresetCase {
     }
 
     fn on_gpu(&self, context: &Context) -> Image<Vec4> {
-        let stage = self.stage();
-        let mut host = Host::on(gpu(), &stage, Some(context)).unwrap();
-        host.draw(gpu(), &stage).unwrap();
+        let scene = self.scene();
+        let mut host = Host::with_context(gpu(), &scene, Some(context)).unwrap();
+        host.draw(gpu(), &scene).unwrap();
         host.picture(gpu()).unwrap()
     }
 }
@@ -233,10 +233,10 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
     let mut unreported = BTreeMap::<String, Vec<usize>>::new();
     for (index, change) in CASES.iter().enumerate() {
         let preset_case = PresetCase::new(folder, *change);
-        if preset_case.preset.systems[0].settings.path == RenderPath::Tiled && !has_tiles() {
+        if preset_case.preset.systems[0].settings.path == RenderPath::Tiled && !is_tiled_available() {
             continue;
         }
-        let plain = preset_case.stage().on_cpu();
+        let plain = preset_case.scene().on_cpu();
         let mut on_gpu = None;
         let (mut skip, mut value) = (0, 0);
         while let Some((moved, path, has_more)) = preset_case.moved(folder, skip, value) {
@@ -245,7 +245,7 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
             let reason = no_effect_reason(&preset_case.preset, &path, SIZE);
             // Some values are invalid together with others.
             reasons.extend(reason);
-            let on_cpu = moved.as_ref().and_then(|moved| moved.stage().try_on_cpu().ok());
+            let on_cpu = moved.as_ref().and_then(|moved| moved.scene().try_on_cpu().ok());
             let Some((moved, on_cpu)) = moved.zip(on_cpu) else { continue };
             let is_moved = on_cpu != plain;
             let Some(reason) = reason else {
@@ -288,10 +288,10 @@ fn lamp_and_brazier_have_an_effect_only_in_the_yard_scene() {
     use haze::preset::SceneName;
     use haze_demo::shot::Shot;
 
-    use crate::presets::drawn;
+    use crate::presets::render_on_gpu;
 
     let mut shot = Shot::load("column", SIZE).unwrap();
-    let pictures = |shot: &Shot| (shot.render_on_cpu().unwrap(), drawn(shot, true));
+    let pictures = |shot: &Shot| (shot.render_on_cpu().unwrap(), render_on_gpu(shot, true));
     for &scene in SceneName::ALL {
         shot.preset.environment.scene = scene;
         let plain = pictures(&shot);

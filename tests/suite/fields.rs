@@ -17,12 +17,12 @@ use serde_json::Value;
 
 /// Paths of all fields that a traversal visits.
 #[derive(Default)]
-struct Met {
+struct VisitedFields {
     path: Vec<String>,
     fields: BTreeSet<String>,
 }
 
-impl Met {
+impl VisitedFields {
     fn field(&mut self, name: &str) {
         let path = [&self.path[..], &[name.to_owned()]].concat().join(".");
         assert!(self.fields.insert(path.clone()), "{path} is visited twice");
@@ -35,7 +35,7 @@ impl Met {
     }
 }
 
-impl FieldVisitor for Met {
+impl FieldVisitor for VisitedFields {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
         assert!(range.contains(value), "{name}: the default is out of its range");
         self.field(name);
@@ -99,14 +99,14 @@ fn written(value: &Value, path: &str, fields: &mut BTreeSet<String>) {
 }
 
 /// Returns the fields that are only visited, and the fields that are only written.
-fn forgotten(value: &mut (impl Fields + serde::Serialize)) -> (Vec<String>, Vec<String>) {
+fn missing_fields(value: &mut (impl Fields + serde::Serialize)) -> (Vec<String>, Vec<String>) {
     let json = serde_json::to_value(&*value).unwrap();
-    let (mut met, mut file) = (Met::default(), BTreeSet::new());
-    value.visit(&mut met);
+    let (mut visited, mut file) = (VisitedFields::default(), BTreeSet::new());
+    value.visit(&mut visited);
     written(&json, "", &mut file);
     assert!(file.len() > 2);
     assert_eq!(json, serde_json::to_value(&*value).unwrap(), "the traversal changes the values");
-    (met.fields.difference(&file).cloned().collect(), file.difference(&met.fields).cloned().collect())
+    (visited.fields.difference(&file).cloned().collect(), file.difference(&visited.fields).cloned().collect())
 }
 
 #[test]
@@ -117,21 +117,24 @@ fn every_field_of_every_file_is_visited() {
         systems: vec![PresetSystem::default()],
         ..Preset::default()
     };
-    assert_eq!(forgotten(&mut preset), none);
+    assert_eq!(missing_fields(&mut preset), none);
     let file = |name: &str| std::fs::read_to_string(format!("{}/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
     let recipe = |name| file(name);
     let puff: SpriteRecipe = serde_json::from_str(&recipe("sprites/puff.sprite.json")).unwrap();
     // Unused fields are not written, so this recipe uses all of them.
     let mut used =
         SpriteRecipe { version: 2, length: 0.1, upright: 0.1, lumps: 0.1, travel: 0.1, tolerance: 1, ..puff };
-    assert_eq!(forgotten(&mut used), none);
-    assert_eq!(forgotten(&mut serde_json::from_str::<NoiseRecipe>(&recipe("sprites/fbm.noise.json")).unwrap()), none);
+    assert_eq!(missing_fields(&mut used), none);
     assert_eq!(
-        forgotten(&mut serde_json::from_str::<RampRecipe>(&recipe("tests/corpus/ramp/good_rich")).unwrap()),
+        missing_fields(&mut serde_json::from_str::<NoiseRecipe>(&recipe("sprites/fbm.noise.json")).unwrap()),
         none
     );
     assert_eq!(
-        forgotten(&mut serde_json::from_str::<MotifRecipe>(&recipe("ramps/motif_studio.motif.json")).unwrap()),
+        missing_fields(&mut serde_json::from_str::<RampRecipe>(&recipe("tests/corpus/ramp/good_rich")).unwrap()),
+        none
+    );
+    assert_eq!(
+        missing_fields(&mut serde_json::from_str::<MotifRecipe>(&recipe("ramps/motif_studio.motif.json")).unwrap()),
         none
     );
 }
@@ -147,7 +150,7 @@ fn a_forgotten_field_is_detected() {
             visitor.number("bost", &mut self.0.boost, 0.0..=16.0, "");
         }
     }
-    let (invented, left_out) = forgotten(&mut Forgetful(Settings::default()));
+    let (invented, left_out) = missing_fields(&mut Forgetful(Settings::default()));
     assert_eq!(invented, ["bost"]);
     assert!(left_out.contains(&"soft_fade.fade_scale".to_owned()) && left_out.len() > 30, "{left_out:?}");
 }

@@ -4,6 +4,7 @@
 
 mod blending;
 mod colour;
+mod compute;
 mod depth;
 mod diffuse_bake;
 mod emitter;
@@ -26,7 +27,7 @@ mod view;
 use haze::shader;
 
 use self::inputs::{test_noise, test_ramp, test_sprite};
-use crate::common::gpu;
+use crate::gpu::gpu;
 
 /// Largest number of inputs or results of a case.
 const WIDTH: usize = 32;
@@ -105,8 +106,7 @@ fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
          }}",
         formula.wgsl
     ));
-    let results =
-        crate::common::compute(gpu(), &source, &formula.cases, WIDTH, &test_ramp(), &test_sprite(), test_noise());
+    let results = compute::compute(gpu(), &source, &formula.cases, WIDTH, &test_ramp(), &test_sprite(), test_noise());
     gpu().check().unwrap_or_else(|error| panic!("{}: {error}\n{source}", formula.name));
     results
 }

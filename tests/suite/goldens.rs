@@ -13,12 +13,12 @@ use haze::settings::{DebugView, Technique};
 use haze_demo::shot::Shot;
 use image::{DynamicImage, Rgb, RgbImage};
 
-use crate::presets::{drawn, shot};
+use crate::presets::{render_on_gpu, shot};
 
 pub const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Largest size of a golden file, bytes.
-const LARGEST: u64 = 64 << 10;
+const MAX_GOLDEN_BYTES: u64 = 64 << 10;
 
 /// Accepted RMS difference, in steps of 8 bits. On the presets, the CPU renderer and llvmpipe, which has 8-bit filter
 /// weights, differ by 0.25 to 0.60. A diffuse ramp shifted by 1/32 of its length differs by 1.9.
@@ -63,14 +63,17 @@ fn techniques_match_their_golden_images() {
 
 fn compare(name: &str, shot: &Shot) {
     let path = golden(name);
-    let on_gpu = encode(&drawn(shot, false));
+    let on_gpu = encode(&render_on_gpu(shot, false));
     if std::env::var_os("HAZE_BLESS").is_some() {
         write_png(&path, &DynamicImage::ImageRgb8(on_gpu), CompressionEffort::Small).unwrap();
         return;
     }
     let golden =
         read_png(&path).unwrap_or_else(|error| panic!("no golden image; HAZE_BLESS=1 writes it: {error}")).to_rgb8();
-    assert!(std::fs::metadata(&path).unwrap().len() <= LARGEST, "{name} is larger than {LARGEST} bytes");
+    assert!(
+        std::fs::metadata(&path).unwrap().len() <= MAX_GOLDEN_BYTES,
+        "{name} is larger than {MAX_GOLDEN_BYTES} bytes"
+    );
     let on_cpu = encode(&shot.render_on_cpu().unwrap());
     for (renderer, picture) in [("GPU", &on_gpu), ("CPU", &on_cpu)] {
         let difference = difference(picture, &golden);

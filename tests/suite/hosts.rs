@@ -1,9 +1,9 @@
 //! Host configurations: several views, handedness, viewports, formats, sample counts, and rejected input.
 
-pub mod kept;
+mod particle_sort;
 mod passes;
+pub mod retained_resources;
 mod submissions;
-mod unsorted;
 mod views;
 mod warm_up;
 
@@ -19,7 +19,7 @@ const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Returns a device with optional texture formats and a pipeline cache, as far as the adapter has them. The device of
 /// other tests has none of these features.
-fn featured() -> &'static Headless {
+fn device_with_optional_features() -> &'static Headless {
     static GPU: OnceLock<Headless> = OnceLock::new();
     GPU.get_or_init(|| {
         let optional = wgpu::Features::DEPTH32FLOAT_STENCIL8
@@ -29,8 +29,8 @@ fn featured() -> &'static Headless {
     })
 }
 
-fn slice(stage: &TestScene) -> Particles<'_> {
-    Particles::Slice(&stage.particles)
+fn slice(scene: &TestScene) -> Particles<'_> {
+    Particles::Slice(&scene.particles)
 }
 
 fn encoder(gpu: &Headless) -> wgpu::CommandEncoder {
@@ -38,7 +38,7 @@ fn encoder(gpu: &Headless) -> wgpu::CommandEncoder {
 }
 
 /// Returns the field that an error names. Panics if there is no error, or another kind of error.
-fn field<T>(result: Result<T, Error>) -> String {
+fn rejected_field<T>(result: Result<T, Error>) -> String {
     match result {
         Err(Error::Field(error)) => error.field,
         Err(error) => panic!("{error}"),

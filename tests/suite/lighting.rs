@@ -6,7 +6,8 @@ use haze::settings::{DebugView, DiffuseMode, RenderPath, Technique};
 use haze::{Light, LightKind, Particle};
 use haze_reference::{Frame, System};
 
-use crate::common::{AGREEMENT, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{BACKDROP, TestScene};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
@@ -59,10 +60,10 @@ fn new_sprite_changes_the_image_in_proportion_to_its_amount() {
 
 #[test]
 fn nan_depth_is_an_error_that_names_the_field() {
-    let stage = TestScene::new(SIZE);
-    let system = System { depth: Some(f32::NAN), ..System::new(&stage.particles, &stage.settings, &stage.material) };
-    let depth = stage.ndc_depth();
-    let frame = Frame { systems: &[system], ..Frame::new(stage.view, &depth) };
+    let scene = TestScene::new(SIZE);
+    let system = System { depth: Some(f32::NAN), ..System::new(&scene.particles, &scene.settings, &scene.material) };
+    let depth = scene.ndc_depth();
+    let frame = Frame { systems: &[system], ..Frame::new(scene.view, &depth) };
     let error = haze_reference::render(&frame, &mut Image::new(SIZE, Vec4::ZERO)).unwrap_err();
     assert_eq!(error.to_string(), "systems[0].depth: NaN is not valid; expected a finite number of metres, or None");
 }
@@ -70,11 +71,11 @@ fn nan_depth_is_an_error_that_names_the_field() {
 #[test]
 fn glow_changes_continuously_with_the_lights_range() {
     let glow = |range: f32| {
-        let mut stage = TestScene::new(SIZE);
-        stage.debug_view = DebugView::SpecularScatter;
-        stage.lights.remove(0);
-        stage.lights[0].range = range;
-        let picture = stage.on_cpu();
+        let mut scene = TestScene::new(SIZE);
+        scene.debug_view = DebugView::SpecularScatter;
+        scene.lights.remove(0);
+        scene.lights[0].range = range;
+        let picture = scene.on_cpu();
         Image { size: SIZE, texels: picture.texels.iter().map(|texel| *texel - BACKDROP).collect() }
     };
     let brightest = largest_difference(&glow(f32::INFINITY), &glow(0.01));
@@ -103,10 +104,10 @@ fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
     for &mode in DiffuseMode::ALL {
         for path in [RenderPath::Raster, RenderPath::Forward] {
             for intensity in [1.0, 1.0e3, 1.2e5, 1.0e9] {
-                let mut stage = TestScene::new(SIZE);
-                stage.lights = vec![Light { intensity, ..sun }, Light { intensity, ..lamp }];
-                (stage.settings.diffuse.mode, stage.settings.path) = (mode, path);
-                let (on_gpu, on_cpu) = (stage.on_gpu(gpu()).picture, stage.on_cpu());
+                let mut scene = TestScene::new(SIZE);
+                scene.lights = vec![Light { intensity, ..sun }, Light { intensity, ..lamp }];
+                (scene.settings.diffuse.mode, scene.settings.path) = (mode, path);
+                let (on_gpu, on_cpu) = (scene.on_gpu(gpu()).picture, scene.on_cpu());
                 assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()), "{} {intensity}: not finite", mode.name());
                 let apart = differing_share(&on_gpu, &on_cpu);
                 println!("{} {} {intensity:e}: {apart:.4} of the pixels differ", mode.name(), path.name());
@@ -118,18 +119,18 @@ fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
 
 /// Volumetric smoke, lights and camera, all translated by `by`, metres.
 fn moved(by: Vec3) -> TestScene {
-    let mut stage = TestScene::new(SIZE);
-    stage.settings.technique = Technique::VolumetricSoft;
-    (stage.settings.volumetric.noise_size, stage.settings.volumetric.noise_octaves) = (1.5, 3);
-    for particle in &mut stage.particles {
+    let mut scene = TestScene::new(SIZE);
+    scene.settings.technique = Technique::VolumetricSoft;
+    (scene.settings.volumetric.noise_size, scene.settings.volumetric.noise_octaves) = (1.5, 3);
+    for particle in &mut scene.particles {
         // Multiples of 1/128 m stay exact in f32 after the translation.
         particle.position = (particle.position * 128.0).round() / 128.0 + by;
     }
-    for light in &mut stage.lights {
+    for light in &mut scene.lights {
         light.position += by;
     }
-    stage.view.view_from_world *= glam::Mat4::from_translation(-by);
-    stage
+    scene.view.view_from_world *= glam::Mat4::from_translation(-by);
+    scene
 }
 
 #[test]
@@ -139,15 +140,15 @@ fn noise_keeps_its_precision_far_from_the_origin() {
     let (here, there) = (moved(Vec3::ZERO), moved(by));
     let (on_cpu, on_gpu) = (psnr(&here.on_cpu(), &there.on_cpu()), psnr(&here.on_cpu(), &there.on_gpu(gpu()).picture));
     println!("49 km away: {on_cpu:.1} dB, on the GPU {on_gpu:.1} dB");
-    assert!(on_cpu > 90.0 && on_gpu > AGREEMENT, "CPU {on_cpu} dB, GPU {on_gpu} dB");
+    assert!(on_cpu > 90.0 && on_gpu > MIN_PSNR, "CPU {on_cpu} dB, GPU {on_gpu} dB");
 }
 
 #[test]
 fn noise_scrolls_along_the_up_vector() {
     let scrolled = |up: Vec3, time: f32| {
-        let mut stage = moved(Vec3::ZERO);
-        (stage.up, stage.time, stage.settings.volumetric.scroll_speed) = (up, time, 0.25);
-        stage.on_cpu()
+        let mut scene = moved(Vec3::ZERO);
+        (scene.up, scene.time, scene.settings.volumetric.scroll_speed) = (up, time, 0.25);
+        scene.on_cpu()
     };
     let still = scrolled(Vec3::Y, 0.0);
     assert!(psnr(&scrolled(Vec3::Y, 1.0), &scrolled(Vec3::Z, 1.0)) < 60.0);

@@ -8,9 +8,10 @@ use haze::shader::{self, Sources};
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
-use crate::common::{AGREEMENT, gpu, psnr_over};
 use crate::goldens;
-use crate::presets::{behind, shot};
+use crate::gpu::gpu;
+use crate::presets::{shot, without_smoke};
+use crate::psnr::{AGREEMENT, psnr_over};
 
 /// Name, shader file, text in it, and its replacement.
 type Mutant = (&'static str, &'static str, &'static str, &'static str);
@@ -63,7 +64,7 @@ fn drawn(context: &OffscreenContext, shot: &Shot, exact_filtering: bool) -> Imag
 fn mistakes_in_shaders_fail_golden_images_and_agreement() {
     let shots: Vec<_> = builtin::PRESETS.iter().map(|preset| shot(preset.name, goldens::SIZE)).collect();
     let on_cpu: Vec<_> = shots.iter().map(|shot| shot.render_on_cpu().unwrap()).collect();
-    let without_smoke: Vec<_> = shots.iter().map(|shot| behind(shot).render_on_cpu().unwrap()).collect();
+    let empty: Vec<_> = shots.iter().map(|shot| without_smoke(shot).render_on_cpu().unwrap()).collect();
     for mutant in MUTANTS {
         let context = context(mutant);
         let (mut worst_golden, mut worst_psnr) = (0.0_f64, f32::INFINITY);
@@ -71,7 +72,7 @@ fn mistakes_in_shaders_fail_golden_images_and_agreement() {
             let golden = goldens::difference_to_golden(builtin::PRESETS[index].name, &drawn(&context, shot, false));
             worst_golden = worst_golden.max(golden);
             let on_gpu = drawn(&context, shot, true);
-            let behind = &without_smoke[index];
+            let behind = &empty[index];
             worst_psnr = worst_psnr.min(psnr_over([&on_gpu, &on_cpu[index]], [behind, behind]));
             if worst_golden > goldens::TOLERANCE && worst_psnr < AGREEMENT {
                 break;

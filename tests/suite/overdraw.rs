@@ -8,28 +8,28 @@ use haze::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze::{Overdraw, Particle, Particles, View, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::{can_test, gpu};
-use crate::host::Host;
+use crate::gpu::{can_test, gpu};
+use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 const SIZE: UVec2 = UVec2::new(320, 180);
 
 /// Sprites at scale 1 in front of the whole scene and without near fade, so that no fragment is discarded.
-fn stage() -> TestScene {
-    let mut stage = TestScene::new(SIZE);
-    stage.settings.accumulate.scale = 1;
-    (stage.settings.soft_fade.near_fade_start, stage.settings.soft_fade.near_fade_end) = (0.0, 0.0);
-    stage.debug_view = DebugView::Overdraw;
-    moved(stage, 2.5)
+fn scene() -> TestScene {
+    let mut scene = TestScene::new(SIZE);
+    scene.settings.accumulate.scale = 1;
+    (scene.settings.soft_fade.near_fade_start, scene.settings.soft_fade.near_fade_end) = (0.0, 0.0);
+    scene.debug_view = DebugView::Overdraw;
+    moved(scene, 2.5)
 }
 
-fn moved(mut stage: TestScene, metres: f32) -> TestScene {
-    stage.particles.iter_mut().for_each(|particle| particle.position.z += metres);
-    stage
+fn moved(mut scene: TestScene, metres: f32) -> TestScene {
+    scene.particles.iter_mut().for_each(|particle| particle.position.z += metres);
+    scene
 }
 
-fn overdraw(stage: &TestScene) -> Overdraw {
-    stage.on_gpu(gpu()).renderer.overdraw()
+fn overdraw(scene: &TestScene) -> Overdraw {
+    scene.on_gpu(gpu()).renderer.overdraw()
 }
 
 /// Decodes the number of layers of every covered pixel from an image of the overdraw debug view.
@@ -50,12 +50,12 @@ fn layers(picture: &Image<Vec4>) -> Vec<u32> {
 fn cases() -> Vec<(&'static str, TestScene)> {
     let off_centre = directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 80.0);
     let orthographic = directx::orthographic(-1.6, 1.2, -0.9, 0.7, 0.1, 80.0);
-    let seen = |clip_from_view| TestScene { view: View::new(Mat4::IDENTITY, clip_from_view, SIZE), ..stage() };
-    let mut depth_sprites = moved(stage(), 2.6);
+    let seen = |clip_from_view| TestScene { view: View::new(Mat4::IDENTITY, clip_from_view, SIZE), ..scene() };
+    let mut depth_sprites = moved(scene(), 2.6);
     depth_sprites.settings.technique = Technique::DepthSpriteSoft;
     vec![
-        ("in sight", stage()),
-        ("around the camera", moved(stage(), 2.6)),
+        ("in sight", scene()),
+        ("around the camera", moved(scene(), 2.6)),
         ("slabs through the near plane", depth_sprites),
         ("off centre", seen(off_centre)),
         ("orthographic", seen(orthographic)),
@@ -64,8 +64,8 @@ fn cases() -> Vec<(&'static str, TestScene)> {
 
 #[test]
 fn estimated_fragments_match_the_overdraw_view() {
-    for (name, stage) in cases() {
-        let drawn = stage.on_gpu(gpu());
+    for (name, scene) in cases() {
+        let drawn = scene.on_gpu(gpu());
         let found = drawn.renderer.overdraw();
         let counted: u32 = layers(&drawn.picture).iter().sum();
         println!("{name}: {found:?}, counted {counted}, {:.2} layers", found.mean());
@@ -77,8 +77,8 @@ fn estimated_fragments_match_the_overdraw_view() {
 
 #[test]
 fn mean_overdraw_is_taken_over_the_pixels_of_the_bounding_box() {
-    let stage = stage();
-    let drawn = stage.on_gpu(gpu());
+    let scene = scene();
+    let drawn = scene.on_gpu(gpu());
     let found = drawn.renderer.overdraw();
     let in_box = layers(&drawn.picture);
     // Seen head-on, the bounding box is a rectangle; its edges may lie anywhere within their pixels.
@@ -95,18 +95,18 @@ fn mean_overdraw_is_taken_over_the_pixels_of_the_bounding_box() {
 #[test]
 fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
     let of = |change: &dyn Fn(&mut TestScene)| {
-        let mut stage = stage();
+        let mut scene = scene();
         // The debug sprite fills its square at every mip level. Other sprites extend further at coarser levels.
-        stage.settings.sprite.debug_sprite = true;
-        change(&mut stage);
-        overdraw(&stage)
+        scene.settings.sprite.debug_sprite = true;
+        change(&mut scene);
+        overdraw(&scene)
     };
     let whole = of(&|_| {});
-    let coarse = of(&|stage| stage.settings.accumulate.scale = 4);
+    let coarse = of(&|scene| scene.settings.accumulate.scale = 4);
     // Sprite areas are exact; the box's sides are rounded up to whole texels.
     assert!((16.0 * coarse.fragments / whole.fragments - 1.0).abs() < 1.0e-3, "scale 4 {coarse:?}, scale 1 {whole:?}");
     assert!((coarse.mean() / whole.mean() - 1.0).abs() < 0.05, "scale 4 {coarse:?}, scale 1 {whole:?}");
-    let forward = of(&|stage| (stage.settings.path, stage.debug_view) = (RenderPath::Forward, DebugView::Final));
+    let forward = of(&|scene| (scene.settings.path, scene.debug_view) = (RenderPath::Forward, DebugView::Final));
     // The forward path has no accumulation target, and so none of its border texels.
     assert!(
         (forward.fragments / whole.fragments - 1.0).abs() < 0.01 && forward.texels == whole.texels,
@@ -114,14 +114,14 @@ fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
     );
     // Passes the linear target too: OpenGL cannot sample a depth buffer that the same pass tests.
     let host_depth =
-        of(&|stage| (stage.settings.accumulate.depth_source, stage.depth) = (DepthSource::Host, DepthKind::Both));
+        of(&|scene| (scene.settings.accumulate.depth_source, scene.depth) = (DepthSource::Host, DepthKind::Both));
     assert!((host_depth.fragments / whole.fragments - 1.0).abs() < 0.01 && host_depth.texels == whole.texels);
-    assert_eq!(of(&|stage| stage.settings.sprite.debug_loop = 3).fragments, 3.0 * whole.fragments);
+    assert_eq!(of(&|scene| scene.settings.sprite.debug_loop = 3).fragments, 3.0 * whole.fragments);
     // Sprites without amount, out of view, or in a buffer that the CPU cannot read add nothing.
     let hide = |particle: &mut Particle| particle.amount = 0.0;
-    assert_eq!(of(&|stage| stage.particles.iter_mut().for_each(hide)), Overdraw::default());
-    assert_eq!(of(&|stage| stage.particles.iter_mut().for_each(|p| p.position.z = 9.0)), Overdraw::default());
-    let mut buffered = stage();
+    assert_eq!(of(&|scene| scene.particles.iter_mut().for_each(hide)), Overdraw::default());
+    assert_eq!(of(&|scene| scene.particles.iter_mut().for_each(|p| p.position.z = 9.0)), Overdraw::default());
+    let mut buffered = scene();
     buffered.bounds = Some(haze::Bounds { min: vec3(-3.0, -3.0, -8.0), max: vec3(3.0, 3.0, 0.0) });
     let mut host = Host::new(gpu(), &buffered).unwrap();
     host.draw(gpu(), &buffered).unwrap();
@@ -137,8 +137,8 @@ fn counting_gpu() -> Option<Headless> {
 }
 
 /// Fragment shader invocations while the host's pass draws forward sprites, and the CPU's estimate for that frame.
-fn shaded(gpu: &Headless, stage: &TestScene) -> (u64, Overdraw) {
-    let mut host = Host::new(gpu, stage).unwrap();
+fn shaded(gpu: &Headless, scene: &TestScene) -> (u64, Overdraw) {
+    let mut host = Host::new(gpu, scene).unwrap();
     let buffer = |usage| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 8, usage, mapped_at_creation: false })
     };
@@ -149,7 +149,7 @@ fn shaded(gpu: &Headless, stage: &TestScene) -> (u64, Overdraw) {
         count: 1,
     });
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu, &mut encoder, stage, Particles::Slice(&stage.particles)).unwrap();
+    host.prepare(gpu, &mut encoder, scene, Particles::Slice(&scene.particles)).unwrap();
     {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("host"),
@@ -172,10 +172,10 @@ fn shaded(gpu: &Headless, stage: &TestScene) -> (u64, Overdraw) {
 }
 
 /// Side lengths of the sprites on screen, pixels.
-fn sides(stage: &TestScene) -> Vec<f64> {
-    let pixels_per_metre = |depth: f32| 0.5 * SIZE.y as f32 * stage.view.clip_from_view.y_axis.y / depth;
+fn sides(scene: &TestScene) -> Vec<f64> {
+    let pixels_per_metre = |depth: f32| 0.5 * SIZE.y as f32 * scene.view.clip_from_view.y_axis.y / depth;
     let side = |particle: &Particle| 2.0 * particle.radius * pixels_per_metre(-particle.position.z);
-    stage.particles.iter().map(|particle| f64::from(side(particle))).collect()
+    scene.particles.iter().map(|particle| f64::from(side(particle))).collect()
 }
 
 /// A GPU shades blocks of b by b pixels for each of the two triangles of a square (b = 4 on llvmpipe), and its query
@@ -184,13 +184,13 @@ fn sides(stage: &TestScene) -> Vec<f64> {
 #[test]
 fn estimated_fragments_match_the_gpus_shader_invocations() {
     let Some(gpu) = counting_gpu() else { return };
-    let mut stage = moved(stage(), -6.0);
-    (stage.settings.path, stage.debug_view, stage.attach_depth) = (RenderPath::Forward, DebugView::Final, false);
-    stage.particles.iter_mut().for_each(|particle| particle.rotation = 0.0);
+    let mut scene = moved(scene(), -6.0);
+    (scene.settings.path, scene.debug_view, scene.attach_depth) = (RenderPath::Forward, DebugView::Final, false);
+    scene.particles.iter_mut().for_each(|particle| particle.rotation = 0.0);
     // The debug sprite fills its whole square.
-    stage.settings.sprite.debug_sprite = true;
-    let sides = sides(&stage);
-    let (shaded, found) = shaded(&gpu, &stage);
+    scene.settings.sprite.debug_sprite = true;
+    let sides = sides(&scene);
+    let (shaded, found) = shaded(&gpu, &scene);
     let blocks = |side: f64| {
         let of_two = |own: f64| own * own + 4.0 * own * (side - 1.0) + 2.0 * (side - 1.0).powi(2);
         sides.iter().map(|own| of_two(*own)).sum::<f64>()

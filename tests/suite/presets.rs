@@ -11,7 +11,8 @@ use haze::settings::*;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
-use crate::common::{AGREEMENT, gpu, psnr_over};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr_over};
 
 /// Loads a preset with the path `raster` in place of `auto`, whose choice depends on the machine. `tiled.rs` compares
 /// the path `tiled` with `raster`.
@@ -25,7 +26,7 @@ pub fn shot(name: &str, size: UVec2) -> Shot {
 }
 
 /// The same shot without smoke.
-pub fn behind(shot: &Shot) -> Shot {
+pub fn without_smoke(shot: &Shot) -> Shot {
     let mut behind = shot.clone();
     behind.preset.systems.clear();
     behind.materials.clear();
@@ -33,23 +34,23 @@ pub fn behind(shot: &Shot) -> Shot {
 }
 
 /// Renders a shot on the GPU. `exact_filtering` as in [`Descriptor`](haze::Descriptor).
-pub fn drawn(shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
+pub fn render_on_gpu(shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
     // One context for all images, so that no pipeline is compiled twice.
     static CONTEXT: LazyLock<OffscreenContext> =
         LazyLock::new(|| OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue));
-    let mut stage = OffscreenRenderer::new(&CONTEXT, exact_filtering).unwrap();
-    stage.draw(gpu(), shot).unwrap();
-    stage.read(gpu(), shot).unwrap()
+    let mut renderer = OffscreenRenderer::new(&CONTEXT, exact_filtering).unwrap();
+    renderer.draw(gpu(), shot).unwrap();
+    renderer.read(gpu(), shot).unwrap()
 }
 
 fn on_gpu(shot: &Shot) -> Image<Vec4> {
-    drawn(shot, true)
+    render_on_gpu(shot, true)
 }
 
 /// PSNR between the renderers where there is smoke, dB, and the GPU's image.
 fn agreement(shot: &Shot) -> (f32, Image<Vec4>) {
     let renderers = |shot: &Shot| [on_gpu(shot), shot.render_on_cpu().unwrap()];
-    let (pictures, behind) = (renderers(shot), renderers(&behind(shot)));
+    let (pictures, behind) = (renderers(shot), renderers(&without_smoke(shot)));
     gpu().check().unwrap();
     assert!(pictures[0].texels.iter().all(|texel| texel.is_finite()));
     let psnr = psnr_over(pictures.each_ref(), behind.each_ref());
@@ -68,7 +69,7 @@ fn gpu_and_cpu_agree_on_every_preset() {
             let what = format!("{}, light {}", preset.name, lighting_resolution.name());
             let (psnr, _) = agreement(&shot);
             println!("{what}: {psnr:.1} dB");
-            assert!(psnr >= AGREEMENT, "{what}: {psnr:.1} dB");
+            assert!(psnr >= MIN_PSNR, "{what}: {psnr:.1} dB");
         }
     }
 }
@@ -100,7 +101,7 @@ fn gpu_and_cpu_agree_on_particles_from_files() {
     let mut shot = Shot::new(preset, &folder.path().join("my.json"), UVec2::new(320, 180)).unwrap();
     let (psnr, seen) = agreement(&shot);
     println!("{psnr:.1} dB");
-    assert!(psnr >= AGREEMENT, "{psnr:.1} dB");
+    assert!(psnr >= MIN_PSNR, "{psnr:.1} dB");
     // Without the files the preset's emitter is drawn, which gives another image.
     shot.caches.clear();
     assert!(on_gpu(&shot).texels != seen.texels);
@@ -151,12 +152,12 @@ fn gpu_and_cpu_agree_on_every_scene() {
         let scene = format!("{}, lamp {lamp}, brazier {brazier}", scene.name());
         let (psnr, _) = agreement(&shot);
         // The scene alone, over black.
-        let alone = behind(&shot);
+        let alone = without_smoke(&shot);
         let (on_gpu, on_cpu) = (on_gpu(&alone), alone.render_on_cpu().unwrap());
         let black = Image::new(shot.size, Vec4::ZERO);
         let alone = psnr_over([&on_gpu, &on_cpu], [&black, &black]);
         println!("{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
-        assert!(psnr >= AGREEMENT && alone >= AGREEMENT, "{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
+        assert!(psnr >= MIN_PSNR && alone >= MIN_PSNR, "{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
         if !pictures.contains(&on_cpu) {
             pictures.push(on_cpu);
         }
@@ -172,7 +173,7 @@ fn gpu_and_cpu_clip_the_scene_at_the_same_planes() {
         (shot.preset.camera.near, shot.preset.camera.far) = (near, far);
         let (psnr, _) = agreement(&shot);
         println!("{near} to {far} m: {psnr:.1} dB");
-        assert!(psnr >= AGREEMENT, "{near} to {far} m: {psnr:.1} dB");
+        assert!(psnr >= MIN_PSNR, "{near} to {far} m: {psnr:.1} dB");
     }
 }
 
@@ -272,7 +273,7 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
             "upsample nearest_depth" | "lit target, upsample nearest_depth" => 40.0,
             // The light of all layers is summed in f16, whose steps grow with the sum: 48 dB.
             "forward additive" => 45.0,
-            _ => AGREEMENT,
+            _ => MIN_PSNR,
         };
         assert!(psnr >= least, "{name}: {psnr:.1} dB");
     }
@@ -282,7 +283,7 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
 fn half_resolution_stays_close_to_full_resolution() {
     // The default preset at scales 2 and 4 against scale 1.
     let mut shot = shot("column", UVec2::new(640, 360));
-    let behind = on_gpu(&behind(&shot));
+    let behind = on_gpu(&without_smoke(&shot));
     let mut render = |scale| {
         shot.preset.systems[0].settings.accumulate.scale = scale;
         on_gpu(&shot)
@@ -308,7 +309,7 @@ fn systems_are_drawn_far_to_near_in_any_list_order() {
     let (first, on_gpu) = agreement(&shot);
     shot.preset.systems.reverse();
     let (_, reversed) = agreement(&shot);
-    assert!(first >= AGREEMENT, "{first:.1} dB");
+    assert!(first >= MIN_PSNR, "{first:.1} dB");
     assert!(on_gpu.texels == reversed.texels, "the order of the list changes the image");
 }
 
@@ -325,7 +326,7 @@ fn image_height_does_not_change_the_look() {
         });
         reduced
     };
-    let behind = [on_gpu(&behind(&small)), reduced(&behind(&large))];
+    let behind = [on_gpu(&without_smoke(&small)), reduced(&without_smoke(&large))];
     let psnr = psnr_over([&on_gpu(&small), &reduced(&large)], behind.each_ref());
     // Edges of the scene and of sprites fall on different pixels at the two sizes: 38 dB. A glow of half the size gives
     // 28 dB.

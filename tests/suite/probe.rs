@@ -5,33 +5,33 @@ use haze::builtin;
 use haze::image::Image;
 use haze::settings::*;
 use haze::wgpu;
-use haze_demo::capture::Captured;
+use haze_demo::capture::CapturedFrame;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_reference::{Probe, SystemProbe};
 
-use crate::common::{can_test, gpu, has_tiles};
+use crate::gpu::{can_test, gpu, is_tiled_available};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Draws a shot on the GPU; returns the captured targets and an image of every debug view in `stages`. `None` on
 /// OpenGL, which cannot copy depth to a buffer.
-fn drawn(shot: &Shot, stages: &[DebugView]) -> Option<(Captured, Vec<Image<Vec4>>)> {
+fn render_and_capture(shot: &Shot, stages: &[DebugView]) -> Option<(CapturedFrame, Vec<Image<Vec4>>)> {
     let gpu = gpu();
     let context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-    let mut stage = OffscreenRenderer::new(&context, true).unwrap();
+    let mut renderer = OffscreenRenderer::new(&context, true).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    stage.record(&mut encoder, shot, stages).unwrap();
-    let capture = stage.capture(&mut encoder);
+    renderer.record(&mut encoder, shot, stages).unwrap();
+    let capture = renderer.capture(&mut encoder);
     gpu.submit(encoder).unwrap();
     assert_eq!(capture.is_some(), context.can_capture());
     can_test("capture", capture.is_some());
     let capture = capture?;
     // The poll of another test's thread may be the one that completes the read-back.
-    while !capture.has_arrived() {
+    while !capture.is_finished() {
         std::thread::yield_now();
     }
-    let read = |&debug_view| stage.read(gpu, &Shot { debug_view, ..shot.clone() }).unwrap();
+    let read = |&debug_view| renderer.read(gpu, &Shot { debug_view, ..shot.clone() }).unwrap();
     Some((capture.read().unwrap(), stages.iter().map(read).collect()))
 }
 
@@ -72,8 +72,8 @@ fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, pro
 fn probed_colour_matches_the_image() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
-        let Some((captured, pictures)) = drawn(&shot, &[DebugView::Final]) else { return };
-        let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
+        let Some((captured, pictures)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
+        let probes = captured.with_shot(shot.clone()).probe(&pixels()).unwrap();
         if shot.preset.systems.iter().any(|system| system.settings.is_forward()) {
             assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}: a colour of a forward system", preset.name);
             continue;
@@ -105,14 +105,14 @@ fn probed_values_match_every_debug_view() {
             (s.diffuse.mode, s.soft_scatter.mode) = (DiffuseMode::Motif, SoftScatterMode::Ramp);
         },
     ];
-    let paths = if has_tiles() { &[RenderPath::Raster, RenderPath::Tiled][..] } else { &[RenderPath::Raster] };
+    let paths = if is_tiled_available() { &[RenderPath::Raster, RenderPath::Tiled][..] } else { &[RenderPath::Raster] };
     for (&path, (index, change)) in paths.iter().flat_map(|path| changes.iter().enumerate().map(move |of| (path, of))) {
         let mut shot = Shot::load("column", SIZE).unwrap();
         let settings = &mut shot.preset.systems[0].settings;
         settings.path = path;
         change(settings);
-        let Some((captured, pictures)) = drawn(&shot, &stages.map(|(stage, _)| stage)) else { return };
-        let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
+        let Some((captured, pictures)) = render_and_capture(&shot, &stages.map(|(stage, _)| stage)) else { return };
+        let probes = captured.with_shot(shot.clone()).probe(&pixels()).unwrap();
         for ((stage, probed), picture) in stages.iter().zip(&pictures) {
             let what = format!("{} {}, {index}", path.name(), stage.name());
             assert_matches_image(&what, |probe| probe.systems.first().map(probed), &probes, picture);
@@ -129,11 +129,11 @@ fn probed_values_match_every_debug_view() {
 #[test]
 fn captured_texels_of_another_shot_are_an_error() {
     let shot = Shot::load("column", SIZE).unwrap();
-    let Some((captured, _)) = drawn(&shot, &[DebugView::Final]) else { return };
+    let Some((captured, _)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
     let mut other = shot.clone();
     other.preset.systems[0].settings.accumulate.scale = 3;
-    let error = captured.clone().of(other).probe(&[UVec2::ONE]).unwrap_err().to_string();
+    let error = captured.clone().with_shot(other).probe(&[UVec2::ONE]).unwrap_err().to_string();
     assert!(error.starts_with("texels: "), "{error}");
     let other = Shot { size: SIZE * 2, ..shot };
-    assert!(captured.of(other).probe(&[UVec2::ONE]).is_err());
+    assert!(captured.with_shot(other).probe(&[UVec2::ONE]).is_err());
 }

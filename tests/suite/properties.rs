@@ -1,11 +1,11 @@
 //! Properties that hold for every image: draw order, empty frames, odd sizes, depth conventions, memory, steady frames.
 
-mod depth;
+mod depth_conventions;
+mod draw_order;
 mod finite;
 mod memory;
 mod mutants;
-mod order;
-mod refused;
+mod rejected_frames;
 mod sizes;
 
 use glam::UVec2;

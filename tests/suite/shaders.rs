@@ -10,16 +10,17 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Context, Error, SceneDepthKind, WarmUp, wgpu};
 use tempfile::TempDir;
 
-use crate::common::{gpu, has_tiles, psnr};
-use crate::host::Host;
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::psnr;
+use crate::test_host::Host;
 use crate::test_scene::{TestScene, six_way_of};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
 /// Temporary folder with the files of a shader author.
-struct Folder(TempDir);
+struct ShaderFolder(TempDir);
 
-impl Folder {
+impl ShaderFolder {
     fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
@@ -57,17 +58,17 @@ impl Folder {
 
 /// Stage with a cloud of puff sprites, each at a different time between two flipbook frames.
 fn puffs(size: UVec2) -> TestScene {
-    let mut stage = TestScene::new(size);
+    let mut scene = TestScene::new(size);
     let layout = SpriteLayout { columns: 4, rows: 2, y_down: false };
-    stage.material.sprite = Sprite::load(Path::new("sprites/puff.png"), layout).unwrap();
-    (stage.material.six_way, stage.material.detail) = (Some(six_way_of(&stage.material.sprite)), None);
-    (0..).zip(&mut stage.particles).for_each(|(index, particle)| particle.frame = index as f32 * 0.37);
-    stage
+    scene.material.sprite = Sprite::load(Path::new("sprites/puff.png"), layout).unwrap();
+    (scene.material.six_way, scene.material.detail) = (Some(six_way_of(&scene.material.sprite)), None);
+    (0..).zip(&mut scene.particles).for_each(|(index, particle)| particle.frame = index as f32 * 0.37);
+    scene
 }
 
 #[test]
 fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
-    let folder = Folder::new();
+    let folder = ShaderFolder::new();
     let whole = folder.edit("lib/sprite_vertex.wgsl", "if DEBUG_SPRITE || MOTION {", "if true {").context().unwrap();
     type Change = fn(&mut Settings);
     let changes: [(&str, Change); 4] = [
@@ -79,11 +80,11 @@ fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
     // At the small size, coarse mip levels are sampled.
     let sizes = [1, 8].map(|times| SIZE * times);
     for (size, (name, change)) in sizes.into_iter().flat_map(|size| changes.map(|change| (size, change))) {
-        let mut stage = puffs(size);
-        change(&mut stage.settings);
+        let mut scene = puffs(size);
+        change(&mut scene.settings);
         let drawn = |context| {
-            let mut host = Host::on(gpu(), &stage, context).unwrap();
-            host.draw(gpu(), &stage).unwrap();
+            let mut host = Host::with_context(gpu(), &scene, context).unwrap();
+            host.draw(gpu(), &scene).unwrap();
             host.picture(gpu()).unwrap()
         };
         // Positions interpolated between other corners round differently. GPUs also snap each corner to 1/256 texel
@@ -96,9 +97,9 @@ fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
 }
 
 fn draw(context: Option<&Context>) -> Image<Vec4> {
-    let stage = TestScene::new(SIZE);
-    let mut host = Host::on(gpu(), &stage, context).unwrap();
-    host.draw(gpu(), &stage).unwrap();
+    let scene = TestScene::new(SIZE);
+    let mut host = Host::with_context(gpu(), &scene, context).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     host.picture(gpu()).unwrap()
 }
 
@@ -111,7 +112,7 @@ fn place(file: &str, what: &str) -> String {
 
 #[test]
 fn shader_errors_report_file_line_and_column() {
-    let refused = |from: &str, to: &str| Folder::new().edit("lib/colour.wgsl", from, to).refusal();
+    let refused = |from: &str, to: &str| ShaderFolder::new().edit("lib/colour.wgsl", from, to).refusal();
     let says = |from: &str, to: &str, what: &str, reason: &str| {
         assert_eq!(refused(from, to), format!("{}: {reason}", place("lib/colour.wgsl", what)), "{to}");
     };
@@ -165,13 +166,13 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
             "tile_accumulate.wgsl" => "cooperative",
             _ => "fragment",
         };
-        if entry_point != "fragment" && !has_tiles() {
+        if entry_point != "fragment" && !is_tiled_available() {
             continue;
         }
-        let refusal = Folder::new().edit(pass, &format!("fn {entry_point}("), "fn another(").refusal();
+        let refusal = ShaderFolder::new().edit(pass, &format!("fn {entry_point}("), "fn another(").refusal();
         assert_eq!(refusal, format!("{pass}:1:1: Unable to find entry point '{entry_point}'"));
     }
-    let refused = |file: &str, from: &str, to: &str| Folder::new().edit(file, from, to).refusal();
+    let refused = |file: &str, from: &str, to: &str| ShaderFolder::new().edit(file, from, to).refusal();
     let gone = refused("transfer.wgsl", "override BACK_FACES: bool", "const BACK_FACES: bool");
     assert!(gone.starts_with("transfer.wgsl:1:1: ") && gone.contains("'BACK_FACES' not found"), "{gone}");
     let input = refused("lib/sprite_vertex.wgsl", "@location(0)", "@location(9)");
@@ -182,14 +183,14 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
 
 #[test]
 fn warm_up_reports_errors_that_only_other_settings_compile() {
-    let folder = Folder::new();
+    let folder = ShaderFolder::new();
     // Valid for the final image, where DEBUG_VIEW is 0.
     folder.edit("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / (DEBUG_VIEW - 1u)) {");
-    let mut stage = TestScene::new(SIZE);
-    let host = Host::on(gpu(), &stage, Some(&folder.context().unwrap())).unwrap();
-    let settings = [std::mem::take(&mut stage.settings)];
+    let mut scene = TestScene::new(SIZE);
+    let host = Host::with_context(gpu(), &scene, Some(&folder.context().unwrap())).unwrap();
+    let settings = [std::mem::take(&mut scene.settings)];
     let scene_depth = SceneDepthKind::Buffer(wgpu::TextureFormat::Depth32Float);
-    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, debug_views: &[DebugView::Final] };
+    let expected = WarmUp { view: scene.view, scene_depth, settings: &settings, stages: &[DebugView::Final] };
     host.renderer.warm_up(&expected).unwrap();
     let compiled = host.renderer.context().pipeline_count();
     let combined = WarmUp { debug_views: &[DebugView::Combined], ..expected };
@@ -205,12 +206,8 @@ fn warm_up_reports_errors_that_only_other_settings_compile() {
 #[test]
 fn missing_and_circular_imports_are_reported_at_the_import_line() {
     let imports = |import: &str| {
-        let folder = Folder::new();
-        folder.edit(
-            "lib/colour.wgsl",
-            "const MAX_HALF_FLOAT_LIGHT",
-            &format!("#import \"{import}\"\nconst MAX_HALF_FLOAT_LIGHT"),
-        );
+        let folder = ShaderFolder::new();
+        folder.edit("lib/colour.wgsl", "const BRIGHTEST", &format!("#import \"{import}\"\nconst BRIGHTEST"));
         folder
             .write("lib/round.wgsl", "#import \"lib/about.wgsl\"\n")
             .write("lib/about.wgsl", "\n#import \"lib/round.wgsl\"");
@@ -232,7 +229,7 @@ fn missing_and_circular_imports_are_reported_at_the_import_line() {
 #[test]
 fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
     let plain = draw(None);
-    let folder = Folder::new();
+    let folder = ShaderFolder::new();
     folder.edit("lib/colour.wgsl", "return bounded_light(light);", "return bounded_light(light * TINT);");
     assert!(folder.refusal().contains("`TINT`"));
     // TINT is defined in a separate file, which the others import.
@@ -252,7 +249,7 @@ fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
 #[test]
 fn byte_order_marks_and_crlf_line_endings_are_accepted() {
     let plain = draw(None);
-    let folder = Folder::new();
+    let folder = ShaderFolder::new();
     for (file, text) in shader::sources() {
         folder.write(file, format!("\u{feff}{}", text.replace('\n', "\r\n")));
     }
@@ -269,7 +266,7 @@ fn folders_without_readable_shaders_are_rejected_with_a_reason() {
                     forward.wgsl, light_target.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
                     tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl or a file of lib/ in it";
     let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
-    let folder = Folder::new();
+    let folder = ShaderFolder::new();
     let path = folder.0.path();
     assert_eq!(said(path), format!("{}: a folder without any of haze's shaders; {expected}", path.display()));
     let absent = path.join("absent");

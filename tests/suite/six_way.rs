@@ -7,25 +7,26 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Light, LightKind, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::{AGREEMENT, gpu, has_tiles, psnr};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{TestScene, six_way_of};
 use crate::tiled;
 
-fn stage() -> TestScene {
-    let mut stage = TestScene::new(UVec2::new(160, 90));
-    (stage.settings.lighting, stage.settings.path) = (Lighting::SixWay, RenderPath::Raster);
-    stage.settings.boost = 1.0;
-    for (index, particle) in (0..).zip(&mut stage.particles) {
+fn scene() -> TestScene {
+    let mut scene = TestScene::new(UVec2::new(160, 90));
+    (scene.settings.lighting, scene.settings.path) = (Lighting::SixWay, RenderPath::Raster);
+    scene.settings.boost = 1.0;
+    for (index, particle) in (0..).zip(&mut scene.particles) {
         particle.rotation = index as f32 * 0.7;
     }
-    stage
+    scene
 }
 
-fn agreement(name: &str, stage: &TestScene) {
-    let (on_gpu, on_cpu) = (stage.on_gpu(gpu()).picture, stage.on_cpu());
+fn assert_agreement(name: &str, scene: &TestScene) {
+    let (on_gpu, on_cpu) = (scene.on_gpu(gpu()).picture, scene.on_cpu());
     let psnr = psnr(&on_gpu, &on_cpu);
     println!("{name}: {psnr:.1} dB");
-    assert!(psnr >= AGREEMENT, "{name}: {psnr:.1} dB");
+    assert!(psnr >= MIN_PSNR, "{name}: {psnr:.1} dB");
 }
 
 type Change = fn(&mut Settings);
@@ -47,63 +48,63 @@ const MODES: &[(&str, Change)] = &[
 ];
 
 fn changed(change: Change) -> TestScene {
-    let mut stage = stage();
-    change(&mut stage.settings);
+    let mut scene = scene();
+    change(&mut scene.settings);
     // OpenGL cannot sample a depth buffer that the same pass tests.
-    stage.depth = crate::test_scene::DepthKind::Both;
-    stage
+    scene.depth = crate::test_scene::DepthKind::Both;
+    scene
 }
 
-/// The stage with a technique and sprites of several frames.
+/// The scene with a technique and sprites of several frames.
 fn flipbook(technique: Technique) -> TestScene {
-    let mut stage = changed(|_| {});
-    stage.settings.technique = technique;
-    stage.settings.volumetric.noise_size = 1.5;
-    (stage.material.sprite, stage.material.detail, stage.material.six_way) = crate::techniques::flipbook();
-    (0..).zip(&mut stage.particles).for_each(|(index, particle)| particle.frame = index as f32 * 0.37);
-    stage
+    let mut scene = changed(|_| {});
+    scene.settings.technique = technique;
+    scene.settings.volumetric.noise_size = 1.5;
+    (scene.material.sprite, scene.material.detail, scene.material.six_way) = crate::techniques::flipbook();
+    (0..).zip(&mut scene.particles).for_each(|(index, particle)| particle.frame = index as f32 * 0.37);
+    scene
 }
 
 #[test]
 fn gpu_and_cpu_agree_in_every_accumulation_mode() {
     for (name, change) in MODES {
-        agreement(name, &changed(*change));
+        assert_agreement(name, &changed(*change));
     }
-    agreement("forward", &changed(|s| s.path = RenderPath::Forward));
-    agreement(
+    assert_agreement("forward", &changed(|s| s.path = RenderPath::Forward));
+    assert_agreement(
         "8 bits",
         &changed(|s| {
             (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
         }),
     );
     for &technique in Technique::ALL {
-        let mut stage = flipbook(technique);
-        agreement(technique.name(), &stage);
-        stage.settings.path = RenderPath::Forward;
-        agreement(&format!("{} forward", technique.name()), &stage);
+        let mut scene = flipbook(technique);
+        assert_agreement(technique.name(), &scene);
+        scene.settings.path = RenderPath::Forward;
+        assert_agreement(&format!("{} forward", technique.name()), &scene);
     }
-    let mut stage = stage();
-    stage.debug_view = DebugView::Normals;
-    agreement("normals", &stage);
+    let mut scene = scene();
+    scene.debug_view = DebugView::Normals;
+    assert_agreement("normals", &scene);
 }
 
 #[test]
 fn tiled_path_agrees_on_six_way_lighting() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     for (name, change) in MODES {
-        tiled::agreement(name, &changed(*change));
+        tiled::assert_agreement(name, &changed(*change));
     }
     for &technique in Technique::ALL {
-        tiled::agreement(technique.name(), &flipbook(technique));
+        tiled::assert_agreement(technique.name(), &flipbook(technique));
     }
     // The alpha of the six-way maps decides where there is smoke, not the sprite's.
     let mut elsewhere = changed(|_| {});
     let dot =
         image::RgbaImage::from_fn(64, 64, |x, y| image::Rgba([128, 128, 255, if (x, y) == (9, 9) { 255 } else { 0 }]));
     elsewhere.material.sprite = Sprite::from_image("dot".as_ref(), &dot, SpriteLayout::default()).unwrap();
-    tiled::agreement("the sprite is clear", &elsewhere);
+    tiled::assert_agreement("the sprite is clear", &elsewhere);
     // The tiled path rounds one of the two light textures to 8 bits, once. Raster rounds both after every layer, so it
     // is no reference. One step of 255 is 48 dB.
     let mut bytes = changed(|s| {
@@ -120,10 +121,10 @@ fn tiled_path_agrees_on_six_way_lighting() {
 #[test]
 fn six_way_lighting_does_not_change_alpha() {
     let alpha = |picture: &Image<Vec4>| picture.texels.iter().map(|texel| texel.w).collect::<Vec<_>>();
-    let six_way = stage();
+    let six_way = scene();
     let mut normals = six_way.clone();
     normals.settings.lighting = Lighting::Normals;
-    let pictures = [&six_way, &normals].map(|stage| stage.on_gpu(gpu()).picture);
+    let pictures = [&six_way, &normals].map(|scene| scene.on_gpu(gpu()).picture);
     let apart = alpha(&pictures[0]).iter().zip(alpha(&pictures[1])).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(apart < 1.0 / 255.0, "alpha differs by {apart}");
     assert!(psnr(&pictures[0], &pictures[1]) < 40.0, "six-way lighting has no effect");
@@ -131,11 +132,11 @@ fn six_way_lighting_does_not_change_alpha() {
 
 /// Summed light that one sprite, rotated by `rotation` radians, shows under a directional light that comes from `side`.
 fn light_from(side: Vec3, rotation: f32) -> f32 {
-    let mut stage = stage();
-    stage.particles.truncate(1);
-    (stage.particles[0].position, stage.particles[0].rotation) = (vec3(0.0, 0.0, -6.0), rotation);
-    stage.lights = vec![Light { kind: LightKind::Directional, direction: -side, intensity: 1.0, ..Light::default() }];
-    (stage.settings.soft_scatter.intensity, stage.settings.specular_scatter.intensity) = (0.0, 0.0);
+    let mut scene = scene();
+    scene.particles.truncate(1);
+    (scene.particles[0].position, scene.particles[0].rotation) = (vec3(0.0, 0.0, -6.0), rotation);
+    scene.lights = vec![Light { kind: LightKind::Directional, direction: -side, intensity: 1.0, ..Light::default() }];
+    (scene.settings.soft_scatter.intensity, scene.settings.specular_scatter.intensity) = (0.0, 0.0);
     // The alpha is symmetric, so that rotation does not change coverage; the light maps are not.
     let ball = Sprite::from_image(
         "ball".as_ref(),
@@ -146,13 +147,13 @@ fn light_from(side: Vec3, rotation: f32) -> f32 {
         SpriteLayout::default(),
     )
     .unwrap();
-    (stage.material.six_way, stage.material.sprite) = (Some(six_way_of(&ball)), ball);
-    let empty = TestScene { particles: Vec::new(), ..stage.clone() };
-    let sum = |stage: &TestScene| stage.on_gpu(gpu()).picture.texels.iter().map(|texel| texel.x).sum::<f32>();
+    (scene.material.six_way, scene.material.sprite) = (Some(six_way_of(&ball)), ball);
+    let empty = TestScene { particles: Vec::new(), ..scene.clone() };
+    let sum = |scene: &TestScene| scene.on_gpu(gpu()).picture.texels.iter().map(|texel| texel.x).sum::<f32>();
     // Subtracted: the backdrop as far as the smoke hides it, which does not depend on lights.
-    let dark = TestScene { lights: Vec::new(), ..stage.clone() };
+    let dark = TestScene { lights: Vec::new(), ..scene.clone() };
     assert!(sum(&empty) > 0.0);
-    sum(&stage) - sum(&dark)
+    sum(&scene) - sum(&dark)
 }
 
 #[test]
@@ -180,7 +181,7 @@ fn six_way_light_follows_the_sprites_rotation() {
 fn device_that_blends_only_one_target_falls_back_to_normals() {
     let limits = wgpu::Limits { max_color_attachment_bytes_per_sample: 8, ..wgpu::Limits::default() };
     let gpu = Headless::with(limits, wgpu::Features::empty()).unwrap();
-    let six_way = stage();
+    let six_way = scene();
     let mut normals = six_way.clone();
     normals.settings.lighting = Lighting::Normals;
     assert_eq!(six_way.on_gpu(&gpu).picture, normals.on_gpu(&gpu).picture);
@@ -189,13 +190,13 @@ fn device_that_blends_only_one_target_falls_back_to_normals() {
 #[test]
 fn missing_or_mismatched_maps_are_errors_that_name_the_field() {
     let refused = |change: fn(&mut TestScene)| {
-        let mut stage = stage();
-        change(&mut stage);
-        stage.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string()
+        let mut scene = scene();
+        change(&mut scene);
+        scene.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string()
     };
-    let said = refused(|stage| stage.material.six_way = None);
+    let said = refused(|scene| scene.material.six_way = None);
     assert!(said.contains("systems[0].settings.lighting: \"six_way\"") && said.contains("haze sprite bake"), "{said}");
-    let said = refused(|stage| stage.material.six_way = Some(stage.material.sprite.clone()));
+    let said = refused(|scene| scene.material.six_way = Some(scene.material.sprite.clone()));
     assert!(
         said.contains("material.six_way: 1 frames of 64 texels is not valid; expected twice the sprite's frames, 2"),
         "{said}"

@@ -7,9 +7,9 @@ use glam::UVec2;
 use haze::shader::{self, Sources};
 use haze::{Context, wgpu};
 
-use crate::common::gpu;
-use crate::host::Host;
-use crate::hosts::kept::Systems;
+use crate::gpu::gpu;
+use crate::hosts::retained_resources::SystemsFixture;
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 const SIZE: UVec2 = UVec2::splat(256);
@@ -74,14 +74,14 @@ fn soak_within(leak: u64, count: u32, mut step: impl FnMut(u32)) {
 #[test]
 #[ignore = "takes minutes"]
 fn fifty_thousand_frames_leak_nothing() {
-    let mut stage = TestScene::new(SIZE);
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    let mut host = Host::new(gpu(), &scene).unwrap();
     soak(50_000, |frame| {
-        for particle in &mut stage.particles {
+        for particle in &mut scene.particles {
             particle.rotation += 0.01;
         }
-        stage.lights[0].intensity = 20.0 + (frame % 7) as f32;
-        host.draw(gpu(), &stage).unwrap();
+        scene.lights[0].intensity = 20.0 + (frame % 7) as f32;
+        host.draw(gpu(), &scene).unwrap();
     });
 }
 
@@ -91,12 +91,12 @@ fn two_thousand_resizes_leak_nothing() {
     let context = Host::new(gpu(), &TestScene::new(SIZE)).unwrap().renderer.context().clone();
     let mut renderer = None;
     soak(2_000, |step| {
-        let stage = TestScene::new(UVec2::new(64 + 41 * (step % 5), 64 + 29 * (step % 4)));
-        let mut host = Host::on(gpu(), &stage, Some(&context)).unwrap();
+        let scene = TestScene::new(UVec2::new(64 + 41 * (step % 5), 64 + 29 * (step % 4)));
+        let mut host = Host::with_context(gpu(), &scene, Some(&context)).unwrap();
         if let Some(kept) = renderer.take() {
             host.renderer = kept;
         }
-        host.draw(gpu(), &stage).unwrap();
+        host.draw(gpu(), &scene).unwrap();
         renderer = Some(host.renderer);
         // wgpu frees dropped objects when the device is polled.
         gpu().device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
@@ -106,8 +106,8 @@ fn two_thousand_resizes_leak_nothing() {
 #[test]
 #[ignore = "takes minutes"]
 fn systems_that_come_and_go_leak_nothing() {
-    let mut systems = Systems::new(gpu(), SIZE);
-    let (particles, settings) = (systems.stage.particles.clone(), systems.stage.settings);
+    let mut systems = SystemsFixture::new(gpu(), SIZE);
+    let (particles, settings) = (systems.scene.particles.clone(), systems.scene.settings);
     soak(20_000, |frame| {
         // One to four systems at a time. Each key lasts for 150 frames and is never used again.
         let births = (0..4).map(|lane| u64::from((frame + 37 * lane) / 150 * 4 + lane));
@@ -127,7 +127,7 @@ fn two_hundred_shader_reloads_leak_nothing() {
         good.replace("fn fragment(", "fn fragments("),
         good.replace("#import \"lib/colour.wgsl\"", "#import \"lib/color.wgsl\""),
     ];
-    let stage = TestScene::new(SIZE);
+    let scene = TestScene::new(SIZE);
     let reload = |step: u32| {
         let text = step as usize % texts.len();
         std::fs::write(folder.path().join("transfer.wgsl"), &texts[text]).unwrap();
@@ -135,7 +135,7 @@ fn two_hundred_shader_reloads_leak_nothing() {
         let context = Context::with_shaders(&gpu().device, &gpu().queue, None, &sources);
         assert_eq!(context.is_ok(), text == 0);
         if let Ok(context) = context {
-            Host::on(gpu(), &stage, Some(&context)).unwrap().draw(gpu(), &stage).unwrap();
+            Host::with_context(gpu(), &scene, Some(&context)).unwrap().draw(gpu(), &scene).unwrap();
         }
         // wgpu frees dropped objects when the device is polled.
         gpu().device.poll(wgpu::PollType::wait_indefinitely()).unwrap();

@@ -1,4 +1,4 @@
-//! A small test scene in memory: camera, lights, sprites, and a wall and a post as scene depth. `host.rs` draws it on
+//! A small test scene in memory: camera, lights, sprites, and a wall and a post as scene depth. `test_host.rs` draws it on
 //! the GPU.
 
 use std::sync::LazyLock;
@@ -16,15 +16,15 @@ use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::sprite::six_way::six_way_layout;
 use haze_reference;
 
-use crate::common::gpu;
-use crate::host::HostKind;
+use crate::gpu::gpu;
+use crate::test_host::HostKind;
 
 /// All inputs of a frame, in memory.
 #[derive(Clone)]
 pub struct TestScene {
     pub view: View,
     /// Viewing direction along z of view space: -1 or 1.
-    pub ahead: f32,
+    pub view_direction_z: f32,
     pub lights: Vec<Light>,
     pub particles: Vec<Particle>,
     pub bounds: Option<Bounds>,
@@ -150,7 +150,7 @@ impl TestScene {
         };
         Self {
             view: View::new(Mat4::IDENTITY, perspective(size), size),
-            ahead: -1.0,
+            view_direction_z: -1.0,
             lights: vec![
                 Light {
                     position: vec3(-4.0, 2.0, -4.0),
@@ -191,7 +191,7 @@ impl TestScene {
 
     /// Depth-buffer value of a surface at a view depth in metres.
     fn ndc_of(&self, view_depth: f32) -> f32 {
-        self.view.clip_from_view.project_point3(vec3(0.0, 0.0, self.ahead * view_depth)).z
+        self.view.clip_from_view.project_point3(vec3(0.0, 0.0, self.view_direction_z * view_depth)).z
     }
 
     /// Contents of the depth buffer.

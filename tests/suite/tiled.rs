@@ -18,21 +18,22 @@ use haze::{Bounds, Context, Error, Particle, Particles, wgpu};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 
-use crate::common::{AGREEMENT, MIN_PSNR_WITH_STEPS, gpu, has_tiles, psnr};
-use crate::host::{Host, convert_to_rgba16float};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::{MIN_PSNR, MIN_PSNR_WITH_STEPS, psnr};
 use crate::techniques;
+use crate::test_host::{Host, convert_to_rgba16float};
 use crate::test_scene::TestScene;
 
 /// Least agreement with `raster`, dB. The paths differ because the blend unit rounds every layer.
 const MIN_PSNR_TO_RASTER: f32 = 55.0;
 
 /// Least agreement with the CPU renderer, which rounds as the blend unit does, dB.
-const MIN_PSNR_TO_CPU: f32 = AGREEMENT;
+const MIN_PSNR_TO_CPU: f32 = MIN_PSNR;
 
-fn stage(technique: Technique) -> TestScene {
-    let mut stage = techniques::stage(technique);
-    stage.settings.accumulate.layers = Layers::All;
-    stage
+fn scene(technique: Technique) -> TestScene {
+    let mut scene = techniques::scene(technique);
+    scene.settings.accumulate.layers = Layers::All;
+    scene
 }
 
 fn context_with_traversal(cooperative: bool) -> Context {
@@ -43,24 +44,24 @@ fn context_with_traversal(cooperative: bool) -> Context {
 
 /// Renders with one path and one traversal. Exact filtering would force the cooperative traversal, so the other one
 /// uses the sampler's filter.
-fn drawn(stage: &TestScene, path: RenderPath, cooperative: bool) -> Image<Vec4> {
-    let mut stage = stage.clone();
-    (stage.settings.path, stage.host.exact_filtering) = (path, cooperative);
+fn render_with(scene: &TestScene, path: RenderPath, cooperative: bool) -> Image<Vec4> {
+    let mut scene = scene.clone();
+    (scene.settings.path, scene.host.exact_filtering) = (path, cooperative);
     static CONTEXTS: [LazyLock<Context>; 2] =
         [LazyLock::new(|| context_with_traversal(false)), LazyLock::new(|| context_with_traversal(true))];
-    let mut host = Host::on(gpu(), &stage, Some(&CONTEXTS[usize::from(cooperative)])).unwrap();
-    host.draw(gpu(), &stage).unwrap();
+    let mut host = Host::with_context(gpu(), &scene, Some(&CONTEXTS[usize::from(cooperative)])).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     gpu().check().unwrap();
     host.picture(gpu()).unwrap()
 }
 
 /// Asserts that both traversals agree with `raster`, and the cooperative one also with the CPU renderer.
-pub fn agreement(name: &str, stage: &TestScene) {
-    let steps = stage.settings.sprite.debug_sprite;
+pub fn assert_agreement(name: &str, scene: &TestScene) {
+    let steps = scene.settings.sprite.debug_sprite;
     for cooperative in [true, false] {
-        let [tiled, raster] = [RenderPath::Tiled, RenderPath::Raster].map(|path| drawn(stage, path, cooperative));
-        let to_raster = psnr(&tiled, &raster);
-        println!("{name}, cooperative {cooperative}: raster {to_raster:.1} dB");
+        let [tiled, raster] = [RenderPath::Tiled, RenderPath::Raster].map(|path| render_with(scene, path, cooperative));
+        let (to_raster, to_reference) = (psnr(&tiled, &raster), psnr(&tiled, &scene.on_cpu()));
+        println!("{name}, cooperative {cooperative}: raster {to_raster:.1} dB, CPU renderer {to_reference:.1} dB");
         assert!(
             to_raster >= if steps { MIN_PSNR_WITH_STEPS } else { MIN_PSNR_TO_RASTER },
             "{name}: {to_raster:.1} dB against raster"
@@ -76,28 +77,28 @@ pub fn agreement(name: &str, stage: &TestScene) {
 
 #[test]
 fn tiled_path_agrees_on_every_technique() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     for &technique in Technique::ALL {
         let name = technique.name();
-        agreement(name, &stage(technique));
-        let mut always = stage(technique);
+        assert_agreement(name, &scene(technique));
+        let mut always = scene(technique);
         always.settings.soft_fade.curve = FadeCurve::Always;
-        agreement(&format!("{name} always"), &always);
-        let mut host_depth = stage(technique);
+        assert_agreement(&format!("{name} always"), &always);
+        let mut host_depth = scene(technique);
         let accumulate = &mut host_depth.settings.accumulate;
         (accumulate.depth_source, accumulate.scale) = (DepthSource::Host, 1);
-        agreement(&format!("{name} host depth"), &host_depth);
-        let mut orthographic = stage(technique);
+        assert_agreement(&format!("{name} host depth"), &host_depth);
+        let mut orthographic = scene(technique);
         orthographic.view.clip_from_view = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
-        agreement(&format!("{name} orthographic"), &orthographic);
+        assert_agreement(&format!("{name} orthographic"), &orthographic);
     }
 }
 
 #[test]
 fn tiled_path_agrees_in_every_accumulation_mode() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     type Change = fn(&mut TestScene);
@@ -120,37 +121,38 @@ fn tiled_path_agrees_in_every_accumulation_mode() {
         ("near", |s| s.particles.iter_mut().for_each(|p| p.position.z += 5.5)),
     ];
     for (name, change) in changes {
-        let mut stage = stage(Technique::Soft);
-        change(&mut stage);
-        agreement(name, &stage);
+        let mut scene = scene(Technique::Soft);
+        change(&mut scene);
+        assert_agreement(name, &scene);
     }
 }
 
 #[test]
 fn tiled_path_rounds_eight_bit_targets_only_once() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     // Raster rounds after every layer, so the sum stalls. The path `tiled` sums in f32 and rounds once.
-    let mut stage = stage(Technique::Soft);
-    let accumulate = &mut stage.settings.accumulate;
+    let mut scene = scene(Technique::Soft);
+    let accumulate = &mut scene.settings.accumulate;
     (accumulate.format, accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
-    stage.debug_view = DebugView::Amount;
-    let mut exact = stage.clone();
+    scene.debug_view = DebugView::Amount;
+    let mut exact = scene.clone();
     exact.settings.accumulate.format = AccumulationFormat::Rgba16Float;
     let exact = exact.on_cpu();
-    let [tiled, raster] = [RenderPath::Tiled, RenderPath::Raster].map(|path| psnr(&drawn(&stage, path, true), &exact));
+    let [tiled, raster] =
+        [RenderPath::Tiled, RenderPath::Raster].map(|path| psnr(&render_with(&scene, path, true), &exact));
     println!("8 bits: tiled {tiled:.1} dB, raster {raster:.1} dB");
     assert!(tiled >= 50.0 && tiled > raster, "tiled {tiled} dB, raster {raster} dB");
 }
 
 #[test]
 fn skipping_hidden_layers_barely_changes_the_image() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     // A stack of layers that is opaque after about twenty.
-    let mut stage = stage(Technique::Soft);
+    let mut scene = scene(Technique::Soft);
     let layer = |index: u32| Particle {
         position: vec3(0.0, 0.0, -4.0 - 0.01 * index as f32),
         radius: 3.0,
@@ -158,12 +160,12 @@ fn skipping_hidden_layers_barely_changes_the_image() {
         rotation: index as f32,
         ..Particle::default()
     };
-    stage.particles = (0..400).map(layer).collect();
+    scene.particles = (0..400).map(layer).collect();
     for cooperative in [true, false] {
-        stage.settings.accumulate.layers = Layers::All;
-        let all = drawn(&stage, RenderPath::Tiled, cooperative);
-        stage.settings.accumulate.layers = Layers::Visible;
-        let visible = drawn(&stage, RenderPath::Tiled, cooperative);
+        scene.settings.accumulate.layers = Layers::All;
+        let all = render_with(&scene, RenderPath::Tiled, cooperative);
+        scene.settings.accumulate.layers = Layers::Visible;
+        let visible = render_with(&scene, RenderPath::Tiled, cooperative);
         let apart = psnr(&visible, &all);
         println!("visible layers against all: {apart:.1} dB");
         // The layers that are skipped add at most a thousandth of the light.
@@ -173,7 +175,7 @@ fn skipping_hidden_layers_barely_changes_the_image() {
 
 #[test]
 fn tiled_path_agrees_on_every_preset() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     let renderer = |shot: &Shot, path, layers| {
@@ -182,7 +184,7 @@ fn tiled_path_agrees_on_every_preset() {
             system.settings.path = path;
             system.settings.accumulate.layers = layers;
         }
-        crate::presets::drawn(&shot, false)
+        crate::presets::render_on_gpu(&shot, false)
     };
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, UVec2::new(320, 180)).unwrap();
@@ -193,7 +195,7 @@ fn tiled_path_agrees_on_every_preset() {
         let raster = renderer(&shot, RenderPath::Raster, Layers::All);
         for &layers in Layers::ALL {
             let tiled = renderer(&shot, RenderPath::Tiled, layers);
-            let apart = crate::common::psnr_over([&tiled, &raster], [&behind, &behind]);
+            let apart = crate::psnr::psnr_over([&tiled, &raster], [&behind, &behind]);
             println!("{}, {} layers: {apart:.1} dB", preset.name, layers.name());
             assert!(apart >= MIN_PSNR_TO_RASTER, "{}: {apart:.1} dB", preset.name);
         }
@@ -202,13 +204,13 @@ fn tiled_path_agrees_on_every_preset() {
 
 #[test]
 fn tiled_path_is_deterministic_and_sorts_buffers() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let mut stage = stage(Technique::Soft);
+    let mut scene = scene(Technique::Soft);
     // More particles than a block of the sort holds, many at the same depth, some hidden.
     let all = |index: u32| {
-        let mut particle = stage.particles[index as usize % 60];
+        let mut particle = scene.particles[index as usize % 60];
         particle.position.x += 0.001 * (index / 60) as f32;
         particle.amount *= 0.1;
         if index.is_multiple_of(7) {
@@ -217,14 +219,14 @@ fn tiled_path_is_deterministic_and_sorts_buffers() {
         particle
     };
     let all: Vec<_> = (0..3000_u32).map(all).collect();
-    stage.particles.clone_from(&all);
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    (stage.settings.path, stage.host.exact_filtering) = (RenderPath::Tiled, false);
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    scene.particles.clone_from(&all);
+    scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    (scene.settings.path, scene.host.exact_filtering) = (RenderPath::Tiled, false);
+    let mut host = Host::new(gpu(), &scene).unwrap();
     for cooperative in [true, false] {
         host.renderer.context().set_cooperative_traversal(cooperative);
         let picture = |host: &mut Host| {
-            host.draw(gpu(), &stage).unwrap();
+            host.draw(gpu(), &scene).unwrap();
             host.picture(gpu()).unwrap()
         };
         let first = picture(&mut host);
@@ -236,7 +238,7 @@ fn tiled_path_is_deterministic_and_sorts_buffers() {
             let buffer = storage_buffer(&bytes);
             let particles =
                 Particles::Buffer { buffer: &buffer, offset, count: particles.len() as u32, is_sorted: false };
-            host.draw_particles(gpu(), &stage, particles).unwrap();
+            host.draw_particles(gpu(), &scene, particles).unwrap();
             host.picture(gpu()).unwrap()
         };
         // The sort is stable: particles at the same depth keep their order.
@@ -263,27 +265,27 @@ fn storage_buffer(bytes: &[u8]) -> wgpu::Buffer {
 
 #[test]
 fn devices_and_buffers_without_tiles_are_errors_on_the_tiled_path() {
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = RenderPath::Tiled;
+    let mut scene = scene(Technique::Soft);
+    scene.settings.path = RenderPath::Tiled;
     let refused = |result: Result<(), Error>| match result {
         Err(Error::Field(error)) => error.to_string(),
         other => panic!("{other:?}"),
     };
     let webgl2 = Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty()).unwrap();
-    let mut host = Host::new(&webgl2, &stage).unwrap();
-    let message = refused(host.draw(&webgl2, &stage));
+    let mut host = Host::new(&webgl2, &scene).unwrap();
+    let message = refused(host.draw(&webgl2, &scene));
     assert!(message.contains("systems[0].settings.path") && message.contains("raster"), "{message}");
-    stage.settings.path = RenderPath::Auto;
-    host.draw(&webgl2, &stage).unwrap();
-    if !has_tiles() {
+    scene.settings.path = RenderPath::Auto;
+    host.draw(&webgl2, &scene).unwrap();
+    if !is_tiled_available() {
         return;
     }
-    stage.settings.path = RenderPath::Tiled;
-    stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    scene.settings.path = RenderPath::Tiled;
+    scene.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let buffer = storage_buffer(&[0; 128]);
     let particles = Particles::Buffer { buffer: &buffer, offset: 4, count: 1, is_sorted: false };
-    let message = refused(host.draw_particles(gpu(), &stage, particles));
+    let message = refused(host.draw_particles(gpu(), &scene, particles));
     assert!(message.contains("particles.offset") && message.contains("16"), "{message}");
     let vertices = gpu().device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -292,13 +294,13 @@ fn devices_and_buffers_without_tiles_are_errors_on_the_tiled_path() {
         mapped_at_creation: false,
     });
     let particles = Particles::Buffer { buffer: &vertices, offset: 0, count: 1, is_sorted: false };
-    let message = refused(host.draw_particles(gpu(), &stage, particles));
+    let message = refused(host.draw_particles(gpu(), &scene, particles));
     assert!(message.contains("STORAGE"), "{message}");
 }
 
 #[test]
 fn two_hundred_faint_layers_add_up() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     const LAYERS: usize = 256;
@@ -309,12 +311,12 @@ fn two_hundred_faint_layers_add_up() {
             sheet.put_pixel(x, y, image::Rgba([128, 128, 255, 0]));
         }
     }
-    let mut stage = stage(Technique::Hard);
+    let mut scene = scene(Technique::Hard);
     let sprite = Sprite::from_image(std::path::Path::new("full"), &sheet, SpriteLayout::default()).unwrap();
-    stage.material.sprite = sprite;
-    stage.settings.accumulate.scale = 1;
+    scene.material.sprite = sprite;
+    scene.settings.accumulate.scale = 1;
     let particle = Particle { position: vec3(0.0, 0.0, -3.0), radius: 4.0, amount: 0.02, ..Particle::default() };
-    stage.particles = vec![particle; LAYERS];
+    scene.particles = vec![particle; LAYERS];
     // The sum in f64, front to back.
     let mut through = 1.0_f64;
     for _ in 0..LAYERS {
@@ -322,10 +324,10 @@ fn two_hundred_faint_layers_add_up() {
     }
     let oracle = 1.0 - through;
     let mut decibels = |path, format, encoding| {
-        stage.settings.path = path;
-        (stage.settings.accumulate.format, stage.settings.accumulate.encoding) = (format, encoding);
-        let mut host = Host::new(gpu(), &stage).unwrap();
-        host.draw(gpu(), &stage).unwrap();
+        scene.settings.path = path;
+        (scene.settings.accumulate.format, scene.settings.accumulate.encoding) = (format, encoding);
+        let mut host = Host::new(gpu(), &scene).unwrap();
+        host.draw(gpu(), &scene).unwrap();
         let targets = host.renderer.targets(0).unwrap();
         let texels = convert_to_rgba16float(gpu(), targets.accumulation[0].texture());
         let (width, size) = (texels.width(), targets.size);

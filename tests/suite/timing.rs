@@ -1,16 +1,19 @@
 //! GPU time per pass, on a device with timestamp queries.
 
+mod cost_tables;
+mod queries;
+
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, RenderPath};
+use haze::settings::{DiffuseMode, LightingResolution, RenderPath};
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::{can_test, gpu, has_independent_devices, has_tiles};
-use crate::creations;
-use crate::host::Host;
+use crate::gpu::{can_test, gpu, has_independent_devices};
+use crate::resource_counter;
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
@@ -25,10 +28,10 @@ fn timed_gpu() -> Option<&'static Headless> {
 }
 
 /// Host that measures its renderer and its own pass.
-fn timed_host(gpu: &Headless, stage: &TestScene) -> (Host, Timing) {
+fn timed_host(gpu: &Headless, scene: &TestScene) -> (Host, Timing) {
     let timing = Timing::new(&gpu.device, &gpu.queue).unwrap();
     assert_eq!(timing.latest(), None);
-    let mut host = Host::new(gpu, stage).unwrap();
+    let mut host = Host::new(gpu, scene).unwrap();
     host.renderer.set_timing(Some(&timing)).unwrap();
     host.timing = Some(timing.clone());
     (host, timing)
@@ -47,21 +50,21 @@ fn result_after(timing: &Timing, seen: Option<u64>) -> FrameTimes {
     panic!("no timing result within 10 s");
 }
 
-fn drawn(gpu: &Headless, host: &mut Host, timing: &Timing, stage: &TestScene) -> FrameTimes {
+fn draw_and_measure(gpu: &Headless, host: &mut Host, timing: &Timing, scene: &TestScene) -> FrameTimes {
     let seen = timing.latest().map(|times| times.frame);
-    host.draw(gpu, stage).unwrap();
+    host.draw(gpu, scene).unwrap();
     result_after(timing, seen)
 }
 
-fn names(times: &FrameTimes) -> Vec<&str> {
+fn pass_names(times: &FrameTimes) -> Vec<&str> {
     times.passes.iter().map(|pass| pass.name).collect()
 }
 
 /// Stage with settings that use every pass of the deferred path.
-fn stage() -> TestScene {
-    let mut stage = TestScene::new(SIZE);
-    stage.settings.diffuse.mode = DiffuseMode::Cubemap;
-    stage
+fn scene() -> TestScene {
+    let mut scene = TestScene::new(SIZE);
+    scene.settings.diffuse.mode = DiffuseMode::Cubemap;
+    scene
 }
 
 const DEFERRED_PASSES: [&str; 6] =
@@ -70,12 +73,12 @@ const DEFERRED_PASSES: [&str; 6] =
 #[test]
 fn every_pass_is_reported_by_name_with_a_positive_time() {
     let Some(gpu) = timed_gpu() else { return };
-    let mut stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
+    let mut scene = scene();
+    let (mut host, timing) = timed_host(gpu, &scene);
     let mut frame = None;
     for _ in 0..5 {
-        let times = drawn(gpu, &mut host, &timing, &stage);
-        assert_eq!(names(&times), DEFERRED_PASSES);
+        let times = draw_and_measure(gpu, &mut host, &timing, &scene);
+        assert_eq!(pass_names(&times), DEFERRED_PASSES);
         assert!(Some(times.frame) > frame && times.discarded == 0, "{times:?}");
         assert!(times.passes.iter().all(|pass| pass.ms > 0.0), "{times:?}");
         frame = Some(times.frame);
@@ -87,57 +90,57 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
         assert!(times.smoke_ms() - within + ms("host") <= times.whole_ms * 1.0001, "{times:?}");
         let own: f32 = DEFERRED_PASSES.iter().filter(|name| **name != "host").map(|name| ms(name)).sum();
         assert!((times.smoke_ms() - own).abs() < 1.0e-5 * own, "{times:?}");
-        assert!(times.passes.iter().all(|pass| pass.is_host == (pass.name == "host")));
+        assert!(times.passes.iter().all(|pass| pass.of_host == (pass.name == "host")));
     }
-    stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
+    scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
     let lit =
         ["depth_downsample", "diffuse_bake", "accumulate", "light_target", "host", "transfer", "specular_scatter"];
-    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), lit);
-    stage.settings.path = RenderPath::Forward;
-    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host", "forward"]);
-    stage.particles.clear();
-    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host"]);
+    assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), lit);
+    scene.settings.path = RenderPath::Forward;
+    assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), ["host", "forward"]);
+    scene.particles.clear();
+    assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), ["host"]);
 }
 
 #[test]
 fn results_report_the_path_that_auto_took() {
     let Some(gpu) = timed_gpu() else { return };
-    let mut stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    assert_eq!(drawn(gpu, &mut host, &timing, &stage).choices, []);
-    stage.settings.path = RenderPath::Auto;
+    let mut scene = scene();
+    let (mut host, timing) = timed_host(gpu, &scene);
+    assert_eq!(draw_and_measure(gpu, &mut host, &timing, &scene).choices, []);
+    scene.settings.path = RenderPath::Auto;
     for _ in 0..3 {
-        let times = drawn(gpu, &mut host, &timing, &stage);
+        let times = draw_and_measure(gpu, &mut host, &timing, &scene);
         let choice = host.renderer.path_choice(0).unwrap();
         assert_eq!(times.choices, [(0, choice)]);
         let pass = if choice.path == RenderPath::Tiled { "tile_accumulate" } else { "accumulate" };
-        assert!(names(&times).contains(&pass), "{times:?}");
+        assert!(pass_names(&times).contains(&pass), "{times:?}");
     }
 }
 
 #[test]
 fn a_renderer_without_timing_is_not_measured() {
     let Some(gpu) = timed_gpu() else { return };
-    let stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)).len(), 6);
+    let scene = scene();
+    let (mut host, timing) = timed_host(gpu, &scene);
+    assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)).len(), 6);
     host.renderer.set_timing(None).unwrap();
-    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host"]);
+    assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), ["host"]);
     // An empty frame gives a result too, with a cost of 0.
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let seen = timing.latest().map(|times| times.frame);
     timing.resolve(&mut encoder);
     gpu.submit(encoder).unwrap();
     let times = result_after(&timing, seen);
-    assert_eq!((names(&times), times.smoke_ms(), times.whole_ms), (vec![], 0.0, 0.0));
+    assert_eq!((pass_names(&times), times.smoke_ms(), times.whole_ms), (vec![], 0.0, 0.0));
 }
 
 #[test]
 fn pass_times_add_up_over_systems() {
     let Some(gpu) = timed_gpu() else { return };
-    let stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    let light = stage.settings;
+    let scene = scene();
+    let (mut host, timing) = timed_host(gpu, &scene);
+    let light = scene.settings;
     let mut heavy = light;
     heavy.sprite.debug_loop = 64;
     heavy.accumulate.scale = 1;
@@ -146,13 +149,13 @@ fn pass_times_add_up_over_systems() {
             .zip(settings)
             .map(|(key, settings)| System {
                 key,
-                ..System::new(Particles::Slice(&stage.particles), settings, &host.material)
+                ..System::new(Particles::Slice(&scene.particles), settings, &host.material)
             })
             .collect();
         let frame = Frame {
-            lights: &stage.lights,
+            lights: &scene.lights,
             systems: &systems,
-            ..Frame::new(stage.view, SceneDepth::Buffer(&host.depth))
+            ..Frame::new(scene.view, SceneDepth::Buffer(&host.depth))
         };
         let seen = timing.latest().map(|times| times.frame);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -160,7 +163,7 @@ fn pass_times_add_up_over_systems() {
         timing.resolve(&mut encoder);
         gpu.submit(encoder).unwrap();
         let times = result_after(&timing, seen);
-        assert_eq!((names(&times).len(), times.discarded), (3, 0), "{times:?}");
+        assert_eq!((pass_names(&times).len(), times.discarded), (3, 0), "{times:?}");
         (times.passes[2].ms, host.renderer.counts())
     };
     measure(&[&light, &heavy]);
@@ -191,12 +194,12 @@ fn timing_of_another_device_is_an_error() {
     let descriptor = wgpu::DeviceDescriptor { required_features: FEATURES, ..Default::default() };
     let (device, queue) = pollster::block_on(gpu.adapter.request_device(&descriptor)).unwrap();
     let of_another = Timing::new(&device, &queue).unwrap();
-    let (mut host, timing) = timed_host(gpu, &stage());
+    let (mut host, timing) = timed_host(gpu, &scene());
     let refused = host.renderer.set_timing(Some(&of_another));
     let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
     assert_eq!(error.field, "timing");
     // The previous timing stays in use.
-    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage())), DEFERRED_PASSES);
+    assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene())), DEFERRED_PASSES);
 }
 
 #[test]
@@ -205,196 +208,19 @@ fn without_timestamps_inside_passes_only_whole_passes_are_measured() {
     if !can_test("timestamps", gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)) {
         return;
     }
-    let (mut host, timing) = timed_host(&gpu, &stage());
-    let times = drawn(&gpu, &mut host, &timing, &stage());
-    assert_eq!((names(&times), times.discarded), (DEFERRED_PASSES[..4].to_vec(), 0));
-}
-
-#[test]
-fn dropped_encoders_do_not_disturb_later_results() {
-    let Some(gpu) = timed_gpu() else { return };
-    let stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    let first = drawn(gpu, &mut host, &timing, &stage);
-    // More rounds than there are read-back buffers and queries.
-    for round in 0..200 {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        host.prepare(gpu, &mut encoder, &stage, Particles::Slice(&stage.particles)).unwrap();
-        if round % 3 > 0 {
-            host.render(&mut encoder, &stage);
-        }
-        if round % 3 > 1 {
-            timing.resolve(&mut encoder);
-        }
-    }
-    assert_eq!(timing.latest(), Some(first));
-    for _ in 0..2 {
-        let times = drawn(gpu, &mut host, &timing, &stage);
-        assert_eq!((names(&times), times.discarded), (DEFERRED_PASSES.to_vec(), 0));
-    }
-}
-
-#[test]
-fn host_pass_queries_from_before_a_second_prepare_are_harmless() {
-    let Some(gpu) = timed_gpu() else { return };
-    let mut stage = stage();
-    stage.attach_depth = false;
-    let (mut host, timing) = timed_host(gpu, &stage);
-    let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu, &mut encoder(), &stage, Particles::Slice(&stage.particles)).unwrap();
-    let timestamp_writes = timing.host_pass("host");
-    let mut encoder = encoder();
-    host.prepare(gpu, &mut encoder, &stage, Particles::Slice(&stage.particles)).unwrap();
-    let view = host.colour.create_view(&wgpu::TextureViewDescriptor::default());
-    let attachment = wgpu::RenderPassColorAttachment {
-        view: &view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations::default(),
-    };
-    host.renderer.render(&mut encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(attachment)],
-        timestamp_writes,
-        ..Default::default()
-    }));
-    timing.resolve(&mut encoder);
-    // wgpu rejects a pass that writes one query twice.
-    gpu.submit(encoder).unwrap();
-    let times = result_after(&timing, None);
-    assert_eq!((names(&times).len(), times.discarded), (5, 0), "{times:?}");
-}
-
-#[test]
-fn only_resolved_frames_are_measured() {
-    let Some(gpu) = timed_gpu() else { return };
-    let mut stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    host.timing = None;
-    stage.settings.path = RenderPath::Forward;
-    host.draw(gpu, &stage).unwrap();
-    stage.settings.path = RenderPath::Auto;
-    host.timing = Some(timing.clone());
-    let times = drawn(gpu, &mut host, &timing, &stage);
-    assert_eq!((names(&times), times.discarded), (DEFERRED_PASSES.to_vec(), 0));
-}
-
-#[test]
-fn unused_and_excess_host_labels_count_as_discarded() {
-    let Some(gpu) = timed_gpu() else { return };
-    let stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    let mut discarded = |asked| {
-        let given = (0..asked).filter(|_| timing.host_pass("unused").is_some()).count();
-        let times = drawn(gpu, &mut host, &timing, &stage);
-        assert_eq!(names(&times).contains(&"host"), given < 32);
-        assert!(!names(&times).contains(&"unused"));
-        times.discarded
-    };
-    assert_eq!(discarded(0), 0);
-    // The query of the unused label still holds what the host's pass wrote in the previous frame.
-    assert_eq!(discarded(1), 1);
-    // 32 labels are never written; 8 more and the host's own pass do not fit.
-    assert_eq!(discarded(40), 32 + 8 + 1);
-    assert_eq!(discarded(0), 0);
-}
-
-#[test]
-fn frames_beyond_the_read_back_buffers_are_not_measured() {
-    if timed_gpu().is_none() {
-        return;
-    }
-    // A separate device, so that no other thread's poll delivers results later.
-    let gpu = &Headless::with(wgpu::Limits::default(), FEATURES).unwrap();
-    let stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    let recorded = |_| {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        timing.resolve(&mut encoder);
-        encoder
-    };
-    let held = [(); 4].map(recorded);
-    host.draw(gpu, &stage).unwrap();
-    assert_eq!(timing.latest(), None);
-    for encoder in held {
-        gpu.submit(encoder).unwrap();
-    }
-    let times = drawn(gpu, &mut host, &timing, &stage);
-    assert_eq!((names(&times), times.frame, times.discarded), (DEFERRED_PASSES.to_vec(), 5, 0));
+    let (mut host, timing) = timed_host(&gpu, &scene());
+    let times = draw_and_measure(&gpu, &mut host, &timing, &scene());
+    assert_eq!((pass_names(&times), times.discarded), (DEFERRED_PASSES[..4].to_vec(), 0));
 }
 
 #[test]
 fn steady_frames_with_timing_create_no_resources() {
     let Some(gpu) = timed_gpu() else { return };
-    let stage = stage();
-    let (mut host, timing) = timed_host(gpu, &stage);
-    drawn(gpu, &mut host, &timing, &stage);
+    let scene = scene();
+    let (mut host, timing) = timed_host(gpu, &scene);
+    draw_and_measure(gpu, &mut host, &timing, &scene);
     for _ in 0..10 {
-        let created = creations::count(|| host.draw(gpu, &stage).unwrap());
+        let created = resource_counter::count(|| host.draw(gpu, &scene).unwrap());
         assert_eq!(created, 0);
     }
-}
-
-/// Median GPU time of the sum of `passes` for every stage, milliseconds. The stages are drawn in turn.
-fn medians(gpu: &Headless, stages: &[TestScene], passes: &[&str]) -> Vec<f32> {
-    let mut hosts: Vec<_> = stages.iter().map(|stage| timed_host(gpu, stage)).collect();
-    let mut all = vec![Vec::new(); stages.len()];
-    for turn in 0..24 {
-        for ((stage, (host, timing)), times) in stages.iter().zip(&mut hosts).zip(&mut all) {
-            let drawn = drawn(gpu, host, timing, stage);
-            let ms: f32 = drawn.passes.iter().filter(|pass| passes.contains(&pass.name)).map(|pass| pass.ms).sum();
-            assert!(ms > 0.0, "no time for {passes:?}");
-            // The first four rounds warm up.
-            if turn >= 4 {
-                times.push(ms);
-            }
-        }
-    }
-    all.iter_mut().for_each(|times| times.sort_by(f32::total_cmp));
-    all.iter().map(|times| times[times.len() / 2]).collect()
-}
-
-/// Prints the figures of docs/six_way.md and docs/light.md.
-#[test]
-#[ignore = "prints figures for the docs"]
-fn prints_cost_of_six_way_lighting_and_ramps() {
-    let Some(gpu) = timed_gpu() else { return };
-    let mut stage = TestScene::new(UVec2::new(1280, 720));
-    stage.particles.iter_mut().for_each(|particle| particle.radius = 1.6);
-    let other = |change: fn(&mut Settings)| {
-        let mut other = stage.clone();
-        change(&mut other.settings);
-        other
-    };
-    let raster: [(RenderPath, &[&str]); 2] =
-        [(RenderPath::Raster, &["accumulate"]), (RenderPath::Raster, &["transfer"])];
-    let tiled: [(RenderPath, &[&str]); 2] = [
-        (RenderPath::Tiled, &["tile_project", "sort", "tile_bin", "tile_refine", "tile_accumulate"]),
-        (RenderPath::Tiled, &["tile_accumulate"]),
-    ];
-    let tiled = if has_tiles() { &tiled[..] } else { &[] };
-    for scale in [1, 2] {
-        for &(path, passes) in raster.iter().chain(tiled) {
-            let pair = [Lighting::Normals, Lighting::SixWay].map(|lighting| {
-                let mut stage = stage.clone();
-                (stage.settings.path, stage.settings.lighting) = (path, lighting);
-                stage.settings.accumulate.scale = scale;
-                stage
-            });
-            let times = medians(gpu, &pair, passes);
-            println!(
-                "1/{scale} {}: normals {:.3} ms, six-way {:.3} ms, {:.2}",
-                passes.join(" + "),
-                times[0],
-                times[1],
-                times[1] / times[0]
-            );
-        }
-    }
-    // A ramp with one row, one with several rows, and a second ramp for light from behind.
-    let mut two_axes = stage.clone();
-    two_axes.material.diffuse_ramp = stage.material.backlight_ramp.clone();
-    let backlit = other(|settings| settings.diffuse.backlight = Backlight::Ramp);
-    let times = medians(gpu, &[stage.clone(), two_axes, backlit], &["transfer"]);
-    let [one, two, behind] = times[..] else { return };
-    println!("transfer: one axis {one:.3} ms, two axes {:.2}, light from behind {:.2}", two / one, behind / one);
 }

@@ -7,19 +7,19 @@ use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{TonemapPass, TonemapUniform, exposure, tonemap};
 
-use crate::common::gpu;
-use crate::creations;
-use crate::host::convert_to_rgba16float;
+use crate::gpu::gpu;
+use crate::resource_counter;
+use crate::test_host::convert_to_rgba16float;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Tonemaps two rendered shots on the GPU into a rectangle inside a larger target; returns the rectangle's pixels,
 /// sRGB-encoded.
-fn on_screen(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot), shown: TonemapUniform) -> Vec<Vec4> {
+fn tonemap_on_gpu(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot), shown: TonemapUniform) -> Vec<Vec4> {
     let device = &gpu().device;
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let tonemap_pass = TonemapPass::new(device, format);
-    let picture = |(stage, shot): (&OffscreenRenderer, &Shot)| stage.picture(shot.debug_view).unwrap().clone();
+    let picture = |(renderer, shot): (&OffscreenRenderer, &Shot)| renderer.picture(shot.debug_view).unwrap().clone();
     let tonemap_bindings = tonemap_pass.bind(device, &picture(a), &picture(b));
     let place = UVec2::new(13, 7);
     let screen = gpu().target("screen", SIZE + 2 * place, format);
@@ -51,19 +51,19 @@ fn on_screen(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot), sho
 
 fn shot(preset: &str, debug_view: DebugView) -> (OffscreenRenderer, Shot) {
     let context = OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
-    let mut stage = OffscreenRenderer::new(&context, true).unwrap();
+    let mut renderer = OffscreenRenderer::new(&context, true).unwrap();
     let mut shot = Shot { debug_view, ..Shot::load(preset, SIZE).unwrap() };
     shot.preset.camera.exposure = 0.7;
-    stage.draw(gpu(), &shot).unwrap();
-    (stage, shot)
+    renderer.draw(gpu(), &shot).unwrap();
+    (renderer, shot)
 }
 
 #[test]
 fn window_shows_the_same_pixels_as_a_written_file() {
-    for stage in [DebugView::Final, DebugView::Normals] {
-        let (stage, shot) = shot("column", stage);
-        let written = tonemap(&stage.read(gpu(), &shot).unwrap(), &shot);
-        let shown = on_screen((&stage, &shot), (&stage, &shot), TonemapUniform::default());
+    for debug_view in [DebugView::Final, DebugView::Normals] {
+        let (renderer, shot) = shot("column", debug_view);
+        let written = tonemap(&renderer.read(gpu(), &shot).unwrap(), &shot);
+        let shown = tonemap_on_gpu((&renderer, &shot), (&renderer, &shot), TonemapUniform::default());
         let mut off = 0;
         for (written, shown) in written.pixels().zip(shown) {
             for (written, shown) in written.0.into_iter().zip(shown.to_array()) {
@@ -80,9 +80,10 @@ fn window_shows_the_same_pixels_as_a_written_file() {
 #[test]
 fn split_and_difference_views_combine_both_images() {
     let (a, b) = (shot("column", DebugView::Final), shot("column", DebugView::Amount));
-    let alone = |of: &(OffscreenRenderer, Shot)| on_screen((&of.0, &of.1), (&of.0, &of.1), TonemapUniform::default());
+    let alone =
+        |of: &(OffscreenRenderer, Shot)| tonemap_on_gpu((&of.0, &of.1), (&of.0, &of.1), TonemapUniform::default());
     let (left, right) = (alone(&a), alone(&b));
-    let both = |shown| on_screen((&a.0, &a.1), (&b.0, &b.1), shown);
+    let both = |shown| tonemap_on_gpu((&a.0, &a.1), (&b.0, &b.1), shown);
     let split = both(TonemapUniform { split: 60.0, ..TonemapUniform::default() });
     for (index, texel) in split.iter().enumerate() {
         let is_left = index as u32 % SIZE.x < 60;
@@ -101,11 +102,11 @@ fn renderers_of_one_context_share_uploaded_images() {
     let context = OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
     let shot = Shot::load("column", SIZE).unwrap();
     let drawn = || {
-        let mut stage = OffscreenRenderer::new(&context, true).unwrap();
-        let created = creations::count(|| {
-            stage.draw(gpu(), &shot).unwrap();
+        let mut renderer = OffscreenRenderer::new(&context, true).unwrap();
+        let created = resource_counter::count(|| {
+            renderer.draw(gpu(), &shot).unwrap();
         });
-        (stage, created)
+        (renderer, created)
     };
     // The first draw compiles all pipelines.
     let (first, _) = drawn();

@@ -7,8 +7,8 @@ use haze::image::Image;
 use haze::settings::{DebugView, LightingResolution, Upsample};
 use haze_demo::shot::Shot;
 
-use crate::common::psnr;
-use crate::presets::drawn;
+use crate::presets::render_on_gpu;
+use crate::psnr::psnr;
 
 const SIZE: UVec2 = UVec2::new(640, 360);
 
@@ -18,7 +18,7 @@ fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Image<Vec4> {
     for system in &mut shot.preset.systems {
         (system.settings.accumulate.scale, system.settings.accumulate.upsample) = (scale, upsample);
     }
-    drawn(&shot, true)
+    render_on_gpu(&shot, true)
 }
 
 /// Marks pixels whose depth differs from a pixel within `reach` pixels of them.

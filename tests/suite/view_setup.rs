@@ -9,8 +9,8 @@ use haze::settings::{DebugView, DiffuseMode};
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Light, LightKind, Particle};
 
-use crate::common::gpu;
-use crate::host::Host;
+use crate::gpu::gpu;
+use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
@@ -37,43 +37,43 @@ const HALF: f32 = 1.5;
 /// Stage with a flat, opaque sheet that faces the camera. The diffuse ramp is white, so a pixel shows only the amount
 /// of light that reaches it.
 fn sheet(light_uniforms: &[Light]) -> TestScene {
-    let mut stage = TestScene::new(SIZE);
+    let mut scene = TestScene::new(SIZE);
     // The view matrix permutes the axes, so that the box is as thin in world space as in view space.
-    stage.view.view_from_world = Mat4::from_cols(Vec4::Y, Vec4::Z, Vec4::X, vec4(1.0, -2.0, 3.0, 1.0));
-    let world_from_view = stage.view.view_from_world.inverse();
+    scene.view.view_from_world = Mat4::from_cols(Vec4::Y, Vec4::Z, Vec4::X, vec4(1.0, -2.0, 3.0, 1.0));
+    let world_from_view = scene.view.view_from_world.inverse();
     let [a, b] = [vec3(-HALF, -HALF, -SHEET - 0.05), vec3(HALF, HALF, -SHEET + 0.05)]
         .map(|corner| world_from_view.transform_point3(corner));
-    stage.bounds = Some(Bounds { min: a.min(b), max: a.max(b) });
+    scene.bounds = Some(Bounds { min: a.min(b), max: a.max(b) });
     let position = world_from_view.transform_point3(vec3(0.0, 0.0, -SHEET));
-    stage.particles = vec![Particle { position, radius: HALF, ..Particle::default() }];
-    stage.lights = light_uniforms.to_vec();
-    for light in &mut stage.lights {
+    scene.particles = vec![Particle { position, radius: HALF, ..Particle::default() }];
+    scene.lights = light_uniforms.to_vec();
+    for light in &mut scene.lights {
         light.position = world_from_view.transform_point3(light.position);
         light.direction = world_from_view.transform_vector3(light.direction);
     }
-    stage.material.sprite = flat_sprite();
-    stage.material.diffuse_ramp = Ramp::from_linear(UVec2::new(2, 1), [Vec3::ONE; 2]);
-    (stage.settings.diffuse.intensity, stage.settings.soft_fade.fade_scale) = (1.0, 1000.0);
-    stage.settings.accumulate.scale = 1;
-    stage.debug_view = DebugView::Diffuse;
-    stage
+    scene.material.sprite = flat_sprite();
+    scene.material.diffuse_ramp = Ramp::from_linear(UVec2::new(2, 1), [Vec3::ONE; 2]);
+    (scene.settings.diffuse.intensity, scene.settings.soft_fade.fade_scale) = (1.0, 1000.0);
+    scene.settings.accumulate.scale = 1;
+    scene.debug_view = DebugView::Diffuse;
+    scene
 }
 
 /// Returns the view-space point at `view_depth` behind the centre of pixel `at`, by inverting the projection.
-fn point_behind(stage: &TestScene, at: UVec2, view_depth: f32) -> Vec3 {
-    let uv = (at.as_vec2() + 0.5) / stage.view.size.as_vec2();
+fn point_behind(scene: &TestScene, at: UVec2, view_depth: f32) -> Vec3 {
+    let uv = (at.as_vec2() + 0.5) / scene.view.size.as_vec2();
     let ndc = Vec2::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0);
-    let view_from_clip = stage.view.clip_from_view.inverse();
+    let view_from_clip = scene.view.clip_from_view.inverse();
     let [a, b] = [0.25, 0.75].map(|z| view_from_clip.project_point3(ndc.extend(z)));
     a.lerp(b, (-view_depth - a.z) / (b.z - a.z))
 }
 
 /// Calls `check` with the view-space point and the light of every pixel of the sheet, for both renderers. Pixels close
 /// to the border of the sheet are left out.
-fn check_sheet(stage: &TestScene, mut check: impl FnMut(Vec3, f32)) {
-    for picture in [stage.on_cpu(), stage.on_gpu(gpu()).picture] {
+fn check_sheet(scene: &TestScene, mut check: impl FnMut(Vec3, f32)) {
+    for picture in [scene.on_cpu(), scene.on_gpu(gpu()).picture] {
         for (index, texel) in (0..).zip(&picture.texels) {
-            let point = point_behind(stage, UVec2::new(index % SIZE.x, index / SIZE.x), SHEET);
+            let point = point_behind(scene, UVec2::new(index % SIZE.x, index / SIZE.x), SHEET);
             if point.xy().abs().max_element() < 0.9 * HALF {
                 check(point, texel.x);
             }
@@ -156,16 +156,16 @@ fn largest_difference(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
 /// Stage with a cloud lit by one light. The ramp is quadratic in the cosine, so L2 spherical harmonics represent it
 /// exactly.
 fn lit_by_quadratic_ramp(light: Light, mode: DiffuseMode) -> TestScene {
-    let mut stage = TestScene::new(SIZE);
-    stage.lights = vec![light];
+    let mut scene = TestScene::new(SIZE);
+    scene.lights = vec![light];
     let parabola = |cos: f32| vec3(0.5 + 0.5 * cos, 0.2 + 0.5 * cos + 0.4 * cos * cos, 1.0 - cos * cos);
     let ramp = (0..256).map(|i| parabola(i as f32 / 255.0 * 2.0 - 1.0));
-    stage.material.diffuse_ramp = Ramp::from_linear(UVec2::new(256, 1), ramp);
-    stage.settings.diffuse.mode = mode;
-    stage.debug_view = DebugView::Diffuse;
+    scene.material.diffuse_ramp = Ramp::from_linear(UVec2::new(256, 1), ramp);
+    scene.settings.diffuse.mode = mode;
+    scene.debug_view = DebugView::Diffuse;
     // Bounds other than the smoke's own: lighting must not use their centre.
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    stage
+    scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    scene
 }
 
 #[test]
@@ -212,38 +212,38 @@ fn spherical_harmonics_treat_a_point_light_as_seen_from_the_centroid_of_the_smok
 
 #[test]
 fn sprites_are_drawn_in_the_order_of_a_plain_depth_sort() {
-    let mut stage = TestScene::new(SIZE);
+    let mut scene = TestScene::new(SIZE);
     let world_from_view = camera().inverse();
-    stage.view.view_from_world = camera();
-    for particle in &mut stage.particles {
+    scene.view.view_from_world = camera();
+    for particle in &mut scene.particles {
         particle.position = world_from_view.transform_point3(particle.position);
         particle.amount = 0.9;
     }
-    stage.debug_view = DebugView::Normals;
+    scene.debug_view = DebugView::Normals;
     // Scale 1 disables upsampling, which uses the sprites' depths only if the CPU has the particles.
-    stage.settings.accumulate.scale = 1;
+    scene.settings.accumulate.scale = 1;
     let mut bounds = Bounds::EMPTY;
-    stage.particles.iter().for_each(|particle| bounds.include(particle.position, 2.0));
-    stage.bounds = Some(bounds);
-    let mut host = Host::sharing(gpu(), &stage).unwrap();
-    host.draw(gpu(), &stage).unwrap();
+    scene.particles.iter().for_each(|particle| bounds.include(particle.position, 2.0));
+    scene.bounds = Some(bounds);
+    let mut host = Host::with_shared_context(gpu(), &scene).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     let sorted_by_renderer = host.picture(gpu()).unwrap();
     // Particles in a buffer are drawn in their given order.
-    let depth = |particle: &Particle| -(stage.view.view_from_world * particle.position.extend(1.0)).z;
-    let mut sorted = stage.particles.clone();
+    let depth = |particle: &Particle| -(scene.view.view_from_world * particle.position.extend(1.0)).z;
+    let mut sorted = scene.particles.clone();
     sorted.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
-    assert_ne!(sorted, stage.particles);
+    assert_ne!(sorted, scene.particles);
     let mut in_order = |particles: &[Particle]| {
-        host.draw_buffer(gpu(), &stage, particles).unwrap();
+        host.draw_buffer(gpu(), &scene, particles).unwrap();
         host.picture(gpu()).unwrap()
     };
     assert!(in_order(&sorted) == sorted_by_renderer, "the renderer did not sort back to front");
     sorted.reverse();
     assert!(in_order(&sorted) != sorted_by_renderer);
     // The CPU renderer does not depend on the order of the list either.
-    let on_cpu = stage.on_cpu();
-    stage.particles.reverse();
-    assert!(stage.on_cpu() == on_cpu);
+    let on_cpu = scene.on_cpu();
+    scene.particles.reverse();
+    assert!(scene.on_cpu() == on_cpu);
 }
 
 // Visibility
@@ -254,15 +254,15 @@ const TURN: f32 = 0.6;
 /// Draws one sprite at `centre` (view space) with both renderers. Returns true if some pixel shows it. Asserts that
 /// pixels outside the sprite do not show it, and that pixels well inside show it exactly if its depth is between `near`
 /// and `far`.
-fn draws_sprite(stage: &mut TestScene, host: &mut Host, (near, far): (f32, f32), centre: Vec3, radius: f32) -> bool {
-    let position = stage.view.view_from_world.inverse().transform_point3(centre);
-    stage.particles = vec![Particle { position, radius, rotation: TURN, ..Particle::default() }];
-    host.draw(gpu(), stage).unwrap();
+fn draws_sprite(scene: &mut TestScene, host: &mut Host, (near, far): (f32, f32), centre: Vec3, radius: f32) -> bool {
+    let position = scene.view.view_from_world.inverse().transform_point3(centre);
+    scene.particles = vec![Particle { position, radius, rotation: TURN, ..Particle::default() }];
+    host.draw(gpu(), scene).unwrap();
     let mut any = false;
-    for (renderer, picture) in [("CPU", stage.on_cpu()), ("GPU", host.picture(gpu()).unwrap())] {
+    for (renderer, picture) in [("CPU", scene.on_cpu()), ("GPU", host.picture(gpu()).unwrap())] {
         for (index, texel) in (0..).zip(&picture.texels) {
             let at = UVec2::new(index % SIZE.x, index / SIZE.x);
-            let offset = (point_behind(stage, at, -centre.z) - centre).xy();
+            let offset = (point_behind(scene, at, -centre.z) - centre).xy();
             let local = Vec2::from_angle(-TURN).rotate(offset).abs().max_element() / radius;
             // The margins allow for the border texel and for a pixel of filtering.
             let (inside, outside) = (local < 0.8, local > 1.2);
@@ -278,12 +278,12 @@ fn draws_sprite(stage: &mut TestScene, host: &mut Host, (near, far): (f32, f32),
 
 /// Stage with sharp-edged smoke that is visible wherever it is present.
 fn sharp_smoke_stage() -> TestScene {
-    let mut stage = TestScene::new(SIZE);
-    stage.material.sprite = flat_sprite();
-    (stage.settings.soft_fade.near_fade_end, stage.settings.soft_fade.fade_scale) = (0.0, 1000.0);
-    stage.settings.accumulate.scale = 1;
-    stage.debug_view = DebugView::SoftScatter;
-    stage
+    let mut scene = TestScene::new(SIZE);
+    scene.material.sprite = flat_sprite();
+    (scene.settings.soft_fade.near_fade_end, scene.settings.soft_fade.fade_scale) = (0.0, 1000.0);
+    scene.settings.accumulate.scale = 1;
+    scene.debug_view = DebugView::SoftScatter;
+    scene
 }
 
 #[test]
@@ -295,20 +295,20 @@ fn system_is_drawn_exactly_when_it_is_inside_the_view_frustum() {
         directx::orthographic(-4.0, 3.0, -2.0, 2.5, near, far),
     ];
     for clip_from_view in projections {
-        let mut stage = sharp_smoke_stage();
-        (stage.view.clip_from_view, stage.view.view_from_world) = (clip_from_view, camera());
-        let mut host = Host::sharing(gpu(), &stage).unwrap();
+        let mut scene = sharp_smoke_stage();
+        (scene.view.clip_from_view, scene.view.view_from_world) = (clip_from_view, camera());
+        let mut host = Host::with_shared_context(gpu(), &scene).unwrap();
         // Side planes: the sprite crosses each at the middle of an image edge, in front of everything in the scene.
         let pixels = SIZE.as_ivec2();
         let edges = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
         for (edge, depth) in edges.into_iter().flat_map(|edge| [0.8, 3.0].map(|depth| (edge, depth))) {
             let at = ((edge + 1) * pixels / 2).clamp(IVec2::ZERO, pixels - 1).as_uvec2();
-            let crossing = point_behind(&stage, at, depth);
+            let crossing = point_behind(&scene, at, depth);
             // Image y points down, view-space y points up.
             let outwards = edge.as_vec2() * Vec2::new(1.0, -1.0);
             let seen = (-5..=10).map(|step| {
                 let centre = crossing + (outwards * (0.1 * step as f32)).extend(0.0);
-                draws_sprite(&mut stage, &mut host, (near, far), centre, 0.5)
+                draws_sprite(&mut scene, &mut host, (near, far), centre, 0.5)
             });
             let seen: Vec<bool> = seen.collect();
             assert!(seen[0] && !seen[seen.len() - 1], "{edge}");
@@ -316,8 +316,8 @@ fn system_is_drawn_exactly_when_it_is_inside_the_view_frustum() {
         // Near and far planes, to the right of the wall and the post.
         for (plane, depths) in [(near, [0.47, 0.53]), (far, [8.95, 9.05])] {
             let seen = depths.map(|depth| {
-                let centre = point_behind(&stage, UVec2::new(SIZE.x * 5 / 6, SIZE.y / 2), depth);
-                draws_sprite(&mut stage, &mut host, (near, far), centre, 0.5)
+                let centre = point_behind(&scene, UVec2::new(SIZE.x * 5 / 6, SIZE.y / 2), depth);
+                draws_sprite(&mut scene, &mut host, (near, far), centre, 0.5)
             });
             assert_eq!(seen, depths.map(|depth| (near..far).contains(&depth)), "the plane at {plane} m");
         }
@@ -329,16 +329,16 @@ fn flat_bounds_that_cross_the_near_plane_show_all_of_their_smoke() {
     // A floor, a ceiling and two walls, which begin behind the camera or close in front of it.
     for side in [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y] {
         for begin in [2.0, -0.6] {
-            let mut stage = sharp_smoke_stage();
+            let mut scene = sharp_smoke_stage();
             let planes = (0.5, 20.0);
-            stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, planes.0, planes.1);
+            scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, planes.0, planes.1);
             let middle = side * 0.3;
             let half = side.abs() * 0.05 + side.perp().abs() * 3.0;
-            stage.bounds = Some(Bounds { min: (middle - half).extend(-8.0), max: (middle + half).extend(begin) });
-            let mut host = Host::sharing(gpu(), &stage).unwrap();
+            scene.bounds = Some(Bounds { min: (middle - half).extend(-8.0), max: (middle + half).extend(begin) });
+            let mut host = Host::with_shared_context(gpu(), &scene).unwrap();
             for depth in [0.75, 1.0, 1.5, 2.5] {
                 assert!(
-                    draws_sprite(&mut stage, &mut host, planes, middle.extend(-depth), 0.035),
+                    draws_sprite(&mut scene, &mut host, planes, middle.extend(-depth), 0.035),
                     "{side} at {depth} m"
                 );
             }

@@ -9,19 +9,19 @@ use haze::assets::image::Image;
 use haze::error::Error;
 use haze::frame::Particle;
 use haze::settings::Settings;
-use haze_reference::{Probe, Texels, probe};
+use haze_reference::{Probe, ProbeTextures, probe};
 
 /// Pending readback of a frame's targets.
 #[derive(Clone, Debug)]
 pub struct Capture {
-    arriving: TextureReadback,
+    readback: TextureReadback,
     /// Targets of every system; `None` for systems that are out of view or use the forward path.
-    systems: Vec<Option<Target>>,
+    systems: Vec<Option<CapturedTarget>>,
 }
 
 /// Used part of a system's textures.
 #[derive(Clone, Copy, Debug)]
-struct Target {
+struct CapturedTarget {
     size: UVec2,
     depth_limit: f32,
     has_extra_attachment: bool,
@@ -32,13 +32,13 @@ struct Target {
 
 /// Targets of a frame after readback.
 #[derive(Clone, Debug)]
-pub struct Captured {
+pub struct CapturedFrame {
     /// Depth buffer of the scene, 0..1.
     pub scene_depth: Image<f32>,
     /// Scene colour without smoke, linear HDR.
     pub behind: Image<Vec4>,
     /// Targets of the systems; `None` for systems that are out of view or use the forward path.
-    pub systems: Vec<Option<Texels>>,
+    pub systems: Vec<Option<ProbeTextures>>,
 }
 
 impl Capture {
@@ -55,36 +55,36 @@ impl Capture {
             textures.extend(views.reduced_depth.map(wgpu::TextureView::texture));
             textures.extend(views.baked_diffuse.first().map(wgpu::TextureView::texture));
         }
-        let target = |views: &TargetViews<'_>| Target {
+        let target = |views: &TargetViews<'_>| CapturedTarget {
             size: views.size,
             depth_limit: views.depth_limit,
             has_extra_attachment: views.accumulation.len() > 1,
             has_depth: views.reduced_depth.is_some(),
             faces: views.baked_diffuse.len(),
         };
-        let arriving = TextureReadback::record(device, encoder, &textures);
-        Self { arriving, systems: systems.iter().map(|views| views.as_ref().map(target)).collect() }
+        let readback = TextureReadback::record(device, encoder, &textures);
+        Self { readback, systems: systems.iter().map(|views| views.as_ref().map(target)).collect() }
     }
 
     /// True once the readback has finished or failed. Progresses only when the device is polled or work is submitted.
-    pub fn has_arrived(&self) -> bool {
-        self.arriving.has_arrived()
+    pub fn is_finished(&self) -> bool {
+        self.readback.is_finished()
     }
 
     /// Decodes the targets. Returns `None` if the readback has not finished or has failed, and on every call after the
     /// first success.
-    pub fn read(&self) -> Option<Captured> {
-        let bytes = self.arriving.take()?;
-        let mut parts = self.arriving.parts.iter();
-        let (depth, behind) = (parts.next()?, parts.next()?);
+    pub fn read(&self) -> Option<CapturedFrame> {
+        let bytes = self.readback.take()?;
+        let mut regions = self.readback.regions.iter();
+        let (depth, behind) = (regions.next()?, regions.next()?);
         let scene_depth = depth.depths(&bytes, depth.size());
         let behind = behind.colours(&bytes, 0, behind.size());
-        let mut system = |target: &Target| {
-            let mut colours = || Some(parts.next()?.colours(&bytes, 0, target.size));
+        let mut system = |target: &CapturedTarget| {
+            let mut colours = || Some(regions.next()?.colours(&bytes, 0, target.size));
             let accumulation = colours()?;
             let extra_attachment = if target.has_extra_attachment { Some(colours()?) } else { None };
             let reduced_depth = if target.has_depth {
-                let mut depth = parts.next()?.depths(&bytes, target.size);
+                let mut depth = regions.next()?.depths(&bytes, target.size);
                 depth.texels.iter_mut().for_each(|depth| *depth *= target.depth_limit);
                 Some(depth)
             } else {
@@ -92,23 +92,24 @@ impl Capture {
             };
             let mut baked = Vec::new();
             if target.faces > 0 {
-                let part = parts.next()?;
-                baked = (0..target.faces as u32).map(|face| rgb(&part.colours(&bytes, face, part.size()))).collect();
+                let region = regions.next()?;
+                baked =
+                    (0..target.faces as u32).map(|face| rgb(&region.colours(&bytes, face, region.size()))).collect();
             }
-            Some(Texels { accumulation, extra_attachment, reduced_depth, baked })
+            Some(ProbeTextures { accumulation, extra_attachment, reduced_depth, baked })
         };
         let systems = self.systems.iter().map(|target| target.as_ref().and_then(&mut system)).collect();
-        Some(Captured { scene_depth, behind, systems })
+        Some(CapturedFrame { scene_depth, behind, systems })
     }
 }
 
-fn rgb(picture: &Image<Vec4>) -> Image<Vec3> {
-    Image { size: picture.size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() }
+fn rgb(image: &Image<Vec4>) -> Image<Vec3> {
+    Image { size: image.size, texels: image.texels.iter().map(|texel| texel.xyz()).collect() }
 }
 
-impl Captured {
+impl CapturedFrame {
     /// Combines the targets with the captured shot. Evaluates the shot's particles once for all pixels.
-    pub fn of(self, shot: Shot) -> ProbeInputs {
+    pub fn with_shot(self, shot: Shot) -> ProbeInputs {
         ProbeInputs { captured: self, systems: shot.systems(), shot }
     }
 }
@@ -116,7 +117,7 @@ impl Captured {
 /// Captured targets with the shot's particles: the inputs of the pixel probe.
 #[derive(Clone, Debug)]
 pub struct ProbeInputs {
-    captured: Captured,
+    captured: CapturedFrame,
     shot: Shot,
     systems: Vec<(Vec<Particle>, Settings)>,
 }
@@ -132,7 +133,7 @@ impl ProbeInputs {
     /// # Errors
     /// As [`probe`], if the targets belong to another shot.
     pub fn probe(&self, pixels: &[UVec2]) -> Result<Vec<Probe>, Error> {
-        let Captured { scene_depth, behind, systems: texels } = &self.captured;
+        let CapturedFrame { scene_depth, behind, systems: texels } = &self.captured;
         let systems = self.shot.reference_systems(&self.systems);
         let frame = self.shot.reference_frame(scene_depth, &systems);
         Ok(probe(&frame, texels, behind, pixels)?)

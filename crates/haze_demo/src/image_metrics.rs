@@ -17,23 +17,23 @@ pub struct PsnrReport {
 }
 
 /// Minimum jump of an edge, relative to the smaller depth.
-const JUMP: f32 = 0.1;
+const MIN_EDGE_JUMP: f32 = 0.1;
 /// Distance from an edge up to which pixels count, pixels.
-const NEAR: i32 = 2;
+const EDGE_RADIUS: i32 = 2;
 
 impl PsnrReport {
     /// Compares two linear HDR images of equal size. `exposure` is the exposure factor of each; 0 for data, which is
     /// not tonemapped. `depth` is the scene's view depth, metres.
-    pub fn of(first: &Image<Vec4>, second: &Image<Vec4>, exposure: Vec2, depth: Option<&Image<f32>>) -> Self {
-        let code = |picture: &Image<Vec4>, at: IVec2, exposure| {
-            let colour = picture.load(at).xyz();
+    pub fn compare(first: &Image<Vec4>, second: &Image<Vec4>, exposure: Vec2, depth: Option<&Image<f32>>) -> Self {
+        let code = |image: &Image<Vec4>, at: IVec2, exposure| {
+            let colour = image.load(at).xyz();
             if exposure == 0.0 { colour.saturate() } else { tonemapped(colour, exposure) }
         };
         let mut errors = Image::new(first.size, (0.0, false));
         errors.for_each(|at, error| {
             let at = at.as_ivec2();
-            let apart = code(first, at, exposure.x) - code(second, at, exposure.y);
-            *error = (apart.length_squared() / 3.0, depth.is_some_and(|depth| is_near_edge(depth, at)));
+            let difference = code(first, at, exposure.x) - code(second, at, exposure.y);
+            *error = (difference.length_squared() / 3.0, depth.is_some_and(|depth| is_near_edge(depth, at)));
         });
         let psnr = |errors: &mut dyn Iterator<Item = f32>| {
             let (count, sum) = errors.fold((0_u32, 0.0), |(count, sum), error| (count + 1, sum + f64::from(error)));
@@ -47,14 +47,14 @@ impl PsnrReport {
     }
 }
 
-/// True if the depth jumps between two neighbours within [`NEAR`] pixels, horizontally or vertically.
+/// True if the depth jumps between two neighbours within [`EDGE_RADIUS`] pixels, horizontally or vertically.
 fn is_near_edge(depth: &Image<f32>, at: IVec2) -> bool {
     let inside = |at: IVec2| at.clamp(IVec2::ZERO, depth.size.as_ivec2() - 1);
     let jumps = |a: IVec2, b: IVec2| {
         let (a, b) = (depth.load(inside(a)), depth.load(inside(b)));
-        (a - b).abs() > JUMP * a.min(b)
+        (a - b).abs() > MIN_EDGE_JUMP * a.min(b)
     };
-    (-NEAR..NEAR).any(|step| {
+    (-EDGE_RADIUS..EDGE_RADIUS).any(|step| {
         let (x, y) = (at + IVec2::X * step, at + IVec2::Y * step);
         jumps(x, x + IVec2::X) || jumps(y, y + IVec2::Y)
     })
@@ -63,7 +63,7 @@ fn is_near_edge(depth: &Image<f32>, at: IVec2) -> bool {
 /// Pending readback of two images for comparison.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    arriving: TextureReadback,
+    readback: TextureReadback,
     exposure: Vec2,
 }
 
@@ -73,31 +73,31 @@ impl Comparison {
     pub fn record(
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        pictures: [&wgpu::Texture; 2],
+        images: [&wgpu::Texture; 2],
         exposure: Vec2,
         depth: Option<&wgpu::Texture>,
     ) -> Option<Self> {
-        let [first, second] = pictures;
+        let [first, second] = images;
         let depth = depth.filter(|depth| depth.size() == first.size());
-        let textures: Vec<_> = pictures.into_iter().chain(depth).collect();
-        let is_of_one_size = first.size() == second.size();
-        is_of_one_size.then(|| Self { arriving: TextureReadback::record(device, encoder, &textures), exposure })
+        let textures: Vec<_> = images.into_iter().chain(depth).collect();
+        let have_same_size = first.size() == second.size();
+        have_same_size.then(|| Self { readback: TextureReadback::record(device, encoder, &textures), exposure })
     }
 
     /// True once the readback has finished or failed.
-    pub fn has_arrived(&self) -> bool {
-        self.arriving.has_arrived()
+    pub fn is_finished(&self) -> bool {
+        self.readback.is_finished()
     }
 
     /// Compares the images. Returns `None` if the readback has not finished or has failed, and on every call after the
     /// first. Slow for large images.
     pub fn read(&self) -> Option<PsnrReport> {
-        let bytes = self.arriving.take()?;
-        let [first, second, depth @ ..] = self.arriving.parts.as_slice() else { return None };
+        let bytes = self.readback.take()?;
+        let [first, second, depth @ ..] = self.readback.regions.as_slice() else { return None };
         let size = first.size();
-        let depth = depth.first().map(|part| part.depths(&bytes, size));
-        let [first, second] = [first, second].map(|part| part.colours(&bytes, 0, size));
-        Some(PsnrReport::of(&first, &second, self.exposure, depth.as_ref()))
+        let depth = depth.first().map(|region| region.depths(&bytes, size));
+        let [first, second] = [first, second].map(|region| region.colours(&bytes, 0, size));
+        Some(PsnrReport::compare(&first, &second, self.exposure, depth.as_ref()))
     }
 }
 
@@ -111,20 +111,20 @@ mod tests {
         let size = UVec2::new(20, 10);
         let (black, mut grey) = (Image::new(size, Vec4::W), Image::new(size, Vec4::splat(0.1)));
         // Exposure 0 means data: an error of 0.1 is 20 dB.
-        fn apart(a: &Image<Vec4>, b: &Image<Vec4>, depth: Option<&Image<f32>>) -> PsnrReport {
-            PsnrReport::of(a, b, Vec2::ZERO, depth)
+        fn report(a: &Image<Vec4>, b: &Image<Vec4>, depth: Option<&Image<f32>>) -> PsnrReport {
+            PsnrReport::compare(a, b, Vec2::ZERO, depth)
         }
-        assert!((apart(&black, &grey, None).psnr - 20.0).abs() < 1e-3);
-        assert_eq!(apart(&grey, &grey, None), PsnrReport { psnr: f32::INFINITY, edge_psnr: None });
+        assert!((report(&black, &grey, None).psnr - 20.0).abs() < 1e-3);
+        assert_eq!(report(&grey, &grey, None), PsnrReport { psnr: f32::INFINITY, edge_psnr: None });
         // Errors only near the edge.
         let mut depth = Image::new(size, 5.0);
         depth.for_each(|at, depth| *depth = if at.x < 10 { 5.0 } else { 9.0 });
         grey.for_each(|at, grey| *grey = if (8..12).contains(&at.x) { Vec4::splat(0.1) } else { Vec4::W });
-        let found = apart(&black, &grey, Some(&depth));
+        let found = report(&black, &grey, Some(&depth));
         assert!((found.edge_psnr.unwrap() - 20.0).abs() < 1e-3, "{found:?}");
         assert!((found.psnr - 20.0 - 10.0 * 5.0_f32.log10()).abs() < 1e-3, "{found:?}");
         // Without an edge there is no edge PSNR.
         depth.texels.fill(5.0);
-        assert_eq!(apart(&black, &grey, Some(&depth)).edge_psnr, None);
+        assert_eq!(report(&black, &grey, Some(&depth)).edge_psnr, None);
     }
 }

@@ -8,6 +8,7 @@ pub mod headless;
 pub mod image_metrics;
 mod layout;
 mod occluders;
+mod offscreen_context;
 pub mod offscreen_renderer;
 mod ray_caster;
 mod scene;

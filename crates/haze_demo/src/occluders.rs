@@ -21,22 +21,22 @@ const CELL: f32 = 1.0;
 const ROUNDING: f32 = 1.0e-3;
 
 /// Bit mask with one bit per box.
-pub(crate) type Boxes = [u32; 4];
-const ALL: Boxes = [u32::MAX; 4];
-const _: () = assert!(MAX_BOXES <= 32 * ALL.len());
+pub(crate) type BoxMask = [u32; 4];
+const ALL_BOXES: BoxMask = [u32::MAX; 4];
+const _: () = assert!(MAX_BOXES <= 32 * ALL_BOXES.len());
 
 /// Occluder masks of each cell, for the sky and for every light.
 #[derive(Clone, Debug)]
 pub(crate) struct Occluders {
     /// Layout of the texture in scene.wgsl: column = x + z * [`CELLS`].x, row = list * [`CELLS`].y + y. List 0 is the
     /// sky.
-    pub masks: Image<Boxes>,
+    pub masks: Image<BoxMask>,
 }
 
 impl Occluders {
     pub fn new(boxes: &[SceneBox], lights: &[LightUniform]) -> Self {
         let size = UVec2::new(CELLS.x * CELLS.z, CELLS.y * (1 + lights.len() as u32));
-        let mut masks = Image::new(size, ALL);
+        let mut masks = Image::new(size, ALL_BOXES);
         masks.for_each(|at, mask| {
             let cell = UVec3::new(at.x % CELLS.x, at.y % CELLS.y, at.x / CELLS.x);
             let centre = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
@@ -48,21 +48,21 @@ impl Occluders {
             let light = (at.y / CELLS.y).checked_sub(1).and_then(|light| lights.get(light as usize));
             *mask = [0; 4];
             for (index, b) in boxes.iter().enumerate() {
-                let matters = match light {
+                let is_occluder = match light {
                     Some(light) => can_shadow(b, light, centre, half),
                     None => can_occlude_sky(b, centre, half),
                 };
-                mask[index / 32] |= u32::from(matters) << (index % 32);
+                mask[index / 32] |= u32::from(is_occluder) << (index % 32);
             }
         });
         Self { masks }
     }
 
     /// Returns the occluders of a point: list 0 for the sky, 1 for the first light, and so on.
-    pub fn at(&self, list: u32, point: Vec3) -> Boxes {
+    pub fn at(&self, list: u32, point: Vec3) -> BoxMask {
         let cell = ((point - ORIGIN) / CELL).floor();
         if cell.cmplt(Vec3::ZERO).any() || cell.cmpge(CELLS.as_vec3()).any() {
-            return ALL;
+            return ALL_BOXES;
         }
         let cell = cell.as_uvec3();
         self.masks.load(UVec2::new(cell.x + cell.z * CELLS.x, list * CELLS.y + cell.y).as_ivec2())
@@ -70,7 +70,7 @@ impl Occluders {
 }
 
 /// Iterates over the indices below `count` that are set in a mask.
-pub(crate) fn indices(mask: Boxes, count: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn indices(mask: BoxMask, count: usize) -> impl Iterator<Item = usize> {
     let words = mask.into_iter().enumerate();
     let bits = words.flat_map(|(word, mut bits)| {
         std::iter::from_fn(move || {
@@ -119,8 +119,9 @@ mod tests {
         for name in ["column", "corridor", "explosion"] {
             let preset = Preset::load(name).unwrap();
             let scene = Scene::new(&preset.environment, &preset.lights);
-            let everything = Scene { occluders: Occluders { masks: Image::new(UVec2::ONE, ALL) }, ..scene.clone() };
-            let (mut points, mut asked) = (0, 0);
+            let everything =
+                Scene { occluders: Occluders { masks: Image::new(UVec2::ONE, ALL_BOXES) }, ..scene.clone() };
+            let (mut points, mut tested) = (0, 0);
             for index in 0..4000_u32 {
                 let random = |salt| {
                     let hash = pcg3d(UVec3::new(index, salt, 3));
@@ -141,9 +142,9 @@ mod tests {
                     "{world}"
                 );
                 points += 1;
-                asked += indices(scene.occluders.at(1, world), scene.boxes.len()).count();
+                tested += indices(scene.occluders.at(1, world), scene.boxes.len()).count();
             }
-            let share = asked as f32 / (points * scene.boxes.len()) as f32;
+            let share = tested as f32 / (points * scene.boxes.len()) as f32;
             println!("{name}: {share:.2} of the boxes are asked");
             assert!(share < 0.4, "{name}: {share}");
         }

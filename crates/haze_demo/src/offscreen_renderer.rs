@@ -1,123 +1,31 @@
 //! Off-screen GPU renderer for shots. Draws the smoke every frame, and the scene only if it or the camera has changed.
 
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::{UVec2, Vec3, Vec4};
 
 use super::capture::Capture;
-use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRenderer, SceneTargets, texture, whole};
-use super::shot::{Shot, Source};
+pub use super::offscreen_context::OffscreenContext;
+use super::offscreen_context::UploadedMaterial;
+use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, SceneTargets, default_view, texture};
+use super::shot::{ParticleSource, Shot};
 use crate::headless::Headless;
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
-use haze::frame::{Frame, Light, Material, Particles, SceneDepth, System, View};
+use haze::frame::{Frame, Light, Particles, SceneDepth, System, View};
 use haze::preset::Environment;
 use haze::settings::DebugView;
-use haze::shader::Sources;
-use haze::{
-    Context, Descriptor, MemoryUse, PathChoice, PathModel, Renderer, SceneDepthKind, Timing, WarmUp,
-    read_only_depth_is_supported,
-};
-
-/// Pipelines and materials that all [`OffscreenRenderer`]s of a device share. A clone shares them too.
-#[derive(Clone, Debug)]
-pub struct OffscreenContext {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-    haze: Context,
-    scene: Arc<SceneRenderer>,
-    /// Materials that existing renderers have uploaded. Shared images are uploaded once.
-    materials: Arc<Mutex<Vec<Weak<Uploaded>>>>,
-    /// True to attach the scene's depth buffer to the smoke pass: it is not sampled there, or the device supports
-    /// read-only depth.
-    attaches_depth: bool,
-    /// True if depth can be copied to a buffer.
-    copies_depth: bool,
-}
-
-impl OffscreenContext {
-    /// Compiles the shaders of the scene and of haze.
-    pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
-        let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
-        let flags = adapter.get_downlevel_capabilities().flags;
-        Self {
-            copies_depth: flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES),
-            device: device.clone(),
-            queue: queue.clone(),
-            haze: Context::new(device, queue, None),
-            scene: Arc::new(SceneRenderer::new(device, queue, draws_linear)),
-            materials: Arc::default(),
-            attaches_depth: draws_linear || read_only_depth_is_supported(device),
-        }
-    }
-
-    /// True if [`OffscreenRenderer::capture`] is supported.
-    pub fn can_capture(&self) -> bool {
-        self.copies_depth
-    }
-
-    /// Creates timestamp queries; `None` if the device does not support them.
-    pub fn timing(&self) -> Option<Timing> {
-        Timing::new(&self.device, &self.queue)
-    }
-
-    /// Same as [`Context::measure_paths`].
-    ///
-    /// # Errors
-    /// As [`Context::measure_paths`].
-    pub fn measure_paths(
-        &self,
-        submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
-    ) -> Result<PathModel, Error> {
-        self.haze.measure_paths(&self.device, &self.queue, submit)
-    }
-
-    /// Returns a copy with another haze [`Context`] of the same device, for example one with other shaders.
-    #[must_use]
-    pub fn with_context(&self, haze: Context) -> Self {
-        // Materials belong to the context that created them.
-        Self { haze, materials: Arc::default(), ..self.clone() }
-    }
-
-    /// Returns a copy with other shaders.
-    ///
-    /// # Errors
-    /// As [`Context::with_shaders`].
-    pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
-        Ok(self.with_context(Context::with_shaders(&self.device, &self.queue, None, sources)?))
-    }
-
-    fn upload(&self, assets: &MaterialAssets) -> Result<Arc<Uploaded>, Error> {
-        let mut materials = self.materials.lock().unwrap_or_else(PoisonError::into_inner);
-        materials.retain(|uploaded| uploaded.strong_count() > 0);
-        if let Some(uploaded) = materials.iter().filter_map(Weak::upgrade).find(|one| one.assets.shares_memory(assets))
-        {
-            return Ok(uploaded);
-        }
-        let material = self.haze.create_material(&self.device, &self.queue, assets)?;
-        let uploaded = Arc::new(Uploaded { assets: assets.clone(), material });
-        materials.push(Arc::downgrade(&uploaded));
-        Ok(uploaded)
-    }
-}
-
-/// Images of a system in memory and on the GPU.
-#[derive(Debug)]
-struct Uploaded {
-    assets: MaterialAssets,
-    material: Material,
-}
+use haze::{Descriptor, MemoryUse, PathChoice, Renderer, SceneDepthKind, Timing, WarmUp};
 
 /// Off-screen renderer; see the module's documentation.
 #[derive(Debug)]
 pub struct OffscreenRenderer {
     context: OffscreenContext,
     renderer: Renderer,
-    materials: Vec<Arc<Uploaded>>,
-    set: Option<Set>,
+    materials: Vec<Arc<UploadedMaterial>>,
+    sized: Option<SizedTargets>,
 }
 
 /// GPU memory of an off-screen renderer, bytes.
@@ -140,10 +48,10 @@ impl OffscreenMemory {
 
 /// Resources that depend on the image size.
 #[derive(Debug)]
-struct Set {
+struct SizedTargets {
     targets: SceneTargets,
     /// Inputs of the scene that the targets currently show.
-    drawn: Option<SceneInputs>,
+    scene_inputs: Option<SceneInputs>,
     pictures: [Option<wgpu::Texture>; DebugView::ALL.len()],
 }
 
@@ -169,7 +77,7 @@ impl OffscreenRenderer {
             ..Descriptor::default()
         };
         let renderer = Renderer::new(&context.device, &context.queue, &descriptor)?;
-        Ok(Self { context: context.clone(), renderer, materials: Vec::new(), set: None })
+        Ok(Self { context: context.clone(), renderer, materials: Vec::new(), sized: None })
     }
 
     /// Returns haze's renderer.
@@ -195,7 +103,7 @@ impl OffscreenRenderer {
         OffscreenMemory {
             smoke: self.renderer.memory_use(),
             materials: self.materials.iter().map(|uploaded| uploaded.material.memory_use()).sum(),
-            scene: self.set.as_ref().map_or(0, Set::bytes),
+            scene: self.sized.as_ref().map_or(0, SizedTargets::bytes),
         }
     }
 
@@ -215,28 +123,33 @@ impl OffscreenRenderer {
         self.upload(&shot.materials)?;
         let OffscreenContext { device, queue, scene, attaches_depth, .. } = &self.context;
         let size = shot.size.max(UVec2::ONE);
-        let set = match &mut self.set {
-            Some(set) if set.size() == size => set,
-            set => set.insert(Set { targets: scene.targets(size), drawn: None, pictures: Default::default() }),
+        let sized = match &mut self.sized {
+            Some(sized) if sized.size() == size => sized,
+            sized => sized.insert(SizedTargets {
+                targets: scene.targets(size),
+                scene_inputs: None,
+                pictures: Default::default(),
+            }),
         };
         let view = shot.preset.camera.view(size);
-        let drawn = SceneInputs { environment: shot.preset.environment, lights: shot.preset.lights.clone(), view };
-        if set.drawn.as_ref() != Some(&drawn) {
-            scene.record(encoder, &set.targets, &shot.scene(), &view);
-            set.drawn = Some(drawn);
+        let scene_inputs =
+            SceneInputs { environment: shot.preset.environment, lights: shot.preset.lights.clone(), view };
+        if sized.scene_inputs.as_ref() != Some(&scene_inputs) {
+            scene.record(encoder, &sized.targets, &shot.scene(), &view);
+            sized.scene_inputs = Some(scene_inputs);
         }
         let sources = shot.sources();
         let systems: Vec<_> = (0..)
             .zip(sources.iter().zip(&self.materials))
             .map(|(key, ((source, settings), uploaded))| {
                 let particles = match source {
-                    Source::Particles(particles) => Particles::Slice(particles),
-                    Source::EmitterSnapshot(emission) => Particles::Emitter(emission),
+                    ParticleSource::Particles(particles) => Particles::Slice(particles),
+                    ParticleSource::EmitterSnapshot(emission) => Particles::Emitter(emission),
                 };
                 System { key, ..System::new(particles, settings, &uploaded.material) }
             })
             .collect();
-        let depth = &set.targets.depth;
+        let depth = &sized.targets.depth;
         let frame = Frame {
             lights: &shot.preset.lights,
             systems: &systems,
@@ -245,7 +158,7 @@ impl OffscreenRenderer {
             debug_views: stages,
             ..Frame::new(
                 view,
-                match &set.targets.linear {
+                match &sized.targets.linear {
                     Some(linear) => SceneDepth::Both { buffer: depth, linear },
                     None => SceneDepth::Buffer(depth),
                 },
@@ -253,19 +166,19 @@ impl OffscreenRenderer {
         };
         self.renderer.prepare(device, queue, encoder, &frame)?;
         for &stage in stages {
-            let picture = set.pictures[stage as usize]
+            let picture = sized.pictures[stage as usize]
                 .get_or_insert_with(|| texture(device, "demo picture", size, COLOUR_FORMAT));
             // Debug views other than the final image are shown on black.
             let mut load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
             if stage == DebugView::Final {
-                let colour = &set.targets.colour;
+                let colour = &sized.targets.colour;
                 encoder.copy_texture_to_texture(colour.as_image_copy(), picture.as_image_copy(), colour.size());
                 load = wgpu::LoadOp::Load;
             }
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("smoke"),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &whole(picture),
+                    view: &default_view(picture),
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
@@ -284,8 +197,8 @@ impl OffscreenRenderer {
 
     /// Forces the scene to be redrawn in the next frame. Call it if the last recorded encoder was dropped without being
     /// submitted.
-    pub fn forget(&mut self) {
-        self.set.iter_mut().for_each(|set| set.drawn = None);
+    pub fn invalidate_scene(&mut self) {
+        self.sized.iter_mut().for_each(|sized| sized.scene_inputs = None);
     }
 
     /// Compiles the pipelines that a shot needs.
@@ -309,13 +222,13 @@ impl OffscreenRenderer {
 
     /// Returns the output image of a debug view as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
     pub fn picture(&self, stage: DebugView) -> Option<&wgpu::Texture> {
-        self.set.as_ref()?.pictures[stage as usize].as_ref()
+        self.sized.as_ref()?.pictures[stage as usize].as_ref()
     }
 
     /// Records copies of the last frame's intermediate targets, after the frame in the same encoder. `None` if no frame
     /// was recorded, and on OpenGL, which cannot copy depth.
     pub fn capture(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Capture> {
-        let targets = &self.set.as_ref().filter(|_| self.context.copies_depth)?.targets;
+        let targets = &self.sized.as_ref().filter(|_| self.context.copies_depth)?.targets;
         let systems: Vec<_> = (0..).zip(&self.materials).map(|(key, _)| self.renderer.targets(key)).collect();
         let scene = [targets.depth.texture(), &targets.colour];
         Some(Capture::record(&self.context.device, encoder, scene, &systems))
@@ -323,7 +236,7 @@ impl OffscreenRenderer {
 
     /// Returns the scene's view depth, `R32Float`, metres, if the device can render to it.
     pub fn linear_depth(&self) -> Option<&wgpu::Texture> {
-        self.set.as_ref()?.targets.linear.as_ref().map(wgpu::TextureView::texture)
+        self.sized.as_ref()?.targets.linear.as_ref().map(wgpu::TextureView::texture)
     }
 
     /// Draws a shot and waits for the device. Returns the time from submission to completion.
@@ -353,8 +266,8 @@ impl OffscreenRenderer {
         self.materials.truncate(assets.len());
         for (index, assets) in assets.iter().enumerate() {
             match self.materials.get_mut(index) {
-                Some(slot) if slot.assets.shares_memory(assets) => {}
-                Some(slot) => *slot = self.context.upload(assets)?,
+                Some(uploaded) if uploaded.assets.shares_memory(assets) => {}
+                Some(uploaded) => *uploaded = self.context.upload(assets)?,
                 None => self.materials.push(self.context.upload(assets)?),
             }
         }
@@ -362,7 +275,7 @@ impl OffscreenRenderer {
     }
 }
 
-impl Set {
+impl SizedTargets {
     fn size(&self) -> UVec2 {
         UVec2::new(self.targets.colour.width(), self.targets.colour.height())
     }

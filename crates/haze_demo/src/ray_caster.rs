@@ -3,7 +3,7 @@
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::boxes::{SceneBox, Surface, box_interval};
-use super::occluders::{Boxes, indices};
+use super::occluders::{BoxMask, indices};
 use super::scene::Scene;
 use super::shading::albedo;
 use haze::assets::image::Image;
@@ -33,15 +33,15 @@ struct RayCaster<'a> {
     world_from_clip: Mat4,
     eye: Vec3,
     /// Boxes that may be visible in each tile of the image.
-    tiles: Image<Boxes>,
+    tiles: Image<BoxMask>,
 }
 
 /// Side of a tile, pixels.
-const TILE: u32 = 16;
+const TILE_SIZE: u32 = 16;
 
-fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Image<Boxes> {
-    let tiles = UVec2::new(size.x.div_ceil(TILE), size.y.div_ceil(TILE));
-    let mut seen = Image::new(tiles, [0; 4]);
+fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Image<BoxMask> {
+    let tiles = UVec2::new(size.x.div_ceil(TILE_SIZE), size.y.div_ceil(TILE_SIZE));
+    let mut masks = Image::new(tiles, [0; 4]);
     for (index, b) in boxes.iter().enumerate() {
         let corners = (0..8).map(|corner| {
             let side = |bit: u32| if corner & bit == 0 { -1.0 } else { 1.0 };
@@ -49,23 +49,23 @@ fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Ima
             let clip = *clip_from_world * world.extend(1.0);
             let ndc = clip.xy() / clip.w;
             // A corner at or behind the eye has no projection: the box may cover any pixel.
-            let is_ahead = clip.w > 1.0e-3;
-            is_ahead.then(|| Vec2::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5) * size.as_vec2())
+            let is_in_front = clip.w > 1.0e-3;
+            is_in_front.then(|| Vec2::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5) * size.as_vec2())
         });
         let corners: Option<Vec<_>> = corners.collect();
         let (min, max) = corners.map_or((Vec2::NEG_INFINITY, Vec2::INFINITY), |corners| {
             corners.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), &p| (min.min(p), max.max(p)))
         });
         // One more pixel on every side, for rounding.
-        let first = ((min - 1.0) / TILE as f32).clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
-        let last = ((max + 1.0) / TILE as f32).ceil().clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
+        let first = ((min - 1.0) / TILE_SIZE as f32).clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
+        let last = ((max + 1.0) / TILE_SIZE as f32).ceil().clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
         for y in first.y..last.y {
             for x in first.x..last.x {
-                seen.texels[(y * tiles.x + x) as usize][index / 32] |= 1 << (index % 32);
+                masks.texels[(y * tiles.x + x) as usize][index / 32] |= 1 << (index % 32);
             }
         }
     }
-    seen
+    masks
 }
 
 /// Intersection of a ray with the scene.
@@ -84,32 +84,32 @@ impl Hit<'_> {
 
 impl RayCaster<'_> {
     /// Returns the offset from the eye to a pixel's point on the near plane (0) or the far plane (1).
-    fn on_plane(&self, pixel: Vec2, ndc_depth: f32) -> Vec3 {
+    fn offset_to_plane(&self, pixel: Vec2, ndc_depth: f32) -> Vec3 {
         let uv = pixel / self.size;
         let place = self.world_from_clip * Vec4::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, ndc_depth, 1.0);
         place.xyz() / place.w - self.eye
     }
 
     fn direction(&self, pixel: Vec2) -> Vec3 {
-        self.on_plane(pixel, 1.0).normalize()
+        self.offset_to_plane(pixel, 1.0).normalize()
     }
 
     /// Returns the first hit between the near and the far plane, for a position in the image in pixels.
     fn hit(&self, pixel: Vec2) -> Option<Hit<'_>> {
         let at = pixel.as_uvec2();
-        let (near, far) = (self.on_plane(pixel, 0.0), self.on_plane(pixel, 1.0));
-        let (direction, seen) = (far.normalize(), near.length()..=far.length());
+        let (near, far) = (self.offset_to_plane(pixel, 0.0), self.offset_to_plane(pixel, 1.0));
+        let (direction, visible_range) = (far.normalize(), near.length()..=far.length());
         let mut nearest = f32::INFINITY;
         let mut hit = None;
         let boxes = &self.scene.boxes;
-        for b in indices(self.tiles.load((at / TILE).as_ivec2()), boxes.len()).map(|index| &boxes[index]) {
+        for b in indices(self.tiles.load((at / TILE_SIZE).as_ivec2()), boxes.len()).map(|index| &boxes[index]) {
             let (origin, local) = (b.to_local(self.eye - b.centre), b.to_local(direction));
             let (enter, leave) = box_interval(b, origin, local);
             if enter >= leave {
                 continue;
             }
             // If the near plane cuts a box open, its far side is visible.
-            let distance = [enter, leave].into_iter().find(|distance| seen.contains(distance));
+            let distance = [enter, leave].into_iter().find(|distance| visible_range.contains(distance));
             if let Some(distance) = distance.filter(|distance| *distance < nearest) {
                 nearest = distance;
                 hit = Some((b, origin + local * distance));
@@ -136,19 +136,19 @@ impl RayCaster<'_> {
             [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
         let directions = OFFSETS.map(|offset| self.direction(at.as_vec2() + offset));
         let hits = OFFSETS.map(|offset| self.hit(at.as_vec2() + offset));
-        let is_one = hits[1..].iter().all(|hit| match (hit, &hits[0]) {
+        let is_one_face = hits[1..].iter().all(|hit| match (hit, &hits[0]) {
             (Some(hit), Some(first)) => hit.is_on_same_face(first),
             (None, None) => true,
             _ => false,
         });
         let centre = self.direction(at.as_vec2() + 0.5);
         let pixel_angle = (self.direction(at.as_vec2() + Vec2::new(0.5, 1.5)) - centre).length();
-        let middle = is_one.then(|| self.light(&hits[0], centre, pixel_angle));
+        let shared_light = is_one_face.then(|| self.light(&hits[0], centre, pixel_angle));
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
         for (hit, direction) in hits.iter().zip(directions) {
             let reflectance =
                 hit.as_ref().map_or(Vec3::ONE, |hit| albedo(hit.surface, hit.local, hit.local_normal, hit.world));
-            let colour = reflectance * middle.unwrap_or_else(|| self.light(hit, direction, pixel_angle));
+            let colour = reflectance * shared_light.unwrap_or_else(|| self.light(hit, direction, pixel_angle));
             let weight = 1.0 / (1.0 + colour.max_element());
             sum += colour * weight;
             weights += weight;

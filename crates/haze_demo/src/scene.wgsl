@@ -1,20 +1,13 @@
-// demo scene What    Draws boxes with procedural materials: paint (reflectance and face, 2x2 samples per pixel), depth,
-// then light. Reads   scene, boxes and lights (uniforms), occluder masks; the light pass also reads paint. Writes
-// paint, depth buffer and linear view depth, scene colour (linear HDR). Blend   none. Source  Karis, "Tone mapping",
-// 2013, for the weights of the samples. Space   World space, metres, y up. src/demo/shading.rs implements the same
-// functions on the CPU.
+// demo scene
+// What    Draws boxes with procedural materials: paint (reflectance and face, 2x2 samples per pixel), depth, then light.
+//         scene_materials.wgsl is composed before this file.
+// Reads   scene, boxes and lights (uniforms), occluder masks; the light pass also reads paint.
+// Writes  paint, depth buffer and linear view depth, scene colour (linear HDR).
+// Blend   none.
+// Source  Karis, "Tone mapping", 2013, for the weights of the samples.
+// Space   world space, metres, y up. shading.rs implements the same functions on the CPU.
 
 #import "lib/lighting.wgsl"
-
-struct Box {
-    centre: vec3f,
-    // Rotation about the vertical axis.
-    cosine: f32,
-    half_size: vec3f,
-    sine: f32,
-    colour: vec3f,
-    surface: u32,
-}
 
 struct Scene {
     clip_from_world: mat4x4f,
@@ -33,7 +26,7 @@ struct Scene {
 @group(0) @binding(1) var<uniform> boxes: array<Box, 96>;
 @group(0) @binding(2) var<uniform> lights: array<Light, 128>;
 // Bit masks of the boxes that can occlude the sky (list 0) or a light (from list 1 on), per grid cell:
-// src/demo/occluders.rs.
+// occluders.rs.
 @group(0) @binding(3) var occluders: texture_2d<u32>;
 
 const OCCLUDER_CELLS = vec3i(40, 8, 40);
@@ -43,99 +36,12 @@ const SUN_DISTANCE: f32 = 60.0;
 const SUN_SPREAD: f32 = 0.02;
 const WIDEST_PIXEL: f32 = 0.1;
 
-const SURFACE_SLABS: u32 = 1u;
-const SURFACE_BRICK: u32 = 2u;
-const SURFACE_WOOD: u32 = 3u;
-const SURFACE_PLASTER: u32 = 4u;
-const SURFACE_GLOW: u32 = 5u;
-const SURFACE_EVEN: u32 = 6u;
-
 fn to_local(b: Box, v: vec3f) -> vec3f {
     return vec3f(v.x * b.cosine + v.z * b.sine, v.y, v.z * b.cosine - v.x * b.sine);
 }
 
 fn to_world(b: Box, v: vec3f) -> vec3f {
     return vec3f(v.x * b.cosine - v.z * b.sine, v.y, v.z * b.cosine + v.x * b.sine);
-}
-
-fn hash(at: vec3i) -> f32 {
-    var v = vec3u(at) * 1664525u + 1013904223u;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    v = v ^ (v >> vec3u(16u));
-    v.x += v.y * v.z;
-    return f32(v.x >> 8u) * (1.0 / 16777216.0);
-}
-
-// Returns 0..1.
-fn value_noise(p: vec3f) -> f32 {
-    let cell = floor(p);
-    let f = p - cell;
-    let w = f * f * (3.0 - 2.0 * f);
-    let i = vec3i(cell);
-    let low = mix(
-        mix(hash(i), hash(i + vec3i(1, 0, 0)), w.x),
-        mix(hash(i + vec3i(0, 1, 0)), hash(i + vec3i(1, 1, 0)), w.x),
-        w.y,
-    );
-    let high = mix(
-        mix(hash(i + vec3i(0, 0, 1)), hash(i + vec3i(1, 0, 1)), w.x),
-        mix(hash(i + vec3i(0, 1, 1)), hash(i + vec3i(1, 1, 1)), w.x),
-        w.y,
-    );
-    return mix(low, high, w.z);
-}
-
-fn stains(p: vec3f) -> f32 {
-    return value_noise(p * 0.7) * 0.5 + value_noise(p * 2.3) * 0.3 + value_noise(p * 9.1) * 0.2;
-}
-
-// Returns 0 on a joint between tiles of `size`, 1 on a tile.
-fn joints(uv: vec2f, size: vec2f, width: f32) -> f32 {
-    let from_edge = (0.5 - abs(fract(uv / size) - 0.5)) * size;
-    return smoothstep(0.0, width, min(from_edge.x, from_edge.y));
-}
-
-// Returns the reflectance at a point of a box. `p` and `n` are in the box's frame; `world` makes stains differ between
-// boxes.
-fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
-    var uv = p.xy;
-    if abs(n.x) > 0.5 { uv = p.zy; }
-    if abs(n.y) > 0.5 { uv = p.xz; }
-    let dirt = stains(world);
-    if b.surface == SURFACE_SLABS {
-        let size = vec2f(1.6, 1.6);
-        let tile = floor(uv / size);
-        let tone = 0.85 + 0.3 * hash(vec3i(vec2i(tile), 5));
-        return b.colour * tone * (0.55 + 0.7 * dirt) * mix(0.45, 1.0, joints(uv, size, 0.035));
-    }
-    if b.surface == SURFACE_BRICK {
-        let size = vec2f(0.48, 0.17);
-        let row = floor(uv.y / size.y);
-        let shifted = vec2f(uv.x + row * 0.5 * size.x, uv.y);
-        let tile = vec3i(vec3f(floor(shifted / size), n.x * 3.0 + n.z));
-        let tone = 0.7 + 0.6 * hash(tile);
-        let tint = mix(vec3f(1.0), vec3f(1.15, 0.92, 0.8), hash(tile + vec3i(7, 3, 1)));
-        let brick = b.colour * tone * tint * (0.6 + 0.6 * dirt);
-        return mix(vec3f(0.16, 0.155, 0.15) * (0.6 + 0.6 * dirt), brick, joints(shifted, size, 0.02));
-    }
-    if b.surface == SURFACE_WOOD {
-        let plank = floor(uv.y / 0.2);
-        let grain = value_noise(vec3f(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.centre.x * 3.0));
-        let tone = 0.8 + 0.4 * hash(vec3i(i32(plank), i32(b.centre.x * 10.0), i32(b.centre.z * 10.0)));
-        // A frame of boards around every face of a crate.
-        var edge = b.half_size - abs(p);
-        edge = select(edge, vec3f(10.0), abs(n) > vec3f(0.5));
-        let framed = smoothstep(0.09, 0.075, min(edge.x, min(edge.y, edge.z)));
-        let boards = tone * mix(0.5, 1.0, joints(vec2f(25.0, uv.y), vec2f(50.0, 0.2), 0.015));
-        return b.colour * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
-    }
-    if b.surface == SURFACE_PLASTER {
-        let damp = smoothstep(0.0, 1.2, world.y + dirt * 0.8 - 0.3);
-        return b.colour * (0.6 + 0.55 * dirt) * mix(0.6, 1.0, damp);
-    }
-    return b.colour * (0.8 + 0.4 * dirt);
 }
 
 // Returns the distances at which a ray, in the box's frame, enters and leaves the box. Enter > leave on a miss.
@@ -304,7 +210,7 @@ fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) ve
 @group(1) @binding(0) var paint: texture_2d<f32>;
 
 // Alpha of paint without a box.
-const NOTHING: f32 = -1.0;
+const NO_BOX: f32 = -1.0;
 
 // Returns the direction of the ray through a position in the image, pixels.
 fn ray_direction(place: vec2f) -> vec3f {
@@ -330,11 +236,11 @@ fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         paints[i] = textureLoad(paint, first + vec2i(i & 1, i >> 1u), 0);
     }
     let pixel_angle = length(ray_direction(position.xy + vec2f(0.0, 1.0)) - ray_direction(position.xy));
-    let is_one = paints[0].a == paints[1].a && paints[0].a == paints[2].a && paints[0].a == paints[3].a;
+    let is_one_face = paints[0].a == paints[1].a && paints[0].a == paints[2].a && paints[0].a == paints[3].a;
     var lit = array<vec3f, 4>();
-    for (var i = 0; i < select(4, 1, is_one); i++) {
+    for (var i = 0; i < select(4, 1, is_one_face); i++) {
         let offset = vec2f(vec2i(i & 1, i >> 1u)) * 0.5 - 0.25;
-        let direction = ray_direction(position.xy + select(offset, vec2f(0.0), is_one));
+        let direction = ray_direction(position.xy + select(offset, vec2f(0.0), is_one_face));
         let face = u32(max(paints[i].a, 0.0));
         let b = boxes[face / 6u];
         let normal = face_normal(face % 6u);
@@ -352,7 +258,7 @@ fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var weights = 0.0;
     for (var i = 0; i < 4; i++) {
         let reflectance = select(paints[i].rgb, vec3f(1.0), paints[i].a < 0.0);
-        let colour = reflectance * lit[select(i, 0, is_one)];
+        let colour = reflectance * lit[select(i, 0, is_one_face)];
         let weight = 1.0 / (1.0 + max(colour.r, max(colour.g, colour.b)));
         sum += colour * weight;
         weights += weight;

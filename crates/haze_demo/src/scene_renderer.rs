@@ -16,7 +16,8 @@ pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 
 pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::stage::Stage)s of a device.
+/// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a
+/// device.
 #[derive(Debug)]
 pub(crate) struct SceneRenderer {
     device: wgpu::Device,
@@ -57,7 +58,8 @@ impl SceneTargets {
 impl SceneRenderer {
     /// Compiles the pipelines. `draws_linear`: the adapter can render to `R32Float`.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, draws_linear: bool) -> Self {
-        let source = shader::compose(include_str!("scene.wgsl")).unwrap_or_default();
+        let source = shader::compose(concat!(include_str!("scene_materials.wgsl"), include_str!("scene.wgsl")))
+            .unwrap_or_default();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("demo scene"),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -84,42 +86,8 @@ impl SceneRenderer {
         let masks = texture(wgpu::TextureSampleType::Uint);
         let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform), entry(3, masks)]);
         let paint_layout = layout(&[entry(0, texture(wgpu::TextureSampleType::Float { filterable: false }))]);
-        type Fragment<'a> = Option<(&'a str, wgpu::TextureFormat)>;
-        let pipeline = |vertex, fragment: Fragment<'_>, groups: &[Option<&wgpu::BindGroupLayout>], depth: bool| {
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("demo scene"),
-                bind_group_layouts: groups,
-                immediate_size: 0,
-            });
-            let targets = [fragment.map(|(_, format)| format.into())];
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("demo scene"),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some(vertex),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: depth.then(|| wgpu::DepthStencilState {
-                    format: DEPTH_FORMAT,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::LessEqual),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
-                }),
-                multisample: wgpu::MultisampleState::default(),
-                fragment: fragment.map(|(entry_point, _)| wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
+        let pipeline =
+            |vertex, fragment, groups: &[_], depth| scene_pipeline(&module, device, groups, vertex, fragment, depth);
         let linear = draws_linear.then_some(("linear_fragment", LINEAR_FORMAT));
         let scene_group = [Some(&scene_layout)];
         Self {
@@ -142,7 +110,7 @@ impl SceneRenderer {
     /// Creates targets of a size in pixels.
     pub fn targets(&self, size: UVec2) -> SceneTargets {
         let texture = |label, size, format| texture(&self.device, label, size, format);
-        let target = |label, size, format| whole(&texture(label, size, format));
+        let target = |label, size, format| default_view(&texture(label, size, format));
         let paint = target("demo scene paint", size * 2, COLOUR_FORMAT);
         let buffer = |size| {
             self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -182,7 +150,7 @@ impl SceneRenderer {
         for (buffer, bytes) in targets.buffers.iter().zip(contents) {
             self.queue.write_buffer(buffer, 0, bytes);
         }
-        let occluders = whole(&self.occluder_texture(&scene.occluders));
+        let occluders = default_view(&self.occluder_texture(&scene.occluders));
         let buffer = |binding: usize| wgpu::BindGroupEntry {
             binding: binding as u32,
             resource: targets.buffers[binding].as_entire_binding(),
@@ -195,19 +163,19 @@ impl SceneRenderer {
         });
         let count = scene.boxes.len() as u32;
         {
-            let mut pass = begin(encoder, Some((&targets.paint, NOTHING)), Some(&targets.paint_depth));
+            let mut pass = begin_pass(encoder, Some((&targets.paint, NO_BOX)), Some(&targets.paint_depth));
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(&self.paint);
             pass.draw(0..36, 0..count);
         }
         {
-            let mut pass = begin(encoder, targets.linear.as_ref().zip(Some(NO_SURFACE)), Some(&targets.depth));
+            let mut pass = begin_pass(encoder, targets.linear.as_ref().zip(Some(NO_SURFACE)), Some(&targets.depth));
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(&self.depth);
             pass.draw(0..36, 0..count);
         }
         {
-            let mut pass = begin(encoder, Some((&whole(&targets.colour), wgpu::Color::BLACK)), None);
+            let mut pass = begin_pass(encoder, Some((&default_view(&targets.colour), wgpu::Color::BLACK)), None);
             pass.set_bind_group(0, &group, &[]);
             pass.set_bind_group(1, &targets.paint_group, &[]);
             pass.set_pipeline(&self.light);
@@ -235,6 +203,51 @@ impl SceneRenderer {
     }
 }
 
+/// Creates a pipeline from entry points of the scene's shader. `fragment` is an entry point with the format it writes;
+/// `depth`: tests and writes the depth buffer.
+fn scene_pipeline(
+    module: &wgpu::ShaderModule,
+    device: &wgpu::Device,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+    vertex: &str,
+    fragment: Option<(&str, wgpu::TextureFormat)>,
+    depth: bool,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("demo scene"),
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    });
+    let targets = [fragment.map(|(_, format)| format.into())];
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("demo scene"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: depth.then(|| wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::LessEqual),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: fragment.map(|(entry_point, _)| wgpu::FragmentState {
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
 /// Creates a texture that can be rendered to, sampled and copied.
 pub(crate) fn texture(device: &wgpu::Device, label: &str, size: UVec2, format: wgpu::TextureFormat) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
@@ -252,16 +265,16 @@ pub(crate) fn texture(device: &wgpu::Device, label: &str, size: UVec2, format: w
     })
 }
 
-pub(crate) fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
+pub(crate) fn default_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Clear value of paint. `NOTHING` in scene.wgsl.
-const NOTHING: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
+/// Clear value of paint. `NO_BOX` in scene.wgsl.
+const NO_BOX: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
 /// Clear value of linear depth.
 const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::Color::BLACK };
 
-fn begin<'a>(
+fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     colour: Option<(&wgpu::TextureView, wgpu::Color)>,
     depth: Option<&wgpu::TextureView>,

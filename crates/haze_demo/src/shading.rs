@@ -5,7 +5,7 @@ use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
 use super::boxes::{
     AMBIENT_REACH, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
 };
-use super::occluders::{Boxes, indices};
+use super::occluders::{BoxMask, indices};
 use super::scene::Scene;
 use haze::assets::noise::{pcg3d, unit};
 use haze::formula::lighting::sample_light;
@@ -107,7 +107,7 @@ struct ShadowRay {
 
 impl Scene {
     /// Returns the visible fraction of a light, 0 to 1. `pixel` is the minimum width of the penumbra, metres.
-    fn light_visibility(&self, boxes: Boxes, ray: &ShadowRay, pixel: f32) -> f32 {
+    fn light_visibility(&self, boxes: BoxMask, ray: &ShadowRay, pixel: f32) -> f32 {
         let &ShadowRay { origin, direction, distance, spread } = ray;
         let mut visible = 1.0_f32;
         for b in indices(boxes, self.boxes.len()).map(|index| &self.boxes[index]) {

@@ -13,10 +13,10 @@ use haze::settings::{DebugView, Settings};
 use haze_author::particle_files::{self, ParticleFrames, load_particle_files};
 
 /// An emitter with more births than this is evaluated on the GPU.
-const MANY: u32 = 1 << 14;
+const MAX_CPU_BIRTHS: u32 = 1 << 14;
 
 /// Source of a system's particles.
-pub(super) enum Source {
+pub(super) enum ParticleSource {
     Particles(Vec<Particle>),
     EmitterSnapshot(EmitterSnapshot),
 }
@@ -70,16 +70,16 @@ impl Shot {
 
     /// True if both give the same image before tonemapping; exposure is ignored. Cheap: images and particles from files
     /// are compared by address.
-    pub fn is_same(&self, other: &Self) -> bool {
+    pub fn has_same_image(&self, other: &Self) -> bool {
         let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares_memory(b);
-        let is_same_but_exposed = || {
+        let differs_only_in_exposure = || {
             let mut preset = other.preset.clone();
             preset.camera.exposure = self.preset.camera.exposure;
             preset == self.preset
         };
-        let is_exposed_alike = self.preset.camera.exposure.to_bits() == other.preset.camera.exposure.to_bits();
+        let has_same_exposure = self.preset.camera.exposure.to_bits() == other.preset.camera.exposure.to_bits();
         (self.size, self.debug_view) == (other.size, other.debug_view)
-            && (self.preset == other.preset || !is_exposed_alike && is_same_but_exposed())
+            && (self.preset == other.preset || !has_same_exposure && differs_only_in_exposure())
             && self.materials.len() == other.materials.len()
             && self.materials.iter().zip(&other.materials).all(shares)
             && ParticleFrames::share_all_memory(&self.caches, &other.caches)
@@ -105,13 +105,13 @@ impl Shot {
 
     /// Returns particles and settings of every system for the GPU renderer. Emitters with many particles are not
     /// evaluated here but on the GPU.
-    pub(super) fn sources(&self) -> Vec<(Source, Settings)> {
+    pub(super) fn sources(&self) -> Vec<(ParticleSource, Settings)> {
         self.each_system(|system, cache| match particle_files::emission(system, cache, self.preset.time) {
-            Some(emission) if emission.count() > MANY => Source::EmitterSnapshot(emission),
+            Some(emission) if emission.count() > MAX_CPU_BIRTHS => ParticleSource::EmitterSnapshot(emission),
             _ => {
                 let mut particles = Vec::new();
                 particle_files::particles(system, cache, self.preset.time, &mut particles);
-                Source::Particles(particles)
+                ParticleSource::Particles(particles)
             }
         })
     }

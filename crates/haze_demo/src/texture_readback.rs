@@ -10,19 +10,19 @@ use haze::assets::image::Image;
 /// Pending readback of several textures through one buffer.
 #[derive(Clone, Debug)]
 pub(super) struct TextureReadback {
-    pub parts: Vec<Part>,
+    pub regions: Vec<BufferRegion>,
     bytes: Arc<Mutex<Option<Vec<u8>>>>,
 }
 
 /// Location of one texture in the buffer.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct BufferRegion {
     format: wgpu::TextureFormat,
     size: wgpu::Extent3d,
     offset: u64,
 }
 
-impl Part {
+impl BufferRegion {
     /// Returns the size of a layer, texels.
     pub fn size(&self) -> UVec2 {
         UVec2::new(self.size.width, self.size.height)
@@ -50,15 +50,15 @@ impl Part {
         texel: impl Fn(&[u8]) -> T + Sync,
     ) -> Image<T> {
         let (row, step) = (self.bytes_per_row() as usize, self.texel_size() as usize);
-        let mut picture = Image::new(size, zero);
+        let mut image = Image::new(size, zero);
         let first = self.offset as usize + layer as usize * row * self.size.height as usize;
-        picture.for_each(|at, out| {
+        image.for_each(|at, out| {
             let start = first + at.y as usize * row + at.x as usize * step;
             if let Some(bytes) = bytes.get(start..start + step) {
                 *out = texel(bytes);
             }
         });
-        picture
+        image
     }
 
     /// Decodes a colour texture: four channels of 8 or 16 bits, or one of 16 or 32 bits.
@@ -70,30 +70,30 @@ impl Part {
             wgpu::TextureFormat::Rgba8Unorm => {
                 Vec4::from([0, 1, 2, 3].map(|channel| f32::from(texel[channel]) / 255.0))
             }
-            wgpu::TextureFormat::R32Float => Vec4::ZERO.with_x(single(texel)),
+            wgpu::TextureFormat::R32Float => Vec4::ZERO.with_x(read_f32(texel)),
             _ => Vec4::from([0, 1, 2, 3].map(|channel| half(texel, channel))),
         })
     }
 
     pub fn depths(&self, bytes: &[u8], size: UVec2) -> Image<f32> {
-        self.read(bytes, 0, size, 0.0, single)
+        self.read(bytes, 0, size, 0.0, read_f32)
     }
 }
 
 /// Decodes an f32.
-fn single(texel: &[u8]) -> f32 {
+fn read_f32(texel: &[u8]) -> f32 {
     f32::from_le_bytes([texel[0], texel[1], texel[2], texel[3]])
 }
 
 impl TextureReadback {
     /// Records copies of textures into a new buffer, which is mapped when the encoder's commands have run.
     pub fn record(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, textures: &[&wgpu::Texture]) -> Self {
-        let mut parts = Vec::new();
+        let mut regions = Vec::new();
         let mut offset = 0;
         for texture in textures {
-            let part = Part { format: texture.format(), size: texture.size(), offset };
-            offset += part.bytes();
-            parts.push(part);
+            let region = BufferRegion { format: texture.format(), size: texture.size(), offset };
+            offset += region.bytes();
+            regions.push(region);
         }
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("demo copies"),
@@ -101,29 +101,29 @@ impl TextureReadback {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        for (texture, part) in textures.iter().zip(&parts) {
+        for (texture, region) in textures.iter().zip(&regions) {
             let layout = wgpu::TexelCopyBufferLayout {
-                offset: part.offset,
-                bytes_per_row: Some(part.bytes_per_row()),
-                rows_per_image: Some(part.size.height),
+                offset: region.offset,
+                bytes_per_row: Some(region.bytes_per_row()),
+                rows_per_image: Some(region.size.height),
             };
             let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-            encoder.copy_texture_to_buffer(texture.as_image_copy(), target, part.size);
+            encoder.copy_texture_to_buffer(texture.as_image_copy(), target, region.size);
         }
         let bytes = Arc::new(Mutex::new(None));
-        let (arrived, mapped) = (bytes.clone(), buffer.clone());
+        let (shared_bytes, mapped) = (bytes.clone(), buffer.clone());
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |result| {
-            // Empty on failure, so that `has_arrived` still becomes true.
+            // Empty on failure, so that `is_finished` still becomes true.
             let view = if result.is_ok() { mapped.get_mapped_range(..).ok() } else { None };
             let bytes = view.map(|view| view.to_vec()).unwrap_or_default();
-            *arrived.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes);
+            *shared_bytes.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes);
             mapped.unmap();
         });
-        Self { parts, bytes }
+        Self { regions, bytes }
     }
 
     /// True once the readback has finished or failed. Progresses only when the device is polled or work is submitted.
-    pub fn has_arrived(&self) -> bool {
+    pub fn is_finished(&self) -> bool {
         self.bytes.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
@@ -131,7 +131,7 @@ impl TextureReadback {
     /// first success.
     pub fn take(&self) -> Option<Vec<u8>> {
         let bytes = self.bytes.lock().unwrap_or_else(PoisonError::into_inner).take()?;
-        let all = self.parts.last().map_or(0, |part| part.offset + part.bytes());
+        let all = self.regions.last().map_or(0, |region| region.offset + region.bytes());
         (bytes.len() as u64 >= all).then_some(bytes)
     }
 }

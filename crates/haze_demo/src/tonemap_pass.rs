@@ -11,15 +11,15 @@ use haze::shader;
 
 /// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colours, unchanged values for
 /// data.
-pub fn tonemap(picture: &Image<Vec4>, shot: &Shot) -> RgbImage {
+pub fn tonemap(image: &Image<Vec4>, shot: &Shot) -> RgbImage {
     let exposure = exposure(shot);
-    let mut rounded = Image::new(picture.size, [0_u8; 3]);
+    let mut rounded = Image::new(image.size, [0_u8; 3]);
     rounded.for_each(|at, out| {
-        let colour = picture.load(at.as_ivec2()).xyz();
+        let colour = image.load(at.as_ivec2()).xyz();
         *out = quantise(if exposure == 0.0 { colour } else { tonemapped(colour, exposure) }, at);
     });
     // Never the default: there is one texel per pixel.
-    RgbImage::from_raw(picture.size.x, picture.size.y, rounded.texels.into_flattened()).unwrap_or_default()
+    RgbImage::from_raw(image.size.x, image.size.y, rounded.texels.into_flattened()).unwrap_or_default()
 }
 
 /// Returns the exposure factor of a shot; 0 if its debug view shows data.
@@ -41,7 +41,7 @@ pub struct TonemapPass {
     sampler: wgpu::Sampler,
 }
 
-/// Uniforms of the pass. `Develop` in tonemap_pass.wgsl.
+/// Uniforms of the pass. `Tonemap` in tonemap_pass.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TonemapUniform {
@@ -70,7 +70,7 @@ impl TonemapPass {
         // Cannot fail: the source is embedded, and tests compose it.
         let source = shader::compose(include_str!("tonemap_pass.wgsl")).unwrap_or_default();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("develop"),
+            label: Some("tonemap"),
             source: wgpu::ShaderSource::Wgsl(source.into()),
         });
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
@@ -91,16 +91,16 @@ impl TonemapPass {
         };
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("develop"),
+            label: Some("tonemap"),
             entries: &[entry(0, uniform), entry(1, texture), entry(2, texture), entry(3, sampler)],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("develop"),
+            label: Some("tonemap"),
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("develop"),
+            label: Some("tonemap"),
             layout: Some(&pipeline_layout),
             vertex: wgpu::VertexState {
                 module: &module,
@@ -121,7 +121,7 @@ impl TonemapPass {
             cache: None,
         });
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("develop"),
+            label: Some("tonemap"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
@@ -132,7 +132,7 @@ impl TonemapPass {
     /// Binds two images; pass a single image twice.
     pub fn bind(&self, device: &wgpu::Device, first: &wgpu::Texture, second: &wgpu::Texture) -> TonemapBindGroup {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("develop"),
+            label: Some("tonemap"),
             size: size_of::<TonemapUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
@@ -140,7 +140,7 @@ impl TonemapPass {
         let [first, second] =
             [first, second].map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("develop"),
+            label: Some("tonemap"),
             layout: &self.layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
@@ -153,14 +153,14 @@ impl TonemapPass {
     }
 
     /// Writes the uniforms for the next submission.
-    pub fn prepare(&self, queue: &wgpu::Queue, tonemap_bindings: &TonemapBindGroup, shown: &TonemapUniform) {
-        queue.write_buffer(&tonemap_bindings.buffer, 0, bytemuck::bytes_of(shown));
+    pub fn prepare(&self, queue: &wgpu::Queue, group: &TonemapBindGroup, uniform: &TonemapUniform) {
+        queue.write_buffer(&group.buffer, 0, bytemuck::bytes_of(uniform));
     }
 
     /// Draws within the current viewport and scissor rectangle.
-    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, tonemap_bindings: &TonemapBindGroup) {
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, group: &TonemapBindGroup) {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &tonemap_bindings.group, &[]);
+        pass.set_bind_group(0, &group.group, &[]);
         pass.draw(0..3, 0..1);
     }
 }

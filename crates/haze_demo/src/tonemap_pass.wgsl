@@ -1,4 +1,4 @@
-// develop
+// tonemap
 // What    Tonemaps linear HDR images: one, two side by side, or their difference.
 // Reads   two images; the same image twice to show one.
 // Writes  a target that holds sRGB code in a format without sRGB conversion.
@@ -8,7 +8,7 @@
 
 #import "lib/tonemap.wgsl"
 
-struct Develop {
+struct Tonemap {
     // Upper left corner and size in the target, pixels.
     origin: vec2f,
     size: vec2f,
@@ -20,7 +20,7 @@ struct Develop {
     difference: f32,
 }
 
-@group(0) @binding(0) var<uniform> shown: Develop;
+@group(0) @binding(0) var<uniform> tonemap: Tonemap;
 @group(0) @binding(1) var first: texture_2d<f32>;
 @group(0) @binding(2) var second: texture_2d<f32>;
 @group(0) @binding(3) var smooth_sampler: sampler;
@@ -39,12 +39,12 @@ fn code(colour: vec3f, exposure: f32) -> vec3f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let pixel = position.xy - shown.origin;
-    let uv = pixel / shown.size;
-    let a = code(textureSampleLevel(first, smooth_sampler, uv, 0.0).rgb, shown.exposure.x);
-    let b = code(textureSampleLevel(second, smooth_sampler, uv, 0.0).rgb, shown.exposure.y);
-    if shown.difference > 0.0 {
-        return vec4f(abs(a - b) * shown.difference, 1.0);
+    let pixel = position.xy - tonemap.origin;
+    let uv = pixel / tonemap.size;
+    let a = code(textureSampleLevel(first, smooth_sampler, uv, 0.0).rgb, tonemap.exposure.x);
+    let b = code(textureSampleLevel(second, smooth_sampler, uv, 0.0).rgb, tonemap.exposure.y);
+    if tonemap.difference > 0.0 {
+        return vec4f(abs(a - b) * tonemap.difference, 1.0);
     }
-    return vec4f(select(a, b, pixel.x >= shown.split) + dither(vec2u(pixel)), 1.0);
+    return vec4f(select(a, b, pixel.x >= tonemap.split) + dither(vec2u(pixel)), 1.0);
 }

@@ -2,14 +2,14 @@
 
 use glam::{IVec2, Vec2, Vec3, Vec4};
 
-use super::draw::Draw;
+use super::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::upsample::{GuidedFit, add_texel, bilinear_suffices, fitted_value, guided_weight, upsample_weights};
 use haze::settings::Upsample;
 
 /// Finished target of a system.
-pub struct Accumulated<'a> {
-    pub draw: &'a Draw<'a>,
+pub struct AccumulatedTarget<'a> {
+    pub visible: &'a VisibleSystem<'a>,
     pub baked: &'a [Image<Vec3>],
     pub reduced_depth: &'a Image<f32>,
     pub accumulation: &'a Image<Vec4>,
@@ -19,7 +19,7 @@ pub struct Accumulated<'a> {
     pub lit: Option<Image<Vec4>>,
 }
 
-impl Accumulated<'_> {
+impl AccumulatedTarget<'_> {
     /// Samples a texture of the accumulation target. `sample_target()` in accumulated.wgsl.
     pub fn sample_target(&self, target: &Image<Vec4>, pixel: Vec2) -> Vec4 {
         self.sample_texels(|at| target.load(at), pixel)
@@ -34,7 +34,7 @@ impl Accumulated<'_> {
     }
 
     fn sample_texels(&self, texel_at: impl Fn(IVec2) -> Vec4, pixel: Vec2) -> Vec4 {
-        let system = &self.draw.system;
+        let system = &self.visible.system;
         let texel = pixel / system.scale - system.target_origin;
         if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
             return Vec4::ZERO;
@@ -42,7 +42,7 @@ impl Accumulated<'_> {
         if system.scale < 1.5 {
             return texel_at(texel.as_ivec2());
         }
-        let upsample = self.draw.settings.accumulate.upsample;
+        let upsample = self.visible.settings.accumulate.upsample;
         let corner = texel - 0.5;
         let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
         let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
@@ -50,7 +50,7 @@ impl Accumulated<'_> {
         let (depths, depth) = match upsample {
             Upsample::Bilinear => (Vec4::ZERO, 0.0),
             _ => {
-                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.smoke_depth_limit);
+                let depth = self.visible.scene_view_depth(pixel.as_ivec2()).min(system.smoke_depth_limit);
                 (Vec4::from(taps.map(guide)), depth)
             }
         };

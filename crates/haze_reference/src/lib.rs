@@ -3,11 +3,11 @@
 
 mod accumulated;
 pub mod blend_unit;
-mod draw;
-mod frame;
+mod input;
 mod pass;
 mod probe;
 mod sprite;
+mod visible_system;
 
 use glam::Vec4;
 
@@ -15,32 +15,33 @@ use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::settings::DebugView;
 
-use accumulated::Accumulated;
-use draw::visible;
-pub use frame::{Frame, System};
-pub use probe::{GlowProbe, LightProbe, Probe, SystemProbe, Texels, probe};
+use accumulated::AccumulatedTarget;
+pub use input::{Frame, System};
+pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
+use visible_system::visible_systems;
 
 /// Blends the frame's smoke over `picture`, linear HDR.
 ///
 /// # Errors
 /// The first view, light or setting that is invalid; `picture` is untouched then.
 pub fn render(frame: &Frame<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldError> {
-    let draws = visible(frame, picture.size)?;
-    for (_, draw) in &draws {
-        if draw.settings.is_forward() {
+    let systems = visible_systems(frame, picture.size)?;
+    for (_, visible) in &systems {
+        if visible.settings.is_forward() {
             if frame.debug_view.shows_lit_smoke() {
-                draw.forward(picture);
+                visible.forward(picture);
             }
             continue;
         }
-        let reduced_depth = draw.depth_downsample();
-        let accumulation = draw.accumulate(&reduced_depth, frame.debug_view == DebugView::Overdraw);
-        let extra_attachment = draw.extra_attachment(&reduced_depth);
-        let baked = draw.diffuse_bake();
+        let reduced_depth = visible.depth_downsample();
+        let accumulation = visible.accumulate(&reduced_depth, frame.debug_view == DebugView::Overdraw);
+        let extra_attachment = visible.extra_attachment(&reduced_depth);
+        let baked = visible.diffuse_bake();
         let (reduced_depth, accumulation, extra_attachment) =
             (&reduced_depth, &accumulation, extra_attachment.as_ref());
-        let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, extra_attachment, lit: None };
-        if draw.lights_per_texel(frame.debug_view) {
+        let mut smoke =
+            AccumulatedTarget { visible, baked: &baked, reduced_depth, accumulation, extra_attachment, lit: None };
+        if visible.lights_per_texel(frame.debug_view) {
             smoke.lit = Some(smoke.light_target());
         }
         if frame.debug_view != DebugView::SpecularScatter {

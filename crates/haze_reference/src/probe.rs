@@ -2,10 +2,10 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use super::accumulated::Accumulated;
+use super::accumulated::AccumulatedTarget;
 use super::blend_unit::premultiplied_over;
-use super::draw::{Draw, visible};
-use super::frame::Frame;
+use super::input::Frame;
+use super::visible_system::{VisibleSystem, visible_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
@@ -13,10 +13,10 @@ use haze::formula::six_way::SixWay;
 use haze::settings::{DebugView, SoftScatterMode};
 use haze::view_setup::{ViewGeometry, light_uniforms};
 
-/// Textures that a system was accumulated into, as read back from [`TargetViews`](crate::TargetViews), cropped to the
+/// Textures that a system was accumulated into, as read back from [`TargetViews`](haze::TargetViews), cropped to the
 /// part in use.
 #[derive(Clone, Debug)]
-pub struct Texels {
+pub struct ProbeTextures {
     /// Normal and amount, as the target encodes them.
     pub accumulation: Image<Vec4>,
     /// Second target: in x the sum of the normals' weights, or the other half of six-way light.
@@ -97,55 +97,56 @@ pub struct GlowProbe {
 /// As [`render`](super::render), and for texels that do not have the system's size.
 pub fn probe(
     frame: &Frame<'_>,
-    texels: &[Option<Texels>],
+    texels: &[Option<ProbeTextures>],
     behind: &Image<Vec4>,
     pixels: &[UVec2],
 ) -> Result<Vec<Probe>, FieldError> {
-    let draws = visible(frame, behind.size)?;
+    let visible = visible_systems(frame, behind.size)?;
     let mut deferred = Vec::new();
-    for (index, draw) in draws.iter().filter(|(_, draw)| !draw.settings.is_forward()) {
+    for (index, visible) in visible.iter().filter(|(_, visible)| !visible.settings.is_forward()) {
         let Some(Some(texels)) = texels.get(*index) else { continue };
         // The scene's own depth, if sprites are compared with it.
-        let own_depth = texels.reduced_depth.is_none().then(|| draw.depth_downsample());
-        deferred.push((*index, draw, texels, own_depth));
+        let own_depth = texels.reduced_depth.is_none().then(|| visible.depth_downsample());
+        deferred.push((*index, visible, texels, own_depth));
     }
     let mut systems = Vec::new();
-    for (index, draw, texels, own_depth) in &deferred {
+    for (index, visible, texels, own_depth) in &deferred {
         let Some(depth) = texels.reduced_depth.as_ref().or(own_depth.as_ref()) else { continue };
-        systems.push((*index, Smoke::new(frame, draw, texels, depth)?));
+        systems.push((*index, ProbedSystem::new(frame, visible, texels, depth)?));
     }
-    let has_forward = draws.iter().any(|(_, draw)| draw.settings.is_forward());
+    let has_forward = visible.iter().any(|(_, visible)| visible.settings.is_forward());
     let at = |&pixel: &UVec2| {
         let mut colour = behind.load(pixel.as_ivec2());
-        let systems = systems.iter().filter_map(|(index, smoke)| smoke.at(*index, pixel, &mut colour)).collect();
+        let systems =
+            systems.iter().filter_map(|(index, smoke)| smoke.probe_pixel(*index, pixel, &mut colour)).collect();
         Probe { systems, colour: (!has_forward).then_some(colour) }
     };
     Ok(pixels.iter().map(at).collect())
 }
 
 /// System with its texels.
-struct Smoke<'a> {
-    accumulated: Accumulated<'a>,
+struct ProbedSystem<'a> {
+    accumulated: AccumulatedTarget<'a>,
     /// Indices of its lights in the frame.
     lights: Vec<usize>,
 }
 
-impl<'a> Smoke<'a> {
+impl<'a> ProbedSystem<'a> {
     fn new(
         frame: &Frame<'_>,
-        draw: &'a Draw<'a>,
-        texels: &'a Texels,
+        visible: &'a VisibleSystem<'a>,
+        texels: &'a ProbeTextures,
         reduced_depth: &'a Image<f32>,
     ) -> Result<Self, FieldError> {
-        let Texels { accumulation, extra_attachment, baked, .. } = texels;
-        let size = draw.setup.rect.size;
+        let ProbeTextures { accumulation, extra_attachment, baked, .. } = texels;
+        let size = visible.setup.rect.size;
         let sizes = [Some(accumulation.size), extra_attachment.as_ref().map(|t| t.size), Some(reduced_depth.size)];
         if let Some(other) = sizes.into_iter().flatten().find(|other| *other != size) {
             let value = format!("{}x{}", other.x, other.y);
             return Err(FieldError::new("texels", value, format!("{}x{}, the size of the system", size.x, size.y)));
         }
-        let accumulated = Accumulated {
-            draw,
+        let accumulated = AccumulatedTarget {
+            visible,
             baked,
             reduced_depth,
             accumulation,
@@ -155,7 +156,7 @@ impl<'a> Smoke<'a> {
         let view = ViewGeometry::new(&haze::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {
-            light_uniforms(&view, std::slice::from_ref(light), &draw.bounds, &mut reached);
+            light_uniforms(&view, std::slice::from_ref(light), &visible.bounds, &mut reached);
             !reached.is_empty()
         });
         let lights = lights.map(|(index, _)| index).collect();
@@ -163,9 +164,9 @@ impl<'a> Smoke<'a> {
     }
 
     /// Contribution of the system, which is blended over `colour`.
-    fn at(&self, index: usize, at: UVec2, colour: &mut Vec4) -> Option<SystemProbe> {
+    fn probe_pixel(&self, index: usize, at: UVec2, colour: &mut Vec4) -> Option<SystemProbe> {
         let smoke = &self.accumulated;
-        let draw = smoke.draw;
+        let visible = smoke.visible;
         let pixel = at.as_vec2() + 0.5;
         let blended = smoke
             .covers_pixel(at.as_ivec2(), pixel)
@@ -174,15 +175,18 @@ impl<'a> Smoke<'a> {
         if let Some(blended) = blended {
             *colour = premultiplied_over(blended, *colour);
         }
-        let glows: Vec<_> =
-            draw.lights.iter().map(|light| smoke.glow(light).and_then(|g| smoke.sample_glow(&g, pixel))).collect();
+        let glows: Vec<_> = visible
+            .lights
+            .iter()
+            .map(|light| smoke.glow_quad(light).and_then(|g| smoke.sample_glow(&g, pixel)))
+            .collect();
         *colour += glows.iter().flatten().map(|(_, glow)| *glow).sum::<Vec3>().extend(0.0);
         let (amount, surface) = smoke.amount_and_surface(pixel);
         if amount <= 0.0 {
             return None;
         }
-        let position = draw.view_position(pixel, -draw.system.centre.z);
-        let covered = coverage(amount, draw.system.boost);
+        let position = visible.view_position(pixel, -visible.system.centre.z);
+        let covered = coverage(amount, visible.system.boost);
         let light = |((light, glow), &index): ((_, &Option<(Vec2, Vec3)>), &usize)| {
             let sample = sample_light(light, position);
             LightProbe {
@@ -190,24 +194,25 @@ impl<'a> Smoke<'a> {
                 cosine: surface.normal.dot(sample.direction),
                 coordinate: diffuse_coordinate(surface.normal, sample.direction),
                 attenuation: sample.attenuation,
-                diffuse: smoke.diffuse_from_light(light, &surface, covered, position) * draw.system.diffuse_intensity,
+                diffuse: smoke.diffuse_from_light(light, &surface, covered, position)
+                    * visible.system.diffuse_intensity,
                 glow: glow.map(|(coordinate, specular)| GlowProbe { coordinate, specular }),
             }
         };
-        let system = &draw.system;
-        let is_curve = draw.settings.soft_scatter.mode == SoftScatterMode::Smoothstep;
+        let system = &visible.system;
+        let is_curve = visible.settings.soft_scatter.mode == SoftScatterMode::Smoothstep;
         Some(SystemProbe {
             system: index,
             amount,
             coverage_coordinate: covered,
             coverage: smoke.coverage(amount),
             normal: surface.normal,
-            six_way: draw.settings.is_six_way().then_some(surface.six_way),
-            lights: draw.lights.iter().zip(&glows).zip(&self.lights).map(light).collect(),
+            six_way: visible.settings.is_six_way().then_some(surface.six_way),
+            lights: visible.lights.iter().zip(&glows).zip(&self.lights).map(light).collect(),
             diffuse: smoke.diffuse(&surface, amount, position),
             soft_scatter_weight: is_curve
                 .then(|| soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth)),
-            soft_scatter: draw.soft_scatter(amount),
+            soft_scatter: visible.soft_scatter(amount),
             blended: blended.unwrap_or(Vec4::ZERO),
         })
     }

@@ -2,7 +2,7 @@
 
 use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
-use super::draw::Draw;
+use super::visible_system::VisibleSystem;
 use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use haze::formula::normal::rotate_normal;
 use haze::formula::order::{optical_depth_in_front, order_weight};
@@ -49,7 +49,7 @@ pub struct SpriteFragment {
     pub amount: f32,
 }
 
-impl Draw<'_> {
+impl VisibleSystem<'_> {
     /// Calls `f(texel position, sprite, fragment, texel)` for every fragment of every sprite in a band of rows, in
     /// order. `scene` returns the scene's view depth at a texel.
     pub fn for_fragments<T>(

@@ -4,7 +4,9 @@ use glam::vec4;
 use haze::formula::diffuse_bake;
 
 use super::Formula;
-use super::inputs::{ARITHMETIC, Frame, TRANSCENDENTAL, random, test_sprite, unit_vectors, v2, v3, with_choices};
+use super::inputs::{
+    ARITHMETIC, SpriteFrameTexture, TRANSCENDENTAL, random, test_sprite, unit_vectors, v2, v3, with_choices,
+};
 
 pub fn formulas() -> Vec<Formula> {
     vec![
@@ -56,7 +58,9 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: "let v = sample_baked(test_sprite, test_sampler, vec2f(x(1), x(2)), i32(x(0))); \
                    y(0, v.x); y(1, v.y); y(2, v.z);",
             reference: |x| {
-                diffuse_bake::sample_baked(&Frame(test_sprite(), x[0] as u32), v2(&x[1..])).to_array().to_vec()
+                diffuse_bake::sample_baked(&SpriteFrameTexture(test_sprite(), x[0] as u32), v2(&x[1..]))
+                    .to_array()
+                    .to_vec()
             },
             cases: with_choices(3, &[(-1.2, 1.2); 2]),
             tolerance: 1e-5,

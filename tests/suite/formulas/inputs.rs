@@ -81,9 +81,9 @@ pub fn test_sprite() -> Sprite {
 }
 
 /// One frame of a sprite at mip level 0.
-pub struct Frame(pub Sprite, pub u32);
+pub struct SpriteFrameTexture(pub Sprite, pub u32);
 
-impl Texture2d for Frame {
+impl Texture2d for SpriteFrameTexture {
     fn dimensions(&self) -> UVec2 {
         UVec2::splat(self.0.level_size(0))
     }

@@ -6,9 +6,10 @@ use haze::image::Image;
 use haze::settings::*;
 use haze::{Context, Descriptor, Error, Frame, Renderer, SceneDepth, wgpu};
 
-use super::{SIZE, encoder, featured, field, slice};
-use crate::common::{AGREEMENT, gpu, has_independent_devices, psnr};
-use crate::host::{Host, HostKind};
+use super::{SIZE, device_with_optional_features, encoder, rejected_field, slice};
+use crate::gpu::{gpu, has_independent_devices};
+use crate::psnr::{MIN_PSNR, psnr};
+use crate::test_host::{Host, HostKind};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 #[test]
@@ -20,20 +21,20 @@ fn one_prepare_serves_every_debug_view() {
         let mut encoder = encoder(gpu());
         host.prepare(gpu(), &mut encoder, &all, slice(&all)).unwrap();
         gpu().submit(encoder).unwrap();
-        for &stage in DebugView::ALL {
-            let separate = TestScene { debug_view: stage, stages: None, ..TestScene::new(SIZE) };
+        for &scene in DebugView::ALL {
+            let separate = TestScene { debug_view: scene, stages: None, ..TestScene::new(SIZE) };
             let separate = TestScene { settings: all.settings, ..separate };
-            all.debug_view = stage;
+            all.debug_view = scene;
             let mut encoder = self::encoder(gpu());
             host.render(&mut encoder, &all);
             gpu().submit(encoder).unwrap();
-            assert!(host.picture(gpu()).unwrap() == separate.on_gpu(gpu()).picture, "{path:?} {stage:?}");
+            assert!(host.picture(gpu()).unwrap() == separate.on_gpu(gpu()).picture, "{path:?} {scene:?}");
         }
     }
     // A debug view that `prepare` was not told about draws nothing.
-    let stage =
+    let scene =
         TestScene { stages: Some(&[DebugView::Final]), debug_view: DebugView::Overdraw, ..TestScene::new(SIZE) };
-    assert!(stage.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
+    assert!(scene.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
 }
 
 #[test]
@@ -42,31 +43,31 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
     let host = HostKind::default;
     // (name, lowest PSNR against the reference, host). Rg11b10Ufloat rounds more coarsely than the other formats.
     let kinds = [
-        ("four samples", AGREEMENT, HostKind { samples: 4, ..host() }),
-        ("four samples, sRGB", AGREEMENT, HostKind { samples: 4, color_format: Format::Rgba8UnormSrgb, ..host() }),
-        ("Depth24Plus", AGREEMENT, HostKind { depth_format: Format::Depth24Plus, ..host() }),
-        ("Depth24PlusStencil8", AGREEMENT, HostKind { depth_format: Format::Depth24PlusStencil8, ..host() }),
-        ("Depth32FloatStencil8", AGREEMENT, HostKind { depth_format: Format::Depth32FloatStencil8, ..host() }),
+        ("four samples", MIN_PSNR, HostKind { samples: 4, ..host() }),
+        ("four samples, sRGB", MIN_PSNR, HostKind { samples: 4, color_format: Format::Rgba8UnormSrgb, ..host() }),
+        ("Depth24Plus", MIN_PSNR, HostKind { depth_format: Format::Depth24Plus, ..host() }),
+        ("Depth24PlusStencil8", MIN_PSNR, HostKind { depth_format: Format::Depth24PlusStencil8, ..host() }),
+        ("Depth32FloatStencil8", MIN_PSNR, HostKind { depth_format: Format::Depth32FloatStencil8, ..host() }),
         ("Rg11b10Ufloat", 50.0, HostKind { color_format: Format::Rg11b10Ufloat, ..host() }),
-        ("Rgba8UnormSrgb", AGREEMENT, HostKind { color_format: Format::Rgba8UnormSrgb, ..host() }),
-        ("Bgra8UnormSrgb", AGREEMENT, HostKind { color_format: Format::Bgra8UnormSrgb, ..host() }),
-        ("Rgba8Unorm, linear", AGREEMENT, HostKind { color_format: Format::Rgba8Unorm, ..host() }),
+        ("Rgba8UnormSrgb", MIN_PSNR, HostKind { color_format: Format::Rgba8UnormSrgb, ..host() }),
+        ("Bgra8UnormSrgb", MIN_PSNR, HostKind { color_format: Format::Bgra8UnormSrgb, ..host() }),
+        ("Rgba8Unorm, linear", MIN_PSNR, HostKind { color_format: Format::Rgba8Unorm, ..host() }),
         (
             "four samples and stencil",
-            AGREEMENT,
+            MIN_PSNR,
             HostKind { samples: 4, depth_format: Format::Depth24PlusStencil8, ..host() },
         ),
-        ("velocity", AGREEMENT, HostKind { further: vec![Format::Rg16Float, Format::R8Unorm], ..host() }),
+        ("velocity", MIN_PSNR, HostKind { additional_attachments: vec![Format::Rg16Float, Format::R8Unorm], ..host() }),
     ];
     for (name, least, kind) in kinds {
         for (path, attach_depth) in
             [(RenderPath::Raster, true), (RenderPath::Forward, true), (RenderPath::Raster, false)]
         {
-            let mut stage = TestScene::new(SIZE);
-            (stage.depth, stage.attach_depth) = (DepthKind::Both, attach_depth);
-            stage.settings.path = path;
-            stage.host = kind.clone();
-            let mut host = match Host::new(featured(), &stage) {
+            let mut scene = TestScene::new(SIZE);
+            (scene.depth, scene.attach_depth) = (DepthKind::Both, attach_depth);
+            scene.settings.path = path;
+            scene.host = kind.clone();
+            let mut host = match Host::new(device_with_optional_features(), &scene) {
                 Ok(host) => host,
                 // The error names a format that the adapter does not support.
                 Err(Error::Field(error)) => {
@@ -75,10 +76,10 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
                 }
                 Err(error) => panic!("{error}"),
             };
-            host.draw(featured(), &stage).unwrap();
-            featured().check().unwrap_or_else(|error| panic!("{name}: {error}"));
-            let picture = host.picture(featured()).unwrap();
-            let mut reference = stage.on_cpu();
+            host.draw(device_with_optional_features(), &scene).unwrap();
+            device_with_optional_features().check().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let picture = host.picture(device_with_optional_features()).unwrap();
+            let mut reference = scene.on_cpu();
             if kind.color_format != Format::Rgba16Float && kind.color_format != Format::Rg11b10Ufloat {
                 reference.texels.iter_mut().for_each(|texel| *texel = texel.min(Vec4::ONE));
             }
@@ -88,11 +89,12 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
             let psnr = psnr(&picture, &reference);
             println!("{name}, {}, depth {attach_depth}: {psnr:.1} dB", path.name());
             assert!(psnr >= least, "{name}, {}: {psnr:.1} dB", path.name());
-            for (index, format) in kind.further.iter().enumerate() {
-                let untouched = host.further(featured(), index).texels.iter().all(|texel| {
-                    // The host cleared the attachment to the backdrop.
-                    (texel.x - BACKDROP.x).abs() < 1.0 / 255.0
-                });
+            for (index, format) in kind.additional_attachments.iter().enumerate() {
+                let untouched =
+                    host.additional_attachments(device_with_optional_features(), index).texels.iter().all(|texel| {
+                        // The host cleared the attachment to the backdrop.
+                        (texel.x - BACKDROP.x).abs() < 1.0 / 255.0
+                    });
                 assert!(untouched, "the smoke was drawn to the additional attachment {format:?}");
             }
         }
@@ -105,17 +107,17 @@ fn gamma_target_receives_srgb_encoded_colour() {
     for (path, lighting_resolution) in
         [(RenderPath::Raster, Full), (RenderPath::Raster, Target), (RenderPath::Forward, Full)]
     {
-        let mut stage = TestScene::new(SIZE);
-        (stage.settings.path, stage.settings.accumulate.lighting_resolution) = (path, lighting_resolution);
-        stage.settings.specular_scatter.intensity = 0.0;
+        let mut scene = TestScene::new(SIZE);
+        (scene.settings.path, scene.settings.accumulate.lighting_resolution) = (path, lighting_resolution);
+        scene.settings.specular_scatter.intensity = 0.0;
         // Opaque smoke hides the backdrop, so the target contains only encoded light.
-        stage.settings.boost = 16.0;
-        stage.particles.iter_mut().for_each(|p| p.amount = 1.0);
-        stage.lights.iter_mut().for_each(|light| light.intensity *= 0.1);
-        let light = stage.on_cpu();
-        stage.host.color_format = wgpu::TextureFormat::Rgba8Unorm;
-        stage.host.gamma_target = true;
-        let code = stage.on_gpu(gpu()).picture;
+        scene.settings.boost = 16.0;
+        scene.particles.iter_mut().for_each(|p| p.amount = 1.0);
+        scene.lights.iter_mut().for_each(|light| light.intensity *= 0.1);
+        let light = scene.on_cpu();
+        scene.host.color_format = wgpu::TextureFormat::Rgba8Unorm;
+        scene.host.gamma_target = true;
+        let code = scene.on_gpu(gpu()).picture;
         let mut expected = light.clone();
         expected.for_each(|at, texel| {
             let light = light.load(at.as_ivec2());
@@ -129,10 +131,10 @@ fn gamma_target_receives_srgb_encoded_colour() {
             part
         };
         let right = psnr(&middle(&code), &middle(&expected));
-        assert!(right >= AGREEMENT, "{}: {right:.1} dB", path.name());
+        assert!(right >= MIN_PSNR, "{}: {right:.1} dB", path.name());
         // Mutant: linear light written without encoding.
-        stage.host.gamma_target = false;
-        let dark = psnr(&middle(&stage.on_gpu(gpu()).picture), &middle(&expected));
+        scene.host.gamma_target = false;
+        let dark = psnr(&middle(&scene.on_gpu(gpu()).picture), &middle(&expected));
         assert!(dark < 35.0, "{}: {dark:.1} dB", path.name());
     }
 }
@@ -141,7 +143,7 @@ fn gamma_target_receives_srgb_encoded_colour() {
 fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
     use wgpu::TextureFormat as Format;
     let new = |descriptor: &Descriptor<'_>| Renderer::new(&gpu().device, &gpu().queue, descriptor);
-    let refused = |descriptor: Descriptor<'_>| field(new(&descriptor));
+    let refused = |descriptor: Descriptor<'_>| rejected_field(new(&descriptor));
     let plain = Descriptor::default();
     new(&plain).unwrap();
     for color_format in
@@ -154,8 +156,11 @@ fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
     for sample_count in [0, 3, 64] {
         assert_eq!(refused(Descriptor { sample_count, ..plain }), "sample_count", "{sample_count}");
     }
-    let further = [None, Some(Format::Rgb9e5Ufloat)];
-    assert_eq!(refused(Descriptor { further_color_formats: &further, ..plain }), "further_color_formats[1]");
+    let additional_attachments = [None, Some(Format::Rgb9e5Ufloat)];
+    assert_eq!(
+        refused(Descriptor { further_color_formats: &additional_attachments, ..plain }),
+        "further_color_formats[1]"
+    );
     assert_eq!(refused(Descriptor { further_color_formats: &[None; 8], ..plain }), "further_color_formats");
     let srgb = Descriptor { color_format: Format::Rgba8UnormSrgb, gamma_target: true, ..plain };
     assert_eq!(refused(srgb), "gamma_target");
@@ -167,7 +172,7 @@ fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
 
 #[test]
 fn resources_of_another_device_are_rejected() {
-    let stage = TestScene::new(SIZE);
+    let scene = TestScene::new(SIZE);
     let here = gpu();
     if !has_independent_devices() {
         return;
@@ -175,19 +180,19 @@ fn resources_of_another_device_are_rejected() {
     let (device, queue) = pollster::block_on(here.adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap();
     let context = Context::new(&device, &queue, None);
     let of_another = Descriptor { context: Some(&context), ..Descriptor::default() };
-    assert_eq!(field(Renderer::new(&here.device, &here.queue, &of_another)), "device");
-    let mut host = Host::new(here, &stage).unwrap();
-    assert_eq!(field(host.renderer.create_material(&device, &queue, &stage.material)), "device");
-    let frame = Frame::new(stage.view, SceneDepth::Linear(&host.linear));
+    assert_eq!(rejected_field(Renderer::new(&here.device, &here.queue, &of_another)), "device");
+    let mut host = Host::new(here, &scene).unwrap();
+    assert_eq!(rejected_field(host.renderer.create_material(&device, &queue, &scene.material)), "device");
+    let frame = Frame::new(scene.view, SceneDepth::Linear(&host.linear));
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    assert_eq!(field(host.renderer.prepare(&device, &queue, &mut encoder, &frame)), "device");
+    assert_eq!(rejected_field(host.renderer.prepare(&device, &queue, &mut encoder, &frame)), "device");
 
-    let material = context.create_material(&device, &queue, &stage.material).unwrap();
+    let material = context.create_material(&device, &queue, &scene.material).unwrap();
     let own = std::mem::replace(&mut host.material, material);
-    assert_eq!(field(host.draw(here, &stage)), "systems[0].material");
+    assert_eq!(rejected_field(host.draw(here, &scene)), "systems[0].material");
     // The same for another wgpu instance; wgpu itself may confuse devices of different instances.
-    host.material = Host::new(featured(), &stage).unwrap().material;
-    assert_eq!(field(host.draw(here, &stage)), "systems[0].material");
+    host.material = Host::new(device_with_optional_features(), &scene).unwrap().material;
+    assert_eq!(rejected_field(host.draw(here, &scene)), "systems[0].material");
     host.material = own;
     let depth = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -201,19 +206,19 @@ fn resources_of_another_device_are_rejected() {
     });
     let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
     let own = std::mem::replace(&mut host.depth, depth);
-    assert_eq!(field(host.draw(here, &stage)), "scene_depth");
+    assert_eq!(rejected_field(host.draw(here, &scene)), "scene_depth");
     host.depth = own;
-    host.draw(here, &stage).unwrap();
+    host.draw(here, &scene).unwrap();
     here.check().unwrap();
 }
 
 #[test]
 fn unreadable_scene_depth_is_rejected() {
-    let mut stage = TestScene::new(SIZE);
-    stage.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
-    (stage.depth, stage.attach_depth) = (DepthKind::Buffer, false);
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    host.draw(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    scene.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
+    (scene.depth, scene.attach_depth) = (DepthKind::Buffer, false);
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     let texture = |layers, samples, usage| {
         gpu().device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -238,10 +243,10 @@ fn unreadable_scene_depth_is_rejected() {
     ];
     for (name, view) in cases {
         let own = std::mem::replace(&mut host.depth, view);
-        assert_eq!(field(host.draw(gpu(), &stage)), "scene_depth", "{name}");
+        assert_eq!(rejected_field(host.draw(gpu(), &scene)), "scene_depth", "{name}");
         // The previous frame is not drawn in its place.
         let mut encoder = encoder(gpu());
-        host.render(&mut encoder, &stage);
+        host.render(&mut encoder, &scene);
         gpu().submit(encoder).unwrap();
         assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP), "{name}");
         host.depth = own;
@@ -254,6 +259,6 @@ fn unreadable_scene_depth_is_rejected() {
         array_layer_count: Some(1),
         ..Default::default()
     });
-    host.draw(gpu(), &stage).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     gpu().check().unwrap();
 }

@@ -2,9 +2,10 @@
 
 use glam::{Mat4, vec3};
 
-use super::{SIZE, encoder, field, slice};
-use crate::common::{gpu, psnr};
-use crate::host::Host;
+use super::{SIZE, encoder, rejected_field, slice};
+use crate::gpu::gpu;
+use crate::psnr::psnr;
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 #[test]
@@ -17,7 +18,7 @@ fn two_views_in_one_submission_match_two_separate_frames() {
 
     let mut one = Host::new(gpu(), &left).unwrap();
     let context = one.renderer.context().clone();
-    let mut other = Host::on(gpu(), &right, Some(&context)).unwrap();
+    let mut other = Host::with_context(gpu(), &right, Some(&context)).unwrap();
     // Materials belong to the device, not to a view.
     other.material = one.material.clone();
     for _ in 0..2 {
@@ -30,7 +31,7 @@ fn two_views_in_one_submission_match_two_separate_frames() {
         assert!(one.picture(gpu()).unwrap() == expected[0] && other.picture(gpu()).unwrap() == expected[1]);
     }
     // Another view on the same context compiles no further pipelines.
-    let mut third = Host::on(gpu(), &left, Some(&context)).unwrap();
+    let mut third = Host::with_context(gpu(), &left, Some(&context)).unwrap();
     let compiled = context.pipeline_count();
     third.draw(gpu(), &left).unwrap();
     assert_eq!(context.pipeline_count(), compiled);
@@ -38,32 +39,32 @@ fn two_views_in_one_submission_match_two_separate_frames() {
 
 #[test]
 fn second_prepare_before_the_first_is_submitted_is_rejected() {
-    let stage = TestScene::new(SIZE);
-    let picture = stage.on_gpu(gpu()).picture;
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let scene = TestScene::new(SIZE);
+    let picture = scene.on_gpu(gpu()).picture;
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let refused = |host: &mut Host| {
         let mut encoder = encoder(gpu());
-        field(host.prepare(gpu(), &mut encoder, &stage, slice(&stage)))
+        rejected_field(host.prepare(gpu(), &mut encoder, &scene, slice(&scene)))
     };
     // Rejected both in the same encoder and in another one.
     let mut first = encoder(gpu());
-    host.prepare(gpu(), &mut first, &stage, slice(&stage)).unwrap();
-    assert_eq!(field(host.prepare(gpu(), &mut first, &stage, slice(&stage))), "prepare");
+    host.prepare(gpu(), &mut first, &scene, slice(&scene)).unwrap();
+    assert_eq!(rejected_field(host.prepare(gpu(), &mut first, &scene, slice(&scene))), "prepare");
     assert_eq!(refused(&mut host), "prepare");
     // Accepted after the first encoder is dropped.
     drop(first);
     let mut second = encoder(gpu());
-    host.prepare(gpu(), &mut second, &stage, slice(&stage)).unwrap();
+    host.prepare(gpu(), &mut second, &scene, slice(&scene)).unwrap();
     // A pass in a separate encoder must be submitted too, even if the encoder of `prepare` already was.
     let mut passes = encoder(gpu());
-    host.render(&mut passes, &stage);
+    host.render(&mut passes, &scene);
     gpu().submit(second).unwrap();
     assert_eq!(refused(&mut host), "prepare");
     // Submission is enough; the GPU need not have finished.
     gpu().queue.submit([passes.finish()]);
     let mut third = encoder(gpu());
-    host.prepare(gpu(), &mut third, &stage, slice(&stage)).unwrap();
-    host.render(&mut third, &stage);
+    host.prepare(gpu(), &mut third, &scene, slice(&scene)).unwrap();
+    host.render(&mut third, &scene);
     gpu().submit(third).unwrap();
     assert!(host.picture(gpu()).unwrap() == picture);
     gpu().check().unwrap();

@@ -5,42 +5,42 @@ use haze::formula::hash::{pcg3d, unit};
 use haze::settings::*;
 use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, WarmUp, wgpu};
 
-use super::{SIZE, featured, field};
-use crate::common::{can_test, gpu};
-use crate::host::Host;
+use super::{SIZE, device_with_optional_features, rejected_field};
+use crate::gpu::{can_test, gpu};
+use crate::test_host::Host;
 use crate::test_scene::{DepthKind, TestScene};
 
-fn warm_up<'a>(stage: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
-    let scene_depth = match stage.depth {
-        DepthKind::Buffer => SceneDepthKind::Buffer(stage.host.depth_format),
+fn warm_up<'a>(scene: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
+    let scene_depth = match scene.depth {
+        DepthKind::Buffer => SceneDepthKind::Buffer(scene.host.depth_format),
         DepthKind::Linear => SceneDepthKind::Linear,
-        DepthKind::Both => SceneDepthKind::Both(stage.host.depth_format),
+        DepthKind::Both => SceneDepthKind::Both(scene.host.depth_format),
     };
-    WarmUp { view: stage.view, scene_depth, settings, debug_views: std::slice::from_ref(&stage.debug_view) }
+    WarmUp { view: scene.view, scene_depth, settings, stages: std::slice::from_ref(&scene.debug_view) }
 }
 
 #[test]
 fn first_frame_after_a_warm_up_compiles_no_pipeline() {
     for &technique in Technique::ALL {
         for path in [RenderPath::Raster, RenderPath::Forward] {
-            let mut stage = TestScene::new(SIZE);
-            (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
-            (stage.settings.technique, stage.settings.path) = (technique, path);
-            stage.settings.diffuse.mode = DiffuseMode::Cubemap;
+            let mut scene = TestScene::new(SIZE);
+            (scene.depth, scene.attach_depth) = (DepthKind::Both, true);
+            (scene.settings.technique, scene.settings.path) = (technique, path);
+            scene.settings.diffuse.mode = DiffuseMode::Cubemap;
             // A warm-up does not know whether sprites have one frame or several, so both cases are tested.
             if path == RenderPath::Raster {
-                (stage.material.sprite, stage.material.detail, stage.material.six_way) = crate::techniques::flipbook();
+                (scene.material.sprite, scene.material.detail, scene.material.six_way) = crate::techniques::flipbook();
             }
-            stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
-            let mut host = Host::new(gpu(), &stage).unwrap();
+            scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
+            let mut host = Host::new(gpu(), &scene).unwrap();
             assert_eq!(host.renderer.context().pipeline_count(), 0);
-            host.renderer.warm_up(&warm_up(&stage, &[stage.settings])).unwrap();
+            host.renderer.warm_up(&warm_up(&scene, &[scene.settings])).unwrap();
             let warm = host.renderer.context().pipeline_count();
             assert!(warm > 0);
-            host.draw(gpu(), &stage).unwrap();
+            host.draw(gpu(), &scene).unwrap();
             // The same with the camera inside the bounds.
-            stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
-            host.draw(gpu(), &stage).unwrap();
+            scene.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
+            host.draw(gpu(), &scene).unwrap();
             assert_eq!(host.renderer.context().pipeline_count(), warm, "{} {}", technique.name(), path.name());
         }
     }
@@ -48,13 +48,13 @@ fn first_frame_after_a_warm_up_compiles_no_pipeline() {
 
 #[test]
 fn warm_up_can_run_on_another_thread() {
-    let mut stage = TestScene::new(SIZE);
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    host.draw(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     let context = host.renderer.context().clone();
-    stage.settings.technique = Technique::SphericalBillboard;
-    let (settings, attach_depth) = ([stage.settings], stage.attach_depth);
-    let expected = warm_up(&stage, &settings);
+    scene.settings.technique = Technique::SphericalBillboard;
+    let (settings, attach_depth) = ([scene.settings], scene.attach_depth);
+    let expected = warm_up(&scene, &settings);
     std::thread::scope(|scope| {
         scope.spawn(|| {
             let depth_format = attach_depth.then_some(wgpu::TextureFormat::Depth32Float);
@@ -64,16 +64,16 @@ fn warm_up_can_run_on_another_thread() {
         });
     });
     let warm = context.pipeline_count();
-    host.draw(gpu(), &stage).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     assert_eq!(context.pipeline_count(), warm);
     let unusable = WarmUp { settings: &[Settings { boost: -1.0, ..Settings::default() }], ..expected };
-    assert_eq!(field(host.renderer.warm_up(&unusable)), "settings[0].boost");
+    assert_eq!(rejected_field(host.renderer.warm_up(&unusable)), "settings[0].boost");
 }
 
 #[test]
 #[allow(unsafe_code, reason = "wgpu cannot validate cache data; this data comes from wgpu itself")]
 fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
-    let gpu = featured();
+    let gpu = device_with_optional_features();
     if !can_test("pipeline_cache", gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE)) {
         return;
     }
@@ -82,9 +82,9 @@ fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
         let cache = unsafe { gpu.device.create_pipeline_cache(&descriptor) };
         let empty = cache.get_data().map_or(0, |data| data.len());
         let context = Context::new(&gpu.device, &gpu.queue, Some(&cache));
-        let stage = TestScene::new(SIZE);
-        let mut host = Host::on(gpu, &stage, Some(&context)).unwrap();
-        host.draw(gpu, &stage).unwrap();
+        let scene = TestScene::new(SIZE);
+        let mut host = Host::with_context(gpu, &scene, Some(&context)).unwrap();
+        host.draw(gpu, &scene).unwrap();
         gpu.check().unwrap();
         (empty, cache.get_data().unwrap(), host.picture(gpu).unwrap())
     };
@@ -100,23 +100,23 @@ fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
 #[test]
 #[ignore = "a measurement, to be run by hand"]
 fn measure_cpu_time_of_prepare() {
-    for path in RenderPath::ALL.iter().filter(|&&path| path != RenderPath::Tiled || crate::common::has_tiles()) {
-        let mut stage = TestScene::new(glam::UVec2::new(1280, 720));
-        stage.settings.path = *path;
-        let prepare = |host: &mut Host, stage: &TestScene| {
+    for path in RenderPath::ALL.iter().filter(|&&path| path != RenderPath::Tiled || crate::gpu::is_tiled_available()) {
+        let mut scene = TestScene::new(glam::UVec2::new(1280, 720));
+        scene.settings.path = *path;
+        let prepare = |host: &mut Host, scene: &TestScene| {
             let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let started = std::time::Instant::now();
-            host.prepare(gpu(), &mut encoder, stage, haze::Particles::Slice(&stage.particles)).unwrap();
+            host.prepare(gpu(), &mut encoder, scene, haze::Particles::Slice(&scene.particles)).unwrap();
             let ms = started.elapsed().as_secs_f64() * 1000.0;
-            host.render(&mut encoder, stage);
+            host.render(&mut encoder, scene);
             gpu().submit(encoder).unwrap();
             ms
         };
-        let mut host = Host::new(gpu(), &stage).unwrap();
-        host.renderer.warm_up(&warm_up(&stage, &[stage.settings])).unwrap();
-        let first = prepare(&mut host, &stage);
+        let mut host = Host::new(gpu(), &scene).unwrap();
+        host.renderer.warm_up(&warm_up(&scene, &[scene.settings])).unwrap();
+        let first = prepare(&mut host, &scene);
 
-        let few = std::mem::take(&mut stage.particles);
+        let few = std::mem::take(&mut scene.particles);
         let spread = |index: usize| {
             let mut particle = few[index % few.len()];
             let random = pcg3d(glam::UVec3::new(index as u32, 0, 0));
@@ -124,8 +124,8 @@ fn measure_cpu_time_of_prepare() {
             (particle.radius, particle.amount) = (0.02, 0.01);
             particle
         };
-        stage.particles = (0..10_000).map(spread).collect();
-        let mut steady: Vec<f64> = (0..40).map(|_| prepare(&mut host, &stage)).collect();
+        scene.particles = (0..10_000).map(spread).collect();
+        let mut steady: Vec<f64> = (0..40).map(|_| prepare(&mut host, &scene)).collect();
         steady.sort_by(f64::total_cmp);
         println!(
             "{}: first {first:.2} ms; 10,000 particles: median {:.3} ms, fastest {:.3} ms",

@@ -5,28 +5,28 @@ use haze::settings::{DiffuseMode, LightingResolution};
 use haze::{Bounds, wgpu};
 
 use super::SIZE;
-use crate::common::gpu;
-use crate::creations;
-use crate::host::Host;
+use crate::gpu::gpu;
+use crate::resource_counter;
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 #[test]
 fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
-    let mut stage = TestScene::new(UVec2::new(1920, 1080));
+    let mut scene = TestScene::new(UVec2::new(1920, 1080));
     // The worst case: the bounds cover the whole screen.
-    stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
-    let drawn = stage.on_gpu(gpu());
+    scene.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
+    let drawn = scene.on_gpu(gpu());
     let whole = drawn.renderer.memory_use().targets;
     println!("{:.2} MB", whole as f64 / 1e6);
     assert!(whole <= 8_000_000, "{whole} bytes");
     assert_eq!(drawn.renderer.targets(0).unwrap().size, UVec2::new(960, 540));
     // Lighting at target resolution adds four half floats per texel.
-    stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
-    assert_eq!(stage.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 8);
-    stage.settings.accumulate.lighting_resolution = LightingResolution::Full;
+    scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
+    assert_eq!(scene.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 8);
+    scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     // Targets cover only the screen rectangle of the bounds.
-    stage.bounds = Some(Bounds { min: vec3(-0.5, -0.5, -6.5), max: vec3(0.5, 0.5, -5.5) });
-    let drawn = stage.on_gpu(gpu());
+    scene.bounds = Some(Bounds { min: vec3(-0.5, -0.5, -6.5), max: vec3(0.5, 0.5, -5.5) });
+    let drawn = scene.on_gpu(gpu());
     let size = drawn.renderer.targets(0).unwrap().size;
     assert!(size.x < 200 && size.y < 200, "{size}");
     assert!(drawn.renderer.memory_use().targets < whole / 8);
@@ -34,17 +34,17 @@ fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
 
 #[test]
 fn steady_frames_create_no_gpu_resources() {
-    let mut stage = TestScene::new(SIZE);
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    let mut host = Host::new(gpu(), &scene).unwrap();
     for (mode, lighting_resolution) in [
         (DiffuseMode::Ramp, LightingResolution::Full),
         (DiffuseMode::Cubemap, LightingResolution::Full),
         (DiffuseMode::Cubemap, LightingResolution::Target),
     ] {
-        stage.settings.diffuse.mode = mode;
-        stage.settings.accumulate.lighting_resolution = lighting_resolution;
+        scene.settings.diffuse.mode = mode;
+        scene.settings.accumulate.lighting_resolution = lighting_resolution;
         // The first frame creates resources, and the counter counts them.
-        assert!(creations::count(|| host.draw(gpu(), &stage).unwrap()) > 0);
+        assert!(resource_counter::count(|| host.draw(gpu(), &scene).unwrap()) > 0);
         let renderer_of = |host: &Host| {
             let targets = host.renderer.targets(0).unwrap();
             (targets.accumulation.to_vec(), targets.reduced_depth.cloned(), host.renderer.memory_use())
@@ -52,18 +52,18 @@ fn steady_frames_create_no_gpu_resources() {
         let before = renderer_of(&host);
         for frame in 0..10 {
             // The smoke moves and the lights flicker.
-            for particle in &mut stage.particles {
+            for particle in &mut scene.particles {
                 particle.rotation += 0.01;
             }
-            stage.lights[0].intensity = 20.0 + frame as f32;
-            let created = creations::count(|| host.draw(gpu(), &stage).unwrap());
+            scene.lights[0].intensity = 20.0 + frame as f32;
+            let created = resource_counter::count(|| host.draw(gpu(), &scene).unwrap());
             assert_eq!(created, 0, "{mode:?}, frame {frame}: a steady frame creates GPU resources");
         }
         assert_eq!(before, renderer_of(&host));
     }
     // Mutant: a resource that is dropped at once is counted too.
     let view = host.depth.texture();
-    assert_eq!(creations::count(|| drop(view.create_view(&wgpu::TextureViewDescriptor::default()))), 1);
+    assert_eq!(resource_counter::count(|| drop(view.create_view(&wgpu::TextureViewDescriptor::default()))), 1);
 }
 
 #[test]

@@ -7,21 +7,22 @@ use haze::image::Image;
 use haze::settings::DebugView;
 
 use super::SIZE;
-use crate::common::{AGREEMENT, gpu, psnr};
-use crate::host::Host;
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
+use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn psnr_limit_detects_typical_mistakes_in_a_pass() {
     type Mistake = fn(&mut TestScene);
-    let stage = || {
-        let mut stage = TestScene::new(SIZE);
-        stage.settings.specular_scatter.size = 60.0;
-        stage
+    let scene = || {
+        let mut scene = TestScene::new(SIZE);
+        scene.settings.specular_scatter.size = 60.0;
+        scene
     };
-    let picture = stage().on_gpu(gpu()).picture;
+    let picture = scene().on_gpu(gpu()).picture;
     let agreement = |change: Mistake| {
-        let mut mutant = stage();
+        let mut mutant = scene();
         change(&mut mutant);
         psnr(&picture, &mutant.on_cpu())
     };
@@ -48,7 +49,7 @@ fn psnr_limit_detects_typical_mistakes_in_a_pass() {
     for (name, change) in mutants {
         let psnr = agreement(*change);
         println!("{name}: {psnr:.1} dB");
-        assert!(psnr < AGREEMENT - 10.0, "{name} passes: {psnr:.1} dB");
+        assert!(psnr < MIN_PSNR - 10.0, "{name} passes: {psnr:.1} dB");
     }
 }
 
@@ -61,21 +62,21 @@ fn psnr_limit_detects_an_error_of_0_05_in_one_channel_of_a_small_cloud() {
         let few = off.texels.iter_mut().filter(|texel| **texel != BACKDROP);
         few.for_each(|texel| *texel -= channel * 0.05);
         let psnr = psnr(&off, &smoke);
-        assert!(psnr < AGREEMENT, "{channel}: {psnr:.1} dB");
+        assert!(psnr < MIN_PSNR, "{channel}: {psnr:.1} dB");
     }
 }
 
 #[test]
 fn psnr_limit_detects_normals_blended_front_to_back() {
     // The reference sorts; a frame that the GPU blends front to back must not match it.
-    let mut stage = TestScene::new(SIZE);
-    stage.debug_view = DebugView::Normals;
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    stage.particles.iter_mut().for_each(|particle| particle.amount = 0.9);
-    let sorted = stage.on_cpu();
-    let mut front_to_back = stage.particles.clone();
+    let mut scene = TestScene::new(SIZE);
+    scene.debug_view = DebugView::Normals;
+    scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    scene.particles.iter_mut().for_each(|particle| particle.amount = 0.9);
+    let sorted = scene.on_cpu();
+    let mut front_to_back = scene.particles.clone();
     front_to_back.sort_by(|a, b| b.position.z.total_cmp(&a.position.z));
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    host.draw_buffer(gpu(), &stage, &front_to_back).unwrap();
-    assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < AGREEMENT - 10.0);
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    host.draw_buffer(gpu(), &scene, &front_to_back).unwrap();
+    assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < MIN_PSNR - 10.0);
 }

@@ -4,19 +4,19 @@ use glam::vec3;
 use haze::settings::*;
 use haze::{Bounds, Particles, PathCosts, PathModel, PathModelSource, PathReason};
 
-use super::{stage, storage_buffer};
-use crate::common::{gpu, has_tiles};
-use crate::creations;
-use crate::host::Host;
+use super::{scene, storage_buffer};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::resource_counter;
+use crate::test_host::Host;
 
 #[test]
 fn auto_takes_the_cheaper_path_and_reports_the_reason() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = RenderPath::Auto;
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = scene(Technique::Soft);
+    scene.settings.path = RenderPath::Auto;
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let class = host.renderer.context().path_model();
     let expensive = |costs: PathCosts| PathCosts { fragment: 1.0e3, ..costs };
     // The first frame takes the cheaper path at once.
@@ -25,11 +25,11 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
         (class.raster, expensive(class.tiled), RenderPath::Raster),
     ];
     for (raster, tiled, path) in models {
-        let mut host = Host::new(gpu(), &stage).unwrap();
+        let mut host = Host::new(gpu(), &scene).unwrap();
         let model = PathModel { raster, tiled, source: PathModelSource::Host, ..class };
         host.renderer.context().set_path_model(model).unwrap();
         assert_eq!(host.renderer.path_choice(0), None);
-        host.draw(gpu(), &stage).unwrap();
+        host.draw(gpu(), &scene).unwrap();
         let choice = host.renderer.path_choice(0).unwrap();
         assert_eq!(choice.path, path);
         let PathReason::Expected { raster_ms, tiled_ms, layers: Some(layers), source } = choice.reason else {
@@ -43,20 +43,20 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
         assert_eq!(host.renderer.memory_use().tiled.total() > 0, path == RenderPath::Tiled);
     }
     // A buffer that compute shaders cannot read is drawn by raster.
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     host.renderer.context().set_path_model(PathModel { raster: expensive(class.raster), ..class }).unwrap();
-    host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
+    host.draw_buffer(gpu(), &scene, &scene.particles).unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert_eq!((choice.path, choice.reason), (RenderPath::Raster, PathReason::BufferNotReadable));
-    let bytes: Vec<u8> = bytemuck::cast_slice(&stage.particles).to_vec();
-    let (buffer, count) = (storage_buffer(&bytes), stage.particles.len() as u32);
-    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false })
+    let bytes: Vec<u8> = bytemuck::cast_slice(&scene.particles).to_vec();
+    let (buffer, count) = (storage_buffer(&bytes), scene.particles.len() as u32);
+    host.draw_particles(gpu(), &scene, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false })
         .unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert!(choice.path == RenderPath::Tiled && choice.to_string().contains("unknown, assumed 16"), "{choice}");
     // If the settings name a path, `auto` makes no choice.
-    stage.settings.path = RenderPath::Raster;
-    host.draw(gpu(), &stage).unwrap();
+    scene.settings.path = RenderPath::Raster;
+    host.draw(gpu(), &scene).unwrap();
     assert_eq!(host.renderer.path_choice(0), None);
     let model = PathModel { raster: PathCosts { entry: -1.0, ..class.raster }, ..class };
     let message = host.renderer.context().set_path_model(model).unwrap_err().to_string();
@@ -68,12 +68,12 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
 
 #[test]
 fn auto_switches_only_after_a_lasting_advantage() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = RenderPath::Auto;
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = scene(Technique::Soft);
+    scene.settings.path = RenderPath::Auto;
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let model = host.renderer.context().path_model();
     let set = |host: &Host, raster: f32, tiled: f32| {
         let costs = |fragment| PathCosts { frame: 0.0, texel: 0.0, sprite: 0.0, entry: 0.0, fragment, ..model.raster };
@@ -82,34 +82,34 @@ fn auto_switches_only_after_a_lasting_advantage() {
     };
     let path = |host: &Host| host.renderer.path_choice(0).unwrap().path;
     set(&host, 1.0, 100.0);
-    host.draw(gpu(), &stage).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     assert_eq!(path(&host), RenderPath::Raster);
     // A path that is cheaper only in every other frame is never taken.
-    let created = creations::count(|| {
+    let created = resource_counter::count(|| {
         for frame in 0..80 {
             set(&host, [1.0, 100.0][frame % 2], [100.0, 1.0][frame % 2]);
-            host.draw(gpu(), &stage).unwrap();
+            host.draw(gpu(), &scene).unwrap();
             assert_eq!(path(&host), RenderPath::Raster);
         }
     });
     assert_eq!(created, 0);
     set(&host, 100.0, 1.0);
     let frames = (0..200).take_while(|_| {
-        host.draw(gpu(), &stage).unwrap();
+        host.draw(gpu(), &scene).unwrap();
         path(&host) == RenderPath::Raster
     });
     assert!((20..60).contains(&frames.count()));
-    let created = creations::count(|| (0..5).for_each(|_| host.draw(gpu(), &stage).unwrap()));
+    let created = resource_counter::count(|| (0..5).for_each(|_| host.draw(gpu(), &scene).unwrap()));
     assert_eq!(created, 0);
 }
 
 #[test]
 fn measured_costs_of_both_paths_are_plausible() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let stage = stage(Technique::Soft);
-    let host = Host::new(gpu(), &stage).unwrap();
+    let scene = scene(Technique::Soft);
+    let host = Host::new(gpu(), &scene).unwrap();
     let context = host.renderer.context();
     let before = context.path_model();
     let model = context.measure_paths(&gpu().device, &gpu().queue, |encoder| gpu().submit(encoder)).unwrap();

@@ -5,9 +5,10 @@ use haze::emitter::{Emitter, EmitterShape};
 use haze::settings::*;
 use haze::{Particles, TiledMemory, wgpu};
 
-use super::{MIN_PSNR_TO_RASTER, stage};
-use crate::common::{gpu, has_tiles, psnr};
-use crate::host::Host;
+use super::{MIN_PSNR_TO_RASTER, scene};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::psnr;
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 /// An emitter in front of the test camera.
@@ -25,23 +26,23 @@ fn emitter() -> Emitter {
 
 #[test]
 fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     for shape in [EmitterShape::Sphere, EmitterShape::Box, EmitterShape::Disc] {
         let emitter = Emitter { shape, ..emitter() };
         for time in [0.3, 7.0, 10_000.0] {
-            let emission = emitter.snapshot(time);
-            let mut stage = stage(Technique::Soft);
-            emission.evaluate(&mut stage.particles);
+            let emission = emitter.at(time);
+            let mut scene = scene(Technique::Soft);
+            emission.evaluate(&mut scene.particles);
             // The same bounding box for both, so that both are lit on the same plane.
-            stage.bounds = Some(emission.bounds(stage.settings.sprite_extent()));
-            stage.settings.accumulate.order = BlendOrder::Sorted;
-            let mut host = Host::new(gpu(), &stage).unwrap();
-            let particles = stage.particles.clone();
+            scene.bounds = Some(emission.bounds(scene.settings.reach()));
+            scene.settings.accumulate.order = BlendOrder::Sorted;
+            let mut host = Host::new(gpu(), &scene).unwrap();
+            let particles = scene.particles.clone();
             let mut drawn = |path, particles| {
-                stage.settings.path = path;
-                host.draw_particles(gpu(), &stage, particles).unwrap();
+                scene.settings.path = path;
+                host.draw_particles(gpu(), &scene, particles).unwrap();
                 host.picture(gpu()).unwrap()
             };
             let tiled = drawn(RenderPath::Tiled, Particles::Emitter(&emission));
@@ -58,7 +59,7 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
 
 #[test]
 fn a_million_gpu_particles_fit_into_200_megabytes() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     let emitter = Emitter { rate: 100_000.0, lifetime: 8.7, lifetime_spread: 0.2, radius_end: 0.02, ..emitter() };
@@ -69,12 +70,12 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
         "{} particles",
         emission.count()
     );
-    let mut stage = stage(Technique::Soft);
-    (stage.settings.path, stage.settings.accumulate.scale) = (RenderPath::Tiled, 2);
-    stage.view = TestScene::new(UVec2::new(1920, 1080)).view;
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = scene(Technique::Soft);
+    (scene.settings.path, scene.settings.accumulate.scale) = (RenderPath::Tiled, 2);
+    scene.view = TestScene::new(UVec2::new(1920, 1080)).view;
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu(), &mut encoder, &stage, Particles::Emitter(&emission)).unwrap();
+    host.prepare(gpu(), &mut encoder, &scene, Particles::Emitter(&emission)).unwrap();
     let memory = host.renderer.memory_use();
     println!("{memory:?}");
     let TiledMemory { emitted, sorted, sprites, keys, counts, lists } = memory.tiled;

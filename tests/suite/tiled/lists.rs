@@ -5,40 +5,41 @@ use haze::formula::uniforms::TilesUniform;
 use haze::settings::*;
 use haze::{Bounds, Particle, Particles, shader, wgpu};
 
-use super::{stage, storage_buffer};
-use crate::common::{gpu, has_tiles, psnr};
-use crate::creations;
-use crate::host::Host;
+use super::{scene, storage_buffer};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::psnr;
+use crate::resource_counter;
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 #[test]
 fn bins_draw_all_sprites_while_their_lists_overflow() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     // Every sprite touches every bin. The renderer computes that for a slice, but assumes less for a buffer, so at
     // first lists overflow.
-    let mut stage = stage(Technique::Soft);
+    let mut scene = scene(Technique::Soft);
     let size = UVec2::new(960, 540);
-    (stage.view, stage.settings.accumulate.scale) = (TestScene::new(size).view, 1);
+    (scene.view, scene.settings.accumulate.scale) = (TestScene::new(size).view, 1);
     let wide = |index: u32| Particle {
         position: vec3(0.0, 0.0, -6.0 - 0.001 * index as f32),
         radius: 12.0,
         amount: 0.01,
         ..Particle::default()
     };
-    stage.particles = (0..140).rev().map(wide).collect();
-    stage.bounds = Some(Bounds { min: vec3(-12.0, -12.0, -6.2), max: vec3(12.0, 12.0, -5.9) });
-    let (buffer, count) = (storage_buffer(bytemuck::cast_slice(&stage.particles)), stage.particles.len() as u32);
+    scene.particles = (0..140).rev().map(wide).collect();
+    scene.bounds = Some(Bounds { min: vec3(-12.0, -12.0, -6.2), max: vec3(12.0, 12.0, -5.9) });
+    let (buffer, count) = (storage_buffer(bytemuck::cast_slice(&scene.particles)), scene.particles.len() as u32);
     for cooperative in [true, false] {
-        stage.host.exact_filtering = cooperative;
-        let mut host = Host::new(gpu(), &stage).unwrap();
+        scene.host.exact_filtering = cooperative;
+        let mut host = Host::new(gpu(), &scene).unwrap();
         host.renderer.context().set_cooperative_traversal(cooperative);
         let mut picture = |path| {
-            stage.settings.path = path;
+            scene.settings.path = path;
             host.draw_particles(
                 gpu(),
-                &stage,
+                &scene,
                 Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false },
             )
             .unwrap();
@@ -52,11 +53,11 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
         // The blend unit rounds each of the 140 layers.
         let apart = psnr(&first, &raster);
         assert!(apart >= 50.0, "{apart} dB against raster");
-        let mut known = Host::new(gpu(), &stage).unwrap();
+        let mut known = Host::new(gpu(), &scene).unwrap();
         known.renderer.context().set_cooperative_traversal(cooperative);
-        known.draw(gpu(), &stage).unwrap();
+        known.draw(gpu(), &scene).unwrap();
         let lists = known.renderer.memory_use().tiled.lists;
-        known.draw(gpu(), &stage).unwrap();
+        known.draw(gpu(), &scene).unwrap();
         assert_eq!(known.renderer.memory_use().tiled.lists, lists);
     }
     gpu().check().unwrap();
@@ -64,42 +65,42 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
 
 #[test]
 fn steady_frames_of_the_tiled_path_create_no_resources() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = RenderPath::Tiled;
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = scene(Technique::Soft);
+    scene.settings.path = RenderPath::Tiled;
+    let mut host = Host::new(gpu(), &scene).unwrap();
     for cooperative in [true, false] {
         host.renderer.context().set_cooperative_traversal(cooperative);
-        host.draw(gpu(), &stage).unwrap();
-        let created = creations::count(|| {
+        host.draw(gpu(), &scene).unwrap();
+        let created = resource_counter::count(|| {
             for frame in 0..5 {
                 // Fewer sprites, at other positions.
-                stage.particles.truncate(60 - frame);
-                stage.particles.iter_mut().for_each(|particle| particle.position.x += 0.001);
-                host.draw(gpu(), &stage).unwrap();
+                scene.particles.truncate(60 - frame);
+                scene.particles.iter_mut().for_each(|particle| particle.position.x += 0.001);
+                host.draw(gpu(), &scene).unwrap();
             }
         });
         assert_eq!(created, 0);
     }
     // A system that is no longer tiled releases its buffers.
     let held = host.renderer.memory_use().buffers;
-    stage.settings.path = RenderPath::Raster;
+    scene.settings.path = RenderPath::Raster;
     for _ in 0..130 {
-        host.draw(gpu(), &stage).unwrap();
+        host.draw(gpu(), &scene).unwrap();
     }
     assert!(host.renderer.memory_use().buffers < held / 4);
 }
 
 #[test]
 fn sprites_out_of_view_do_not_change_the_image() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = RenderPath::Tiled;
-    stage.bounds = Some(Bounds { min: vec3(-3.0, -2.0, -7.0), max: vec3(3.0, 2.0, -3.0) });
+    let mut scene = scene(Technique::Soft);
+    scene.settings.path = RenderPath::Tiled;
+    scene.bounds = Some(Bounds { min: vec3(-3.0, -2.0, -7.0), max: vec3(3.0, 2.0, -3.0) });
     // More than 2^15 sprites, so that several dispatches build the lists.
     let small = |index: u32| Particle {
         position: vec3(
@@ -115,11 +116,11 @@ fn sprites_out_of_view_do_not_change_the_image() {
     let behind = |particle: &Particle| Particle { position: particle.position * -1.0, ..*particle };
     let hidden: Vec<_> = shown.iter().map(behind).collect();
     let both = shown.iter().zip(&hidden).flat_map(|(shown, hidden)| [*shown, *hidden]).collect();
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut host = Host::new(gpu(), &scene).unwrap();
     host.renderer.context().set_cooperative_traversal(true);
     let [shown, both, hidden, none] = [shown, both, hidden, Vec::new()].map(|particles| {
-        stage.particles = particles;
-        host.draw(gpu(), &stage).unwrap();
+        scene.particles = particles;
+        host.draw(gpu(), &scene).unwrap();
         host.picture(gpu()).unwrap()
     });
     assert!(shown == both && hidden == none && shown != none);
@@ -127,7 +128,7 @@ fn sprites_out_of_view_do_not_change_the_image() {
 
 #[test]
 fn list_sizes_beyond_32_bits_do_not_wrap() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
     let gpu = gpu();

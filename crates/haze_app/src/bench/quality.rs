@@ -50,7 +50,7 @@ impl Reference {
     ) -> Result<(Quality, RgbImage), Error> {
         let picture = renderer.read(gpu, shot)?;
         let exposures = Vec2::new(exposure(shot), self.exposure);
-        let apart = PsnrReport::of(&picture, &self.picture, exposures, self.depth.as_ref());
+        let apart = PsnrReport::compare(&picture, &self.picture, exposures, self.depth.as_ref());
         let finite = |db: f32| db.is_finite().then_some(f64::from(db));
         let quality =
             Quality { psnr_db: finite(apart.psnr), flip: None, edge_psnr_db: apart.edge_psnr.and_then(finite) };
@@ -89,7 +89,7 @@ pub fn check_image(gpu: &Headless, context: &OffscreenContext, shot: &Shot) -> R
         return Ok(Err("its image has pixels that are NaN or infinite".into()));
     }
     let exposure = Vec2::splat(exposure(&shot));
-    let apart = PsnrReport::of(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
+    let apart = PsnrReport::compare(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
     let reason = || {
         format!("its image has {apart:.0} dB PSNR against the CPU renderer; expected at least {MIN_AGREEMENT_DB} dB")
     };

@@ -3,14 +3,14 @@
 use glam::Vec4;
 
 use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
-use crate::draw::Draw;
 use crate::sprite::SpriteFragment;
+use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::normal::accumulation_from_normal;
 use haze::settings::{AccumulationFormat, BlendOrder};
 use haze::view_setup::TexelGrid;
 
-impl Draw<'_> {
+impl VisibleSystem<'_> {
     pub fn accumulate(&self, reduced_depth: &Image<f32>, overdraw: bool) -> Image<Vec4> {
         let accumulate = &self.settings.accumulate;
         self.blend(reduced_depth, |fragment, weight, texel| {

@@ -2,12 +2,12 @@
 
 use glam::IVec2;
 
-use crate::draw::Draw;
+use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
 use haze::settings::{DepthDownsample, DepthSource};
 
-impl Draw<'_> {
+impl VisibleSystem<'_> {
     pub fn depth_downsample(&self) -> Image<f32> {
         let mut reduced = Image::new(self.setup.rect.size, 0.0);
         let mode = self.settings.accumulate.depth_downsample;

@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2, Vec3};
 use half::f16;
 
-use crate::draw::Draw;
+use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::assets::ramp::Ramp;
 use haze::formula::colour::bounded_light;
@@ -16,7 +16,7 @@ use haze::formula::six_way::{SixWay, six_way_response};
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
 
-impl Draw<'_> {
+impl VisibleSystem<'_> {
     /// Samples a ramp of one row with the filter of the settings.
     pub fn sample_ramp(&self, ramp: &Ramp, u: f32) -> Vec3 {
         sample_ramp(ramp, self.settings.ramp_filter, u)

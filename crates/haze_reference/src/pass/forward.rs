@@ -3,14 +3,14 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::blend_unit::forward_blend;
-use crate::draw::Draw;
+use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::blending::forward_fragment;
 use haze::formula::colour::bounded_light;
 use haze::formula::lighting::coverage;
 use haze::view_setup::TexelGrid;
 
-impl Draw<'_> {
+impl VisibleSystem<'_> {
     pub fn forward(&self, picture: &mut Image<Vec4>) {
         let grid = TexelGrid { origin: Vec2::ZERO, scale: 1.0, size: picture.size };
         let mode = self.settings.blend_mode;

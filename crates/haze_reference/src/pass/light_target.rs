@@ -2,13 +2,13 @@
 
 use glam::{IVec2, Vec4};
 
-use crate::accumulated::Accumulated;
+use crate::accumulated::AccumulatedTarget;
 use crate::blend_unit::quantise;
 use haze::assets::image::Image;
 use haze::formula::colour::bounded_light;
 use haze::settings::AccumulationFormat;
 
-impl Accumulated<'_> {
+impl AccumulatedTarget<'_> {
     /// Lit target: light times amount, and amount.
     pub fn light_target(&self) -> Image<Vec4> {
         let mut lit = Image::new(self.accumulation.size, Vec4::ZERO);
@@ -18,7 +18,7 @@ impl Accumulated<'_> {
 
     /// Texel of the lit target. Positions outside are clamped to the nearest texel inside.
     pub fn lit_texel(&self, at: IVec2) -> Vec4 {
-        let (draw, system) = (self.draw, &self.draw.system);
+        let (visible, system) = (self.visible, &self.visible.system);
         let at = at.clamp(IVec2::ZERO, self.accumulation.size.as_ivec2() - 1);
         let accumulated = self.accumulation.load(at);
         let amount = accumulated.w;
@@ -30,8 +30,8 @@ impl Accumulated<'_> {
             self.extra_attachment.map_or(Vec4::ZERO, |extra_attachment| extra_attachment.load(at)),
         );
         let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale;
-        let position = draw.view_position(pixel, -system.centre.z);
-        let light = bounded_light(self.diffuse(&surface, amount, position) + draw.soft_scatter(amount));
+        let position = visible.view_position(pixel, -system.centre.z);
+        let light = bounded_light(self.diffuse(&surface, amount, position) + visible.soft_scatter(amount));
         quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)
     }
 }

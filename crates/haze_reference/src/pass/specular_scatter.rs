@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::accumulated::Accumulated;
+use crate::accumulated::AccumulatedTarget;
 use haze::assets::image::Image;
 use haze::formula::colour::bounded_light;
 use haze::formula::depth::SKY_VIEW_DEPTH;
@@ -12,7 +12,7 @@ use haze::formula::uniforms::LightUniform;
 use haze::formula::view::{pixel_from_ndc, pixels_per_metre};
 
 /// Quad of a light that glows.
-pub struct Glow<'a> {
+pub struct GlowQuad<'a> {
     light: &'a LightUniform,
     /// Pixels.
     centre: Vec2,
@@ -20,9 +20,9 @@ pub struct Glow<'a> {
     colour: Vec3,
 }
 
-impl Accumulated<'_> {
+impl AccumulatedTarget<'_> {
     pub fn specular_scatter(&self, picture: &mut Image<Vec4>) {
-        for glow in self.draw.lights.iter().filter_map(|light| self.glow(light)) {
+        for glow in self.visible.lights.iter().filter_map(|light| self.glow_quad(light)) {
             picture.for_each(|at, texel| {
                 if let Some((_, specular)) = self.sample_glow(&glow, at.as_vec2() + 0.5) {
                     *texel += specular.extend(0.0);
@@ -32,15 +32,15 @@ impl Accumulated<'_> {
     }
 
     /// Quad of the light, if any of it is visible.
-    pub fn glow<'a>(&self, light: &'a LightUniform) -> Option<Glow<'a>> {
-        let draw = self.draw;
-        let (size, view) = (draw.system.specular_scatter_size, &draw.view);
+    pub fn glow_quad<'a>(&self, light: &'a LightUniform) -> Option<GlowQuad<'a>> {
+        let visible = self.visible;
+        let (size, view) = (visible.system.specular_scatter_size, &visible.view);
         let directional = light.directional > 0.5;
         let homogeneous = if directional { (-light.direction).extend(0.0) } else { light.position.extend(1.0) };
         let clip = view.clip_from_view * homogeneous;
         let depth = if directional { SKY_VIEW_DEPTH } else { -light.position.z };
-        let fade = specular_scatter_fade(depth, draw.system.smoke_near, draw.system.smoke_far);
-        let strength = light.specular_scatter * draw.system.specular_scatter_intensity * fade;
+        let fade = specular_scatter_fade(depth, visible.system.smoke_near, visible.system.smoke_far);
+        let strength = light.specular_scatter * visible.system.specular_scatter_intensity * fade;
         if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
             return None;
         }
@@ -51,14 +51,14 @@ impl Accumulated<'_> {
         let body = (light.radius * pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic)).max(1.5);
         let compared_depth = (depth - 2.0 * light.radius).min(0.99 * view.far);
         let visibility = self.light_visibility(centre, body, compared_depth);
-        (visibility > 0.0).then(|| Glow { light, centre, colour: light.colour * strength * visibility })
+        (visibility > 0.0).then(|| GlowQuad { light, centre, colour: light.colour * strength * visibility })
     }
 
     /// Lookup coordinate of the specular ramp at a pixel, and the light found there; `None` outside the quad and where
     /// there is no smoke.
-    pub fn sample_glow(&self, glow: &Glow<'_>, pixel: Vec2) -> Option<(Vec2, Vec3)> {
-        let draw = self.draw;
-        let uv = (pixel - glow.centre) / draw.system.specular_scatter_size;
+    pub fn sample_glow(&self, glow: &GlowQuad<'_>, pixel: Vec2) -> Option<(Vec2, Vec3)> {
+        let visible = self.visible;
+        let uv = (pixel - glow.centre) / visible.system.specular_scatter_size;
         let distance_squared = uv.length_squared();
         if distance_squared >= 1.0 {
             return None;
@@ -68,16 +68,17 @@ impl Accumulated<'_> {
             return None;
         }
         let coordinate = Vec2::new(distance_squared, amount);
-        let found = sample_ramp_2d(&draw.material.specular_ramp, draw.settings.ramp_filter, coordinate);
-        let to_light = glow.light.position - draw.view_position(pixel, -draw.system.centre.z);
+        let found = sample_ramp_2d(&visible.material.specular_ramp, visible.settings.ramp_filter, coordinate);
+        let to_light = glow.light.position - visible.view_position(pixel, -visible.system.centre.z);
         let window = range_window(to_light.length_squared(), glow.light.inverse_range);
         Some((coordinate, bounded_light(found * glow.colour * window)))
     }
 
     /// Share of a light's body that the scene leaves visible.
     pub fn light_visibility(&self, pixel: Vec2, radius: f32, light_depth: f32) -> f32 {
-        let visible =
-            |i: u32| self.draw.scene_view_depth((pixel + visibility_tap(i, radius)).floor().as_ivec2()) >= light_depth;
+        let visible = |i: u32| {
+            self.visible.scene_view_depth((pixel + visibility_tap(i, radius)).floor().as_ivec2()) >= light_depth
+        };
         (0..VISIBILITY_TAPS).filter(|&i| visible(i)).count() as f32 / VISIBILITY_TAPS as f32
     }
 }

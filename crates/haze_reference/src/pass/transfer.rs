@@ -2,7 +2,7 @@
 
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::accumulated::Accumulated;
+use crate::accumulated::AccumulatedTarget;
 use crate::blend_unit::premultiplied_over;
 use haze::assets::image::Image;
 use haze::formula::colour::{bounded_light, overdraw_colour};
@@ -23,26 +23,26 @@ pub struct Surface {
     pub six_way: SixWay,
 }
 
-impl Accumulated<'_> {
+impl AccumulatedTarget<'_> {
     pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
-        let (draw, normal) = (self.draw, surface.normal);
-        if draw.settings.is_six_way() {
-            return draw.diffuse_from_six_way(&surface.six_way, position) * draw.system.diffuse_intensity;
+        let (visible, normal) = (self.visible, surface.normal);
+        if visible.settings.is_six_way() {
+            return visible.diffuse_from_six_way(&surface.six_way, position) * visible.system.diffuse_intensity;
         }
-        let light = match draw.settings.diffuse.mode {
-            DiffuseMode::Ramp => draw.diffuse_from_lights(normal, coverage(amount, draw.system.boost), position),
+        let light = match visible.settings.diffuse.mode {
+            DiffuseMode::Ramp => visible.diffuse_from_lights(normal, coverage(amount, visible.system.boost), position),
             DiffuseMode::Cubemap => {
                 let cube = cube_coordinate(normal);
                 sample_baked(&self.baked[cube.face as usize], cube.position)
             }
             DiffuseMode::Motif => sample_baked(&self.baked[0], motif_position(normal)),
             DiffuseMode::PaintedMotif => {
-                let filter = draw.settings.ramp_filter;
-                sample_ramp_2d(&draw.material.motif, filter, motif_position(normal) * 0.5 + 0.5)
+                let filter = visible.settings.ramp_filter;
+                sample_ramp_2d(&visible.material.motif, filter, motif_position(normal) * 0.5 + 0.5)
             }
-            DiffuseMode::SphericalHarmonics => spherical_harmonics(&draw.system.spherical_harmonics, normal),
+            DiffuseMode::SphericalHarmonics => spherical_harmonics(&visible.system.spherical_harmonics, normal),
         };
-        light * draw.system.diffuse_intensity
+        light * visible.system.diffuse_intensity
     }
 
     pub fn transfer(&self, debug_view: DebugView, picture: &mut Image<Vec4>) {
@@ -58,30 +58,30 @@ impl Accumulated<'_> {
 
     /// True if the face of the box that the transfer draws covers the pixel and passes the depth test.
     pub fn covers_pixel(&self, at: IVec2, pixel: Vec2) -> bool {
-        let draw = self.draw;
+        let visible = self.visible;
         // The ray is parametrised by view depth: from the eye, or straight ahead.
-        let (start, end) = (draw.view_position(pixel, 0.0), draw.view_position(pixel, 1.0));
-        let origin = draw.world_from_view.transform_point3(start);
-        let direction = draw.world_from_view.transform_vector3(end - start);
-        let t0 = (draw.system.bounds_min - origin) / direction;
-        let t1 = (draw.system.bounds_max - origin) / direction;
+        let (start, end) = (visible.view_position(pixel, 0.0), visible.view_position(pixel, 1.0));
+        let origin = visible.world_from_view.transform_point3(start);
+        let direction = visible.world_from_view.transform_vector3(end - start);
+        let t0 = (visible.system.bounds_min - origin) / direction;
+        let t1 = (visible.system.bounds_max - origin) / direction;
         let enter = t0.min(t1).max_element();
         let exit = t0.max(t1).min_element();
-        if draw.setup.back_faces {
+        if visible.setup.back_faces {
             enter <= exit && exit > 0.0
         } else {
-            enter <= exit && enter <= draw.scene_view_depth(at)
+            enter <= exit && enter <= visible.scene_view_depth(at)
         }
     }
 
     pub fn transfer_fragment(&self, debug_view: DebugView, pixel: Vec2) -> Option<Vec4> {
-        let system = &self.draw.system;
+        let system = &self.visible.system;
         if debug_view == DebugView::ReducedDepth {
             let depth = self.reduced_depth.load((pixel / system.scale - system.target_origin).as_ivec2());
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
-        let is_lit = self.draw.lights_per_texel(debug_view);
+        let is_lit = self.visible.lights_per_texel(debug_view);
         let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_target(self.accumulation, pixel) };
         let amount = accumulated.w;
         match debug_view {
@@ -102,21 +102,21 @@ impl Accumulated<'_> {
         }
         let mut light = Vec3::ZERO;
         if debug_view != DebugView::SoftScatter {
-            light += self.diffuse(&surface, amount, self.draw.view_position(pixel, -system.centre.z));
+            light += self.diffuse(&surface, amount, self.visible.view_position(pixel, -system.centre.z));
         }
         if debug_view != DebugView::Diffuse {
-            light += self.draw.soft_scatter(amount);
+            light += self.visible.soft_scatter(amount);
         }
         Some(bounded_light(light).extend(1.0) * covered)
     }
 
     /// Share of the scene that the smoke hides.
     pub fn coverage(&self, amount: f32) -> f32 {
-        let draw = self.draw;
-        let linear = coverage(amount, draw.system.boost);
-        match draw.settings.coverage {
+        let visible = self.visible;
+        let linear = coverage(amount, visible.system.boost);
+        match visible.settings.coverage {
             CoverageMode::Linear => linear,
-            CoverageMode::Ramp => painted_coverage(draw.sample_ramp(&draw.material.coverage_ramp, linear)),
+            CoverageMode::Ramp => painted_coverage(visible.sample_ramp(&visible.material.coverage_ramp, linear)),
         }
     }
 
@@ -129,8 +129,8 @@ impl Accumulated<'_> {
 
     /// `surface_from_accumulation()` in lit_smoke.wgsl.
     pub fn surface(&self, accumulated: Vec4, extra_attachment: Vec4) -> Surface {
-        let accumulate = &self.draw.settings.accumulate;
-        if self.draw.settings.is_six_way() {
+        let accumulate = &self.visible.settings.accumulate;
+        if self.visible.settings.is_six_way() {
             let scale = 1.0 / extra_attachment.w.max(1.0e-6);
             let [positive, negative] = [accumulated, extra_attachment].map(|light| light.xyz().max(Vec3::ZERO) * scale);
             return Surface { normal: normal_from_six_way(positive, negative), six_way: SixWay { positive, negative } };
@@ -147,9 +147,9 @@ impl Accumulated<'_> {
 
     /// Contribution of a light if none is baked.
     pub fn diffuse_from_light(&self, light: &LightUniform, surface: &Surface, covered: f32, position: Vec3) -> Vec3 {
-        match self.draw.settings.is_six_way() {
-            true => self.draw.six_way_from_light(light, &surface.six_way, position),
-            false => self.draw.diffuse_from_light(light, surface.normal, covered, position),
+        match self.visible.settings.is_six_way() {
+            true => self.visible.six_way_from_light(light, &surface.six_way, position),
+            false => self.visible.diffuse_from_light(light, surface.normal, covered, position),
         }
     }
 }

@@ -142,5 +142,5 @@ impl ProbeJob {
 
 fn read(side: ComparedSide, shot: Shot, capture: &Capture) -> Result<CapturedImage, Error> {
     let none = || Error::Device("the texels of the image could not be read back".into());
-    Ok(CapturedImage { side, inputs: capture.read().ok_or_else(none)?.of(shot) })
+    Ok(CapturedImage { side, inputs: capture.read().ok_or_else(none)?.with_shot(shot) })
 }

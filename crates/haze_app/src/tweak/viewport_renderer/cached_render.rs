@@ -50,7 +50,7 @@ impl CachedRender {
 
     /// Returns true if this shot was drawn last.
     pub fn shows(&self, shot: &Shot) -> bool {
-        self.shot.as_ref().is_some_and(|drawn| drawn.is_same(shot))
+        self.shot.as_ref().is_some_and(|drawn| drawn.has_same_image(shot))
     }
 
     /// Draws a shot unless it was drawn last. Returns true if the textures may have been replaced.
@@ -68,7 +68,7 @@ impl CachedRender {
     /// Call if the commands that were recorded last were never submitted.
     pub fn forget(&mut self) {
         self.shot = None;
-        self.offscreen.forget();
+        self.offscreen.invalidate_scene();
     }
 
     pub fn picture(&self, view: DebugView) -> Option<&wgpu::Texture> {

@@ -42,7 +42,7 @@ impl CpuRenderJob {
     /// Returns the image of a shot, or its state. `wake` is called from the worker thread when the image is ready.
     pub fn poll_or_start(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> CpuRenderState {
         let now = Instant::now();
-        if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.is_same(shot)) {
+        if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.has_same_image(shot)) {
             self.wanted = Some((shot.clone(), now));
             (self.image, self.took) = (None, None);
             if let Some(ticket) = self.ticket.take() {

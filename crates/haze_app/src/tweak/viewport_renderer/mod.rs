@@ -165,7 +165,7 @@ impl ViewportRenderer {
 
     /// Returns texels that have arrived.
     pub fn take_capture(&self) -> Option<(ComparedSide, Shot, Capture)> {
-        self.lock().capture.take_if(|(.., capture)| capture.has_arrived())
+        self.lock().capture.take_if(|(.., capture)| capture.is_finished())
     }
 
     /// Returns true while texels are being read back.
@@ -185,7 +185,7 @@ impl ViewportRenderer {
 
     /// Returns two images that have arrived.
     pub fn take_comparison(&self) -> Option<Comparison> {
-        self.lock().comparison.take_if(|comparison| comparison.has_arrived())
+        self.lock().comparison.take_if(|comparison| comparison.is_finished())
     }
 
     /// Returns true while two images are being read back, or will be.

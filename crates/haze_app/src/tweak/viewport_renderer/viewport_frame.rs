@@ -261,7 +261,7 @@ impl RendererState {
             (ComparedSide::Second, ..) => return,
         };
         let is_copied = |(of, copied): &(ComparedSide, Shot)| {
-            *of == side && copied.is_same(shot) && exposure(copied).to_bits() == exposure(shot).to_bits()
+            *of == side && copied.has_same_image(shot) && exposure(copied).to_bits() == exposure(shot).to_bits()
         };
         if !self.captured.as_ref().is_some_and(is_copied) {
             self.captured = Some((side, shot.clone()));

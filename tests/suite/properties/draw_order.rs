@@ -8,8 +8,9 @@ use haze_reference::blend_unit::{premultiplied_over, quantise};
 use proptest::prelude::*;
 
 use super::SIZE;
-use crate::common::{AGREEMENT, gpu, psnr};
-use crate::host::Host;
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
+use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 
 proptest! {
@@ -37,18 +38,18 @@ proptest! {
 
 #[test]
 fn amount_on_the_gpu_does_not_depend_on_draw_order() {
-    let mut stage = TestScene::new(SIZE);
-    stage.debug_view = DebugView::Amount;
-    stage.settings.accumulate.scale = 1;
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    scene.debug_view = DebugView::Amount;
+    scene.settings.accumulate.scale = 1;
+    scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let mut host = Host::new(gpu(), &scene).unwrap();
     // Particles in a buffer are drawn in the host's order.
     let mut draw = |particles: &[Particle]| {
-        host.draw_buffer(gpu(), &stage, particles).unwrap();
+        host.draw_buffer(gpu(), &scene, particles).unwrap();
         host.picture(gpu()).unwrap()
     };
-    let forwards = draw(&stage.particles);
-    let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
+    let forwards = draw(&scene.particles);
+    let reversed: Vec<_> = scene.particles.iter().rev().copied().collect();
     let backwards = draw(&reversed);
     let difference = forwards.texels.iter().zip(&backwards.texels).map(|(a, b)| (a.x - b.x).abs());
     // 60 layers, each rounded to f16: at worst 60 times half of 2^-11; a third of that was measured.
@@ -58,35 +59,35 @@ fn amount_on_the_gpu_does_not_depend_on_draw_order() {
 
 #[test]
 fn weighted_order_draws_the_same_image_from_reversed_particles() {
-    let mut stage = TestScene::new(SIZE);
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
+    let mut scene = TestScene::new(SIZE);
+    scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let reversed: Vec<_> = scene.particles.iter().rev().copied().collect();
     let mut psnr_after_reversal = |order| {
-        stage.settings.accumulate.order = order;
-        let mut host = Host::new(gpu(), &stage).unwrap();
+        scene.settings.accumulate.order = order;
+        let mut host = Host::new(gpu(), &scene).unwrap();
         let mut draw = |particles: &[Particle]| {
-            host.draw_buffer(gpu(), &stage, particles).unwrap();
+            host.draw_buffer(gpu(), &scene, particles).unwrap();
             host.picture(gpu()).unwrap()
         };
-        psnr(&draw(&stage.particles), &draw(&reversed))
+        psnr(&draw(&scene.particles), &draw(&reversed))
     };
     let (weighted, sorted) = (psnr_after_reversal(BlendOrder::Weighted), psnr_after_reversal(BlendOrder::Sorted));
     println!("reversed order: weighted {weighted:.1} dB, sorted {sorted:.1} dB");
     // f16 sums in another order round differently.
-    assert!(weighted > AGREEMENT && sorted < AGREEMENT, "{weighted} {sorted}");
+    assert!(weighted > MIN_PSNR && sorted < MIN_PSNR, "{weighted} {sorted}");
 }
 
 #[test]
 fn particle_amounts_above_1_are_drawn_as_1() {
-    let mut stage = TestScene::new(SIZE);
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let mut draw = |amount: f32| {
-        stage.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
-        stage.bounds = Some(particle_bounds(&stage.particles, stage.settings.sprite_extent()));
-        host.draw(gpu(), &stage).unwrap();
+        scene.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
+        scene.bounds = Some(particle_bounds(&scene.particles, scene.settings.reach()));
+        host.draw(gpu(), &scene).unwrap();
         let slice = host.picture(gpu()).unwrap();
-        host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
-        [slice, host.picture(gpu()).unwrap(), stage.on_cpu()]
+        host.draw_buffer(gpu(), &scene, &scene.particles).unwrap();
+        [slice, host.picture(gpu()).unwrap(), scene.on_cpu()]
     };
     let whole = draw(1.0);
     assert!(whole[0].texels.iter().any(|texel| *texel != BACKDROP));
@@ -101,12 +102,12 @@ fn particle_amounts_above_1_are_drawn_as_1() {
 fn rgba8_target_loses_thin_smoke_and_rgba16float_does_not() {
     // 8-bit rounding stops thin layers from adding up: 400 layers of amount 0.02 should give 1 - 0.98^400 = 0.9997.
     let stack = |format, encoding| {
-        let mut stage = TestScene::new(UVec2::splat(32));
+        let mut scene = TestScene::new(UVec2::splat(32));
         let sprite = Particle { position: vec3(0.0, 0.0, -4.0), radius: 3.0, amount: 0.02, ..Particle::default() };
-        stage.particles = vec![sprite; 400];
-        (stage.settings.accumulate.format, stage.settings.accumulate.encoding) = (format, encoding);
-        stage.debug_view = DebugView::Amount;
-        stage.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
+        scene.particles = vec![sprite; 400];
+        (scene.settings.accumulate.format, scene.settings.accumulate.encoding) = (format, encoding);
+        scene.debug_view = DebugView::Amount;
+        scene.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
     };
     use haze::settings::NormalEncoding;
     assert!(stack(AccumulationFormat::Rgba16Float, NormalEncoding::Signed) > 0.97);

@@ -7,14 +7,14 @@ use haze::assets::material_assets::MaterialAssets;
 use haze::frame::{Bounds, Light, Particle, View};
 use haze::settings::{DebugView, Settings};
 
-/// One frame, like [`crate::Frame`], in memory.
+/// One frame, like [`haze::Frame`], in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// The camera.
     pub view: View,
     /// Values of a depth buffer written with the view's projection, 0..1.
     pub scene_depth: &'a Image<f32>,
-    /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
+    /// At most [`MAX_LIGHTS`](haze::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
     /// Particle systems, drawn far to near.
     pub systems: &'a [System<'a>],
@@ -33,7 +33,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// One particle system, like [`crate::System`], in memory.
+/// One particle system, like [`haze::System`], in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct System<'a> {
     /// The sprites, in any order.

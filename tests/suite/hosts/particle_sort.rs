@@ -5,10 +5,10 @@ use haze::settings::*;
 use haze::{Bounds, Particle, Particles, wgpu};
 use haze_demo::headless::Headless;
 
-use super::{SIZE, field};
-use crate::common::{gpu, has_tiles};
-use crate::creations;
-use crate::host::Host;
+use super::{SIZE, rejected_field};
+use crate::gpu::{gpu, is_tiled_available};
+use crate::resource_counter;
+use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 const BOUNDS: Bounds = Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) };
@@ -29,10 +29,10 @@ fn buffer(gpu: &Headless, particles: &[Particle], offset: u64, usage: wgpu::Buff
 
 const READ: wgpu::BufferUsages = wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::STORAGE);
 
-/// Returns `count` particles made from the stage's: several at the same depth, every seventh with amount 0.
-fn many(stage: &TestScene, count: usize) -> Vec<Particle> {
+/// Returns `count` particles made from the scene's: several at the same depth, every seventh with amount 0.
+fn repeated_particles(scene: &TestScene, count: usize) -> Vec<Particle> {
     let one = |index: usize| {
-        let mut particle = stage.particles[index % stage.particles.len()];
+        let mut particle = scene.particles[index % scene.particles.len()];
         particle.position.x += 1.0e-4 * index as f32;
         particle.amount *= if index.is_multiple_of(7) { 0.0 } else { 0.1 };
         particle
@@ -42,22 +42,22 @@ fn many(stage: &TestScene, count: usize) -> Vec<Particle> {
 
 #[test]
 fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let mut stage = TestScene::new(SIZE);
-    stage.bounds = Some(BOUNDS);
+    let mut scene = TestScene::new(SIZE);
+    scene.bounds = Some(BOUNDS);
     for (path, cooperative) in [(RenderPath::Raster, true), (RenderPath::Raster, false), (RenderPath::Forward, true)] {
-        stage.settings.path = path;
-        let mut host = Host::new(gpu(), &stage).unwrap();
+        scene.settings.path = path;
+        let mut host = Host::new(gpu(), &scene).unwrap();
         host.renderer.context().set_cooperative_traversal(cooperative);
         // One sort block; several blocks that each count all keys (up to 8192 keys on GPUs); more keys than that.
         for (count, offset) in [(200, 0), (3000, 16), (9000, 272)] {
-            let particles = many(&stage, count);
+            let particles = repeated_particles(&scene, count);
             let mut drawn = |particles: &[Particle], is_sorted| {
                 let buffer = buffer(gpu(), particles, offset, READ);
                 let particles = Particles::Buffer { buffer: &buffer, offset, count: count as u32, is_sorted };
-                host.draw_particles(gpu(), &stage, particles).unwrap();
+                host.draw_particles(gpu(), &scene, particles).unwrap();
                 host.picture(gpu()).unwrap()
             };
             let (sorted, unsorted) = (drawn(&particles, false), drawn(&particles, true));
@@ -73,48 +73,48 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
 
 #[test]
 fn steady_frames_of_unsorted_particles_create_no_gpu_resources() {
-    if !has_tiles() {
+    if !is_tiled_available() {
         return;
     }
-    let mut stage = TestScene::new(SIZE);
-    stage.bounds = Some(BOUNDS);
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    let buffer = buffer(gpu(), &many(&stage, 500), 0, READ);
+    let mut scene = TestScene::new(SIZE);
+    scene.bounds = Some(BOUNDS);
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    let buffer = buffer(gpu(), &repeated_particles(&scene, 500), 0, READ);
     let mut draw = |count| {
         let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false };
-        host.draw_particles(gpu(), &stage, particles).unwrap();
+        host.draw_particles(gpu(), &scene, particles).unwrap();
     };
     draw(500);
-    assert_eq!(creations::count(|| (490..495).for_each(&mut draw)), 0);
+    assert_eq!(resource_counter::count(|| (490..495).for_each(&mut draw)), 0);
     let held = host.renderer.memory_use().tiled;
     assert!(held.sorted >= 500 * 32 && held.keys >= 500 * 16 && held.lists == 0, "{held:?}");
     // The sort buffers of a system that no longer needs sorting are released.
     for _ in 0..130 {
-        host.draw(gpu(), &stage).unwrap();
+        host.draw(gpu(), &scene).unwrap();
     }
     assert_eq!(host.renderer.memory_use().tiled.total(), 0);
 }
 
 #[test]
 fn host_buffers_that_cannot_be_sorted_are_rejected() {
-    let mut stage = TestScene::new(SIZE);
-    stage.bounds = Some(BOUNDS);
-    let refused = |gpu: &Headless, stage: &TestScene, usage, offset| {
-        let buffer = buffer(gpu, &stage.particles, offset, usage);
-        let count = stage.particles.len() as u32;
+    let mut scene = TestScene::new(SIZE);
+    scene.bounds = Some(BOUNDS);
+    let refused = |gpu: &Headless, scene: &TestScene, usage, offset| {
+        let buffer = buffer(gpu, &scene.particles, offset, usage);
+        let count = scene.particles.len() as u32;
         let particles = Particles::Buffer { buffer: &buffer, offset, count, is_sorted: false };
-        Host::new(gpu, stage).unwrap().draw_particles(gpu, stage, particles)
+        Host::new(gpu, scene).unwrap().draw_particles(gpu, scene, particles)
     };
     let webgl2 = Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty()).unwrap();
     let vertices = wgpu::BufferUsages::VERTEX;
-    assert_eq!(field(refused(&webgl2, &stage, vertices, 0)), "systems[0].particles.is_sorted");
-    if has_tiles() {
-        assert_eq!(field(refused(gpu(), &stage, vertices, 0)), "systems[0].particles");
-        assert_eq!(field(refused(gpu(), &stage, READ, 4)), "systems[0].particles.offset");
+    assert_eq!(rejected_field(refused(&webgl2, &scene, vertices, 0)), "systems[0].particles.is_sorted");
+    if is_tiled_available() {
+        assert_eq!(rejected_field(refused(gpu(), &scene, vertices, 0)), "systems[0].particles");
+        assert_eq!(rejected_field(refused(gpu(), &scene, READ, 4)), "systems[0].particles.offset");
     }
     // Weighted order needs no sorting, so such buffers are accepted.
-    stage.settings.accumulate.order = BlendOrder::Weighted;
+    scene.settings.accumulate.order = BlendOrder::Weighted;
     for gpu in [&webgl2, gpu()] {
-        refused(gpu, &stage, vertices, 4).unwrap();
+        refused(gpu, &scene, vertices, 4).unwrap();
     }
 }

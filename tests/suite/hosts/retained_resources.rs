@@ -5,19 +5,19 @@ use haze::settings::*;
 use haze::{Bounds, Error, Frame, Particle, Particles, SceneDepth, Settings, System, View, wgpu};
 use haze_demo::headless::Headless;
 
-use super::{SIZE, encoder, field};
-use crate::common::gpu;
-use crate::host::Host;
+use super::{SIZE, encoder, rejected_field};
+use crate::gpu::gpu;
+use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
-    let mut stage = TestScene::new(SIZE);
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let mut draw = |offset: u64| {
         let mut bytes = vec![0x7f; offset as usize];
-        bytes.extend_from_slice(bytemuck::cast_slice(&stage.particles));
+        bytes.extend_from_slice(bytemuck::cast_slice(&scene.particles));
         let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: bytes.len() as u64,
@@ -26,8 +26,8 @@ fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
         });
         gpu().queue.write_buffer(&buffer, 0, &bytes);
         let particles =
-            Particles::Buffer { buffer: &buffer, offset, count: stage.particles.len() as u32, is_sorted: true };
-        host.draw_particles(gpu(), &stage, particles).map(|()| host.picture(gpu()).unwrap())
+            Particles::Buffer { buffer: &buffer, offset, count: scene.particles.len() as u32, is_sorted: true };
+        host.draw_particles(gpu(), &scene, particles).map(|()| host.picture(gpu()).unwrap())
     };
     let first = draw(0).unwrap();
     assert!(first.texels.iter().any(|&texel| texel != BACKDROP));
@@ -38,9 +38,9 @@ fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
 
 #[test]
 fn invalid_offsets_in_a_host_buffer_are_rejected() {
-    let mut stage = TestScene::new(SIZE);
-    stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    scene.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
+    let mut host = Host::new(gpu(), &scene).unwrap();
     let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: 96,
@@ -48,7 +48,11 @@ fn invalid_offsets_in_a_host_buffer_are_rejected() {
         mapped_at_creation: false,
     });
     let mut refused = |offset, count| {
-        field(host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset, count, is_sorted: true }))
+        rejected_field(host.draw_particles(
+            gpu(),
+            &scene,
+            Particles::Buffer { buffer: &buffer, offset, count, is_sorted: true },
+        ))
     };
     assert_eq!(refused(2, 1), "systems[0].particles.offset");
     assert_eq!(refused(36, 2), "systems[0].particles");
@@ -56,15 +60,15 @@ fn invalid_offsets_in_a_host_buffer_are_rejected() {
 }
 
 /// Prepares frames of several systems, without drawing an image.
-pub struct Systems {
+pub struct SystemsFixture {
     host: Host,
-    pub stage: TestScene,
+    pub scene: TestScene,
 }
 
-impl Systems {
+impl SystemsFixture {
     pub fn new(gpu: &Headless, size: UVec2) -> Self {
-        let stage = TestScene::new(size);
-        Self { host: Host::new(gpu, &stage).unwrap(), stage }
+        let scene = TestScene::new(size);
+        Self { host: Host::new(gpu, &scene).unwrap(), scene }
     }
 
     pub fn frame(&mut self, gpu: &Headless, systems: &[(u64, &[Particle], Settings)]) -> Result<(), Error> {
@@ -75,7 +79,7 @@ impl Systems {
                 ..System::new(Particles::Slice(particles), settings, &self.host.material)
             })
             .collect();
-        let frame = Frame { systems: &systems, ..Frame::new(self.stage.view, SceneDepth::Linear(&self.host.linear)) };
+        let frame = Frame { systems: &systems, ..Frame::new(self.scene.view, SceneDepth::Linear(&self.host.linear)) };
         let mut encoder = encoder(gpu);
         self.host.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, &frame)?;
         gpu.submit(encoder)
@@ -91,9 +95,9 @@ const LONG: u32 = 125;
 
 #[test]
 fn systems_in_another_order_keep_their_targets_by_key() {
-    let mut systems = Systems::new(gpu(), SIZE);
+    let mut systems = SystemsFixture::new(gpu(), SIZE);
     let settings = Settings::default();
-    let wide = systems.stage.particles.clone();
+    let wide = systems.scene.particles.clone();
     let small = [Particle { position: vec3(0.0, 0.0, -6.0), radius: 0.2, ..Particle::default() }];
     systems.frame(gpu(), &[(7, &wide, settings), (9, &small, settings)]).unwrap();
     let targets = [systems.accumulation(7), systems.accumulation(9)];
@@ -104,14 +108,14 @@ fn systems_in_another_order_keep_their_targets_by_key() {
     systems.frame(gpu(), &[(9, &small, settings), (7, &wide, settings)]).unwrap();
     assert_eq!(targets, [systems.accumulation(7), systems.accumulation(9)]);
     let twice = systems.frame(gpu(), &[(9, &small, settings), (9, &wide, settings)]);
-    assert_eq!(field(twice), "systems[1].key");
+    assert_eq!(rejected_field(twice), "systems[1].key");
 }
 
 #[test]
 fn unused_targets_and_buffers_are_released_after_some_frames() {
-    let mut systems = Systems::new(gpu(), UVec2::new(1280, 720));
+    let mut systems = SystemsFixture::new(gpu(), UVec2::new(1280, 720));
     let settings = Settings::default();
-    let few = systems.stage.particles[..2].to_vec();
+    let few = systems.scene.particles[..2].to_vec();
     // One particle covers the whole view; the others are uploaded but outside the view.
     let mut near = vec![Particle { position: vec3(0.0, 0.0, 9.0), radius: 0.1, ..Particle::default() }; 20_000];
     near[0] = Particle { position: vec3(0.0, 0.0, -1.0), radius: 4.0, amount: 0.1, ..Particle::default() };
@@ -142,21 +146,21 @@ fn unused_targets_and_buffers_are_released_after_some_frames() {
 
 #[test]
 fn baked_light_textures_are_kept_when_the_view_is_resized() {
-    let mut stage = TestScene::new(SIZE);
-    stage.settings.diffuse.mode = DiffuseMode::Cubemap;
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    host.draw(gpu(), &stage).unwrap();
+    let mut scene = TestScene::new(SIZE);
+    scene.settings.diffuse.mode = DiffuseMode::Cubemap;
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    host.draw(gpu(), &scene).unwrap();
     let views = |host: &Host| {
         let targets = host.renderer.targets(0).unwrap();
         (targets.accumulation.to_vec(), targets.baked_diffuse.to_vec())
     };
     let (small, baked) = views(&host);
     assert_eq!(baked.len(), 6);
-    stage.view = TestScene::new(SIZE * 4).view;
-    let mut larger = Host::new(gpu(), &stage).unwrap();
+    scene.view = TestScene::new(SIZE * 4).view;
+    let mut larger = Host::new(gpu(), &scene).unwrap();
     std::mem::swap(&mut larger.renderer, &mut host.renderer);
     std::mem::swap(&mut larger.material, &mut host.material);
-    larger.draw(gpu(), &stage).unwrap();
+    larger.draw(gpu(), &scene).unwrap();
     let (large, still_baked) = views(&larger);
     assert!(small != large && baked == still_baked);
 }
@@ -174,18 +178,18 @@ fn depth_buffer_replaced_by_the_host_is_released() {
         if source == DepthSource::Host && !read_only {
             continue;
         }
-        let mut stage = TestScene::new(SIZE);
-        (stage.settings.accumulate.depth_source, stage.settings.accumulate.scale) = (source, 1);
-        let mut host = Host::new(&gpu, &stage).unwrap();
-        host.draw(&gpu, &stage).unwrap();
+        let mut scene = TestScene::new(SIZE);
+        (scene.settings.accumulate.depth_source, scene.settings.accumulate.scale) = (source, 1);
+        let mut host = Host::new(&gpu, &scene).unwrap();
+        host.draw(&gpu, &scene).unwrap();
         let before = allocated();
         for _ in 0..3 {
             // The renderer is moved to a new host with new textures; the old textures are dropped.
-            let mut next = Host::new(&gpu, &stage).unwrap();
+            let mut next = Host::new(&gpu, &scene).unwrap();
             std::mem::swap(&mut next.renderer, &mut host.renderer);
             std::mem::swap(&mut next.material, &mut host.material);
             host = next;
-            host.draw(&gpu, &stage).unwrap();
+            host.draw(&gpu, &scene).unwrap();
         }
         assert_eq!(allocated(), before, "{}", source.name());
     }

@@ -2,7 +2,7 @@
 
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
-use super::frame::{Frame, System};
+use super::input::{Frame, System};
 use haze::assets::image::Image;
 use haze::assets::material_assets::{MaterialAssets, MaterialInfo};
 use haze::error::FieldError;
@@ -20,7 +20,7 @@ use haze::view_setup::{
 };
 
 /// Visible system, with the input of its passes.
-pub struct Draw<'a> {
+pub struct VisibleSystem<'a> {
     pub view: ViewUniform,
     pub world_from_view: Mat4,
     pub system: SystemUniform,
@@ -35,7 +35,7 @@ pub struct Draw<'a> {
     pub material: &'a MaterialAssets,
 }
 
-impl<'a> Draw<'a> {
+impl<'a> VisibleSystem<'a> {
     /// Returns `None` if the system is not visible.
     pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
         let settings = system.settings;
@@ -99,7 +99,7 @@ impl<'a> Draw<'a> {
 }
 
 /// Visible systems with their indices in the frame, far to near, for a picture of this size.
-pub fn visible<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, Draw<'a>)>, FieldError> {
+pub fn visible_systems<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, VisibleSystem<'a>)>, FieldError> {
     // The picture is the view, whatever its origin in a host's targets.
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
@@ -110,14 +110,14 @@ pub fn visible<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, Draw
             return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));
         }
     }
-    let mut draws = Vec::new();
+    let mut systems = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
         validate_settings(index, system.settings, frame.view.size)?;
         validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
         let info = system.material.info();
         info.validate(index, system.settings)?;
-        draws.extend(Draw::new(&view, frame, system, &info).map(|draw| (index, draw)));
+        systems.extend(VisibleSystem::new(&view, frame, system, &info).map(|visible| (index, visible)));
     }
-    draws.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
-    Ok(draws)
+    systems.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
+    Ok(systems)
 }

@@ -1,97 +1,11 @@
-//! Shared test helpers: the GPU device, PSNR of images, and compute runs of WGSL functions.
+//! Compute runs of WGSL functions.
 
-use std::sync::{LazyLock, OnceLock};
-
-use glam::{UVec2, UVec3, Vec4};
-use haze::image::Image;
+use glam::{UVec2, UVec3};
 use haze::noise::NoiseVolume;
 use haze::ramp::Ramp;
 use haze::sprite::Sprite;
-use haze::{Context, wgpu};
+use haze::wgpu;
 use haze_demo::headless::Headless;
-
-use crate::test_scene::BACKDROP;
-
-/// Returns the device that all tests of this process share. Panics on a machine without an adapter; the message
-/// contains the command that installs one.
-pub fn gpu() -> &'static Headless {
-    static GPU: OnceLock<Headless> = OnceLock::new();
-    GPU.get_or_init(|| match Headless::new() {
-        Ok(gpu) => {
-            eprintln!("adapter: {}", gpu.description());
-            gpu
-        }
-        Err(error) => panic!("{error}"),
-    })
-}
-
-/// Returns a context for tests that only compare images, so that no pipeline is compiled twice. `None` if `gpu` is not
-/// the shared device.
-pub fn shared_context(gpu: &Headless) -> Option<&'static Context> {
-    static CONTEXT: LazyLock<Context> = LazyLock::new(|| Context::new(&self::gpu().device, &self::gpu().queue, None));
-    std::ptr::eq(gpu, self::gpu()).then_some(&CONTEXT)
-}
-
-/// Returns `is_available`, and prints that the test is skipped if it is false. Panics instead if the variable `HAZE_REQUIRE`
-/// lists the capability: on a machine that is known to have it, a skipped test is a failure. The list is separated by commas;
-/// `scripts/test` sets it.
-pub fn can_test(capability: &str, is_available: bool) -> bool {
-    let required = std::env::var("HAZE_REQUIRE").unwrap_or_default();
-    let is_required = required.split(',').any(|name| name.trim() == capability);
-    assert!(is_available || !is_required, "{} lacks {capability}, which HAZE_REQUIRE lists", gpu().description());
-    if !is_available {
-        eprintln!("skipped: {} lacks {capability}", gpu().description());
-    }
-    is_available
-}
-
-/// Returns true if the path `tiled` is available: it needs compute shaders, which the library does not use on OpenGL.
-pub fn has_tiles() -> bool {
-    can_test("compute", gpu().adapter.get_info().backend != wgpu::Backend::Gl)
-}
-
-/// Returns true if the adapter's devices are independent. On OpenGL they share one context: resources that are dropped with
-/// one device are lost for the others.
-pub fn has_independent_devices() -> bool {
-    can_test("devices", gpu().adapter.get_info().backend != wgpu::Backend::Gl)
-}
-
-/// Lowest PSNR of two correct renderers, dB. They differ by f16 rounding, by the order of f32 operations, and by edges
-/// that are snapped to 1/256 pixel: 57 to 84 dB on llvmpipe, with Vulkan and OpenGL. The mistakes in
-/// properties/mutants.rs give 12 to 36.
-pub const AGREEMENT: f32 = 54.0;
-
-/// Lowest PSNR of images with hard steps, which may fall on either side of a pixel, dB. Sprites with the debug
-/// checkerboard give 45 dB on an NVIDIA H200 and 68 dB on llvmpipe. Ramps sampled at the nearest texel give 50 dB on
-/// llvmpipe, because of four pixels in five thousand.
-pub const MIN_PSNR_WITH_STEPS: f32 = 44.0;
-
-/// Returns the PSNR of two images of smoke over the stage's backdrop, dB; see [`psnr_over`].
-pub fn psnr(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
-    let behind = Image::new(a.size, BACKDROP);
-    psnr_over([a, b], [&behind, &behind])
-}
-
-/// Returns the peak signal-to-noise ratio of two images of smoke, dB. Only pixels that differ from their background by
-/// more than 1/255 in either image are counted; the others contain no smoke. Linear HDR colour is clamped to 0..4 and
-/// has peak 4; alpha has peak 1.
-pub fn psnr_over(pictures: [&Image<Vec4>; 2], behind: [&Image<Vec4>; 2]) -> f32 {
-    let [a, b] = pictures.map(|picture| &picture.texels);
-    let [behind_a, behind_b] = behind.map(|picture| &picture.texels);
-    assert!(a.len() == b.len() && a.len() == behind_a.len() && a.len() == behind_b.len());
-    let differs = |a: Vec4, b: Vec4| (a - b).abs().max_element() > 1.0 / 255.0;
-    let smoke = (0..a.len()).filter(|&i| differs(a[i], behind_a[i]) || differs(b[i], behind_b[i]));
-    let peaks = Vec4::new(4.0, 4.0, 4.0, 1.0);
-    let (mut sum, mut pixels) = (0.0, 0_u32);
-    for i in smoke {
-        let [a, b] = [a[i], b[i]].map(|texel| texel.clamp(Vec4::ZERO, peaks) / peaks);
-        sum += f64::from((a - b).length_squared());
-        pixels += 1;
-    }
-    assert!(pixels > 0, "no smoke to compare");
-    let mean = sum / f64::from(4 * pixels);
-    (-10.0 * mean.max(1.0e-12).log10()) as f32
-}
 
 /// Runs a compute shader on cases of `width` numbers each and returns as many results per case. A ramp, a sprite, a
 /// noise volume and a sampler are bound too.
@@ -258,53 +172,4 @@ fn upload(
         gpu.queue.write_texture(target, bytes, layout, *extent);
     }
     texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
-}
-
-/// Counts the texels that contain a NaN or an infinity, within the first `size` texels of a texture.
-pub fn non_finite_texels(gpu: &Headless, view: &wgpu::TextureView, size: UVec2) -> u32 {
-    const SOURCE: &str = "
-        @group(0) @binding(0) var texels: texture_2d<f32>;
-        @group(0) @binding(1) var<storage, read_write> count: atomic<u32>;
-        @compute @workgroup_size(8, 8)
-        fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-            // Tests bits: a compiler may remove comparisons with NaN. Texels out of range load as zero or a border.
-            let bits = bitcast<vec4u>(textureLoad(texels, id.xy, 0)) & vec4u(0x7f800000u);
-            if any(bits == vec4u(0x7f800000u)) { atomicAdd(&count, 1u); }
-        }";
-    let device = &gpu.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("non-finite texels"),
-        source: wgpu::ShaderSource::Wgsl(SOURCE.into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("non-finite texels"),
-        layout: None,
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    let count = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("non-finite texels"),
-        size: 4,
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("non-finite texels"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(view) },
-            wgpu::BindGroupEntry { binding: 1, resource: count.as_entire_binding() },
-        ],
-    });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(size.x.div_ceil(8), size.y.div_ceil(8), 1);
-    }
-    gpu.submit(encoder).unwrap();
-    bytemuck::pod_read_unaligned(&gpu.read_buffer(&count).unwrap())
 }

@@ -6,7 +6,8 @@ use haze::settings::{DebugView, DiffuseMode, RenderPath};
 use haze::{Bounds, wgpu};
 
 use super::SIZE;
-use crate::common::{AGREEMENT, gpu, psnr};
+use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 fn reversed(projection: Mat4) -> Mat4 {
@@ -32,12 +33,12 @@ fn every_depth_convention_gives_the_same_image() {
         let mut standard = None;
         for clip_from_view in family {
             for depth in [DepthKind::Buffer, DepthKind::Linear] {
-                let mut stage = TestScene::new(SIZE);
-                stage.view.clip_from_view = clip_from_view;
-                stage.depth = depth;
-                let picture = stage.on_gpu(gpu()).picture;
-                let reference = psnr(&picture, &stage.on_cpu());
-                assert!(reference >= AGREEMENT, "{clip_from_view}: {reference:.1} dB from the reference");
+                let mut scene = TestScene::new(SIZE);
+                scene.view.clip_from_view = clip_from_view;
+                scene.depth = depth;
+                let picture = scene.on_gpu(gpu()).picture;
+                let reference = psnr(&picture, &scene.on_cpu());
+                assert!(reference >= MIN_PSNR, "{clip_from_view}: {reference:.1} dB from the reference");
                 let standard = standard.get_or_insert_with(|| picture.clone());
                 // Depth buffers of different conventions round differently; 90 dB were measured.
                 let psnr = psnr(&picture, standard);
@@ -49,14 +50,14 @@ fn every_depth_convention_gives_the_same_image() {
 
 #[test]
 fn pass_without_a_depth_attachment_gives_the_same_image() {
-    let mut stage = TestScene::new(SIZE);
-    let tested = stage.on_gpu(gpu()).picture;
-    stage.attach_depth = false;
+    let mut scene = TestScene::new(SIZE);
+    let tested = scene.on_gpu(gpu()).picture;
+    scene.attach_depth = false;
     for path in [RenderPath::Raster, RenderPath::Forward] {
-        stage.settings.path = path;
-        let picture = stage.on_gpu(gpu()).picture;
-        let reference = psnr(&picture, &stage.on_cpu());
-        assert!(reference >= AGREEMENT, "{path:?}: {reference:.1} dB");
+        scene.settings.path = path;
+        let picture = scene.on_gpu(gpu()).picture;
+        let reference = psnr(&picture, &scene.on_cpu());
+        assert!(reference >= MIN_PSNR, "{path:?}: {reference:.1} dB");
         // Without a depth attachment the box is not depth-tested; only the soft fade hides smoke behind the scene.
         assert!(path == RenderPath::Forward || psnr(&picture, &tested) >= 85.0);
     }
@@ -67,14 +68,14 @@ fn webgl2_limits_are_enough_for_the_raster_and_forward_paths() {
     let webgl2 =
         haze_demo::headless::Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty())
             .unwrap();
-    let mut stage = TestScene::new(SIZE);
+    let mut scene = TestScene::new(SIZE);
     for mode in DiffuseMode::ALL {
-        stage.settings.diffuse.mode = *mode;
-        let psnr = psnr(&stage.on_gpu(&webgl2).picture, &stage.on_cpu());
-        assert!(psnr >= AGREEMENT, "{mode:?}: {psnr:.1} dB");
+        scene.settings.diffuse.mode = *mode;
+        let psnr = psnr(&scene.on_gpu(&webgl2).picture, &scene.on_cpu());
+        assert!(psnr >= MIN_PSNR, "{mode:?}: {psnr:.1} dB");
     }
-    stage.settings.path = RenderPath::Forward;
-    assert!(psnr(&stage.on_gpu(&webgl2).picture, &stage.on_cpu()) >= AGREEMENT);
+    scene.settings.path = RenderPath::Forward;
+    assert!(psnr(&scene.on_gpu(&webgl2).picture, &scene.on_cpu()) >= MIN_PSNR);
     webgl2.check().unwrap();
 }
 
@@ -82,30 +83,30 @@ fn webgl2_limits_are_enough_for_the_raster_and_forward_paths() {
 fn near_plane_cuts_no_hole_when_the_camera_enters_the_bounds() {
     // The camera moves from in front of the box through its front face and past its middle.
     for step in 0..=20 {
-        let mut stage = TestScene::new(SIZE);
+        let mut scene = TestScene::new(SIZE);
         let forward = 3.0 + 0.2 * step as f32;
-        stage.view.view_from_world = Mat4::from_translation(vec3(0.0, 0.0, forward));
-        stage.bounds = Some(Bounds { min: vec3(-5.0, -4.0, -8.0), max: vec3(5.0, 4.0, -4.0) });
-        stage.debug_view = DebugView::ReducedDepth;
-        stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 80.0);
-        let picture = stage.on_gpu(gpu()).picture;
+        scene.view.view_from_world = Mat4::from_translation(vec3(0.0, 0.0, forward));
+        scene.bounds = Some(Bounds { min: vec3(-5.0, -4.0, -8.0), max: vec3(5.0, 4.0, -4.0) });
+        scene.debug_view = DebugView::ReducedDepth;
+        scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 80.0);
+        let picture = scene.on_gpu(gpu()).picture;
         // From here on the box fills the view, and this debug view draws every pixel of the box.
         if forward >= 3.5 {
             assert!(picture.texels.iter().all(|&texel| texel != BACKDROP), "{forward}: a hole");
         }
-        stage.debug_view = DebugView::Final;
+        scene.debug_view = DebugView::Final;
         // Only until the camera has passed the smoke.
         if forward < 6.3 {
-            let psnr = psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu());
-            assert!(psnr >= AGREEMENT, "{forward}: {psnr:.1} dB");
+            let psnr = psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu());
+            assert!(psnr >= MIN_PSNR, "{forward}: {psnr:.1} dB");
         }
     }
 }
 
 #[test]
 fn bounds_beyond_the_far_plane_cut_no_hole() {
-    let mut stage = TestScene::new(SIZE);
-    stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 20.0);
-    stage.bounds = Some(Bounds { min: Vec3::splat(-50.0), max: Vec3::splat(50.0) });
-    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= AGREEMENT);
+    let mut scene = TestScene::new(SIZE);
+    scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 20.0);
+    scene.bounds = Some(Bounds { min: Vec3::splat(-50.0), max: Vec3::splat(50.0) });
+    assert!(psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu()) >= MIN_PSNR);
 }

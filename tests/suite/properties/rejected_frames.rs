@@ -4,19 +4,19 @@ use glam::{Mat4, Vec3};
 use haze::{Bounds, Error, Particles, wgpu};
 
 use super::SIZE;
-use crate::common::gpu;
-use crate::host::Host;
+use crate::gpu::gpu;
+use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     // Draws a valid frame first, so that leftovers of it show if a rejected frame draws anything.
-    let refusal = |host: &mut Host, stage: &TestScene, particles: Particles<'_>| {
+    let refusal = |host: &mut Host, scene: &TestScene, particles: Particles<'_>| {
         host.draw(gpu(), &TestScene::new(SIZE)).unwrap();
         assert!(host.picture(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
         let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let error = host.prepare(gpu(), &mut encoder, stage, particles).unwrap_err();
-        host.render(&mut encoder, stage);
+        let error = host.prepare(gpu(), &mut encoder, scene, particles).unwrap_err();
+        host.render(&mut encoder, scene);
         gpu().submit(encoder).unwrap();
         assert!(
             host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP),
@@ -26,9 +26,9 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     };
     let mut host = Host::new(gpu(), &TestScene::new(SIZE)).unwrap();
     let mut field = |change: fn(&mut TestScene)| {
-        let mut stage = TestScene::new(SIZE);
-        change(&mut stage);
-        match refusal(&mut host, &stage, Particles::Slice(&stage.particles)) {
+        let mut scene = TestScene::new(SIZE);
+        change(&mut scene);
+        match refusal(&mut host, &scene, Particles::Slice(&scene.particles)) {
             Error::Field(error) => error.field,
             other => panic!("{other}"),
         }
@@ -39,15 +39,15 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     assert_eq!(field(|s| s.bounds = Some(Bounds { min: Vec3::ZERO, max: Vec3::INFINITY })), "systems[0].bounds");
     assert_eq!(field(|s| s.view.view_from_world = Mat4::ZERO), "view.view_from_world");
 
-    let mut stage = TestScene::new(SIZE);
-    stage.view.size += 1;
-    let error = refusal(&mut host, &stage, Particles::Slice(&stage.particles)).to_string();
+    let mut scene = TestScene::new(SIZE);
+    scene.view.size += 1;
+    let error = refusal(&mut host, &scene, Particles::Slice(&scene.particles)).to_string();
     assert_eq!(
         error,
         "view.size: 161x91 from (0, 0) is not valid; expected the size of the scene depth, 160x90, or a part of it"
     );
     // Particles in a GPU buffer need explicit bounds.
-    stage.view.size = SIZE;
+    scene.view.size = SIZE;
     let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: 64,
@@ -55,9 +55,9 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
         mapped_at_creation: false,
     });
     let mut refused = |count, bounds| {
-        stage.bounds = bounds;
+        scene.bounds = bounds;
         let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true };
-        refusal(&mut host, &stage, particles).to_string()
+        refusal(&mut host, &scene, particles).to_string()
     };
     assert!(refused(2, None).starts_with("systems[0].bounds: None"));
     let somewhere = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });

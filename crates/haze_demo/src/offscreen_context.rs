@@ -1,0 +1,102 @@
+//! Pipelines and uploaded materials that the off-screen renderers of a device share.
+
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+use super::scene_renderer::{LINEAR_FORMAT, SceneRenderer};
+use haze::assets::material_assets::MaterialAssets;
+use haze::error::Error;
+use haze::frame::Material;
+use haze::shader::Sources;
+use haze::{Context, PathModel, Timing, read_only_depth_is_supported};
+
+/// Pipelines and materials that all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a device
+/// share. A clone shares them too.
+#[derive(Clone, Debug)]
+pub struct OffscreenContext {
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    pub(super) haze: Context,
+    pub(super) scene: Arc<SceneRenderer>,
+    /// Materials that existing renderers have uploaded. Shared images are uploaded once.
+    materials: Arc<Mutex<Vec<Weak<UploadedMaterial>>>>,
+    /// True to attach the scene's depth buffer to the smoke pass: it is not sampled there, or the device supports
+    /// read-only depth.
+    pub(super) attaches_depth: bool,
+    /// True if depth can be copied to a buffer.
+    pub(super) copies_depth: bool,
+}
+
+impl OffscreenContext {
+    /// Compiles the shaders of the scene and of haze.
+    pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
+        let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let flags = adapter.get_downlevel_capabilities().flags;
+        Self {
+            copies_depth: flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES),
+            device: device.clone(),
+            queue: queue.clone(),
+            haze: Context::new(device, queue, None),
+            scene: Arc::new(SceneRenderer::new(device, queue, draws_linear)),
+            materials: Arc::default(),
+            attaches_depth: draws_linear || read_only_depth_is_supported(device),
+        }
+    }
+
+    /// True if [`capture`](super::offscreen_renderer::OffscreenRenderer::capture) is supported.
+    pub fn can_capture(&self) -> bool {
+        self.copies_depth
+    }
+
+    /// Creates timestamp queries; `None` if the device does not support them.
+    pub fn timing(&self) -> Option<Timing> {
+        Timing::new(&self.device, &self.queue)
+    }
+
+    /// Same as [`Context::measure_paths`].
+    ///
+    /// # Errors
+    /// As [`Context::measure_paths`].
+    pub fn measure_paths(
+        &self,
+        submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
+    ) -> Result<PathModel, Error> {
+        self.haze.measure_paths(&self.device, &self.queue, submit)
+    }
+
+    /// Returns a copy with another haze [`Context`] of the same device, for example one with other shaders.
+    #[must_use]
+    pub fn with_context(&self, haze: Context) -> Self {
+        // Materials belong to the context that created them.
+        Self { haze, materials: Arc::default(), ..self.clone() }
+    }
+
+    /// Returns a copy with other shaders.
+    ///
+    /// # Errors
+    /// As [`Context::with_shaders`].
+    pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
+        Ok(self.with_context(Context::with_shaders(&self.device, &self.queue, None, sources)?))
+    }
+
+    /// Uploads images, or returns those that another renderer of the context has uploaded.
+    pub(super) fn upload(&self, assets: &MaterialAssets) -> Result<Arc<UploadedMaterial>, Error> {
+        let mut materials = self.materials.lock().unwrap_or_else(PoisonError::into_inner);
+        materials.retain(|uploaded| uploaded.strong_count() > 0);
+        if let Some(uploaded) = materials.iter().filter_map(Weak::upgrade).find(|one| one.assets.shares_memory(assets))
+        {
+            return Ok(uploaded);
+        }
+        let material = self.haze.create_material(&self.device, &self.queue, assets)?;
+        let uploaded = Arc::new(UploadedMaterial { assets: assets.clone(), material });
+        materials.push(Arc::downgrade(&uploaded));
+        Ok(uploaded)
+    }
+}
+
+/// Images of a system in memory and on the GPU.
+#[derive(Debug)]
+pub(super) struct UploadedMaterial {
+    pub assets: MaterialAssets,
+    pub material: Material,
+}

@@ -1,0 +1,259 @@
+//! A configurable test host on the GPU: it owns the render targets and the pass in which a [`TestScene`] is drawn.
+
+mod textures;
+
+use glam::{UVec2, Vec4};
+use haze::formula::colour::gamma_target_colour;
+use haze::image::Image;
+use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, Timing, wgpu};
+use haze_demo::headless::Headless;
+
+pub use self::textures::convert_to_rgba16float;
+use self::textures::{depth_buffer, pad_to_target, target, upload};
+use crate::gpu::shared_context;
+use crate::test_scene::{BACKDROP, DepthKind, TestScene};
+
+/// Formats and sample count of a host's pass and targets.
+#[derive(Clone, Debug)]
+pub struct HostKind {
+    pub color_format: wgpu::TextureFormat,
+    /// Formats of the additional colour attachments of the pass.
+    pub additional_attachments: Vec<wgpu::TextureFormat>,
+    pub depth_format: wgpu::TextureFormat,
+    /// Sample count of the pass. The depth buffer passed to haze always has one sample.
+    pub samples: u32,
+    pub gamma_target: bool,
+    pub exact_filtering: bool,
+    /// Size of the targets, pixels, if the view covers only a part of them. `None` for the size of the view.
+    pub target_size: Option<UVec2>,
+}
+
+impl Default for HostKind {
+    fn default() -> Self {
+        Self {
+            color_format: wgpu::TextureFormat::Rgba16Float,
+            additional_attachments: Vec::new(),
+            depth_format: wgpu::TextureFormat::Depth32Float,
+            samples: 1,
+            gamma_target: false,
+            exact_filtering: true,
+            target_size: None,
+        }
+    }
+}
+
+/// State of the host that persists between frames.
+pub struct Host {
+    pub renderer: Renderer,
+    pub material: haze::Material,
+    size: UVec2,
+    /// Single-sampled colour target, which tests read back.
+    pub colour: wgpu::Texture,
+    /// The colour attachment that the smoke is drawn on, then the additional attachments.
+    attachments: Vec<wgpu::TextureView>,
+    resolved: Option<wgpu::TextureView>,
+    /// Single-sampled depth buffer passed to haze.
+    pub depth: wgpu::TextureView,
+    /// Linear view depth passed to haze, metres.
+    pub linear: wgpu::TextureView,
+    attached_depth: wgpu::TextureView,
+    /// Measures the host's pass; resolved at the end of each frame.
+    pub timing: Option<Timing>,
+}
+
+/// Image of one frame, and the renderer that drew it.
+pub struct RenderedFrame {
+    pub picture: Image<Vec4>,
+    pub renderer: Renderer,
+}
+
+impl TestScene {
+    pub fn on_gpu(&self, gpu: &Headless) -> RenderedFrame {
+        self.try_on_gpu(gpu).unwrap()
+    }
+
+    pub fn try_on_gpu(&self, gpu: &Headless) -> Result<RenderedFrame, Error> {
+        let mut host = Host::with_shared_context(gpu, self)?;
+        host.draw(gpu, self)?;
+        Ok(RenderedFrame { picture: host.picture(gpu)?, renderer: host.renderer })
+    }
+}
+
+impl Host {
+    pub fn new(gpu: &Headless, scene: &TestScene) -> Result<Self, Error> {
+        Self::with_context(gpu, scene, None)
+    }
+
+    /// Creates a host on the context that tests share. Only for comparing images: on a shared context, counts of
+    /// created resources and compiled pipelines mean nothing.
+    pub fn with_shared_context(gpu: &Headless, scene: &TestScene) -> Result<Self, Error> {
+        Self::with_context(gpu, scene, shared_context(gpu))
+    }
+
+    /// Creates a host whose renderer uses `context`, or its own context if `None`.
+    pub fn with_context(gpu: &Headless, scene: &TestScene, context: Option<&Context>) -> Result<Self, Error> {
+        let kind = &scene.host;
+        let additional_attachments: Vec<_> = kind.additional_attachments.iter().copied().map(Some).collect();
+        let descriptor = Descriptor {
+            context,
+            color_format: kind.color_format,
+            further_color_formats: &additional_attachments,
+            depth_format: scene.attach_depth.then_some(kind.depth_format),
+            sample_count: kind.samples,
+            gamma_target: kind.gamma_target,
+            exact_filtering: kind.exact_filtering,
+        };
+        let renderer = Renderer::new(&gpu.device, &gpu.queue, &descriptor)?;
+        let material = renderer.create_material(&gpu.device, &gpu.queue, &scene.material)?;
+        let size = kind.target_size.unwrap_or(scene.view.size);
+        let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let colour = gpu.target("host colour", size, kind.color_format);
+        let resolved = (kind.samples > 1).then(|| whole(&colour));
+        let mut attachments: Vec<_> = std::iter::once(kind.color_format)
+            .chain(kind.additional_attachments.iter().copied())
+            .map(|format| whole(&target(gpu, size, format, kind.samples)))
+            .collect();
+        if resolved.is_none() {
+            attachments[0] = whole(&colour);
+        }
+        let depth = depth_buffer(gpu, scene, size, 1);
+        let attached_depth =
+            if kind.samples > 1 { depth_buffer(gpu, scene, size, kind.samples) } else { depth.clone() };
+        let linear = upload(gpu, &pad_to_target(&scene.linear_depth(), scene.view.origin, size));
+        // A depth-stencil buffer is sampled through a view of its depth aspect only.
+        let depth_aspect = wgpu::TextureViewDescriptor {
+            aspect: if kind.depth_format.has_stencil_aspect() {
+                wgpu::TextureAspect::DepthOnly
+            } else {
+                wgpu::TextureAspect::All
+            },
+            ..Default::default()
+        };
+        Ok(Self {
+            renderer,
+            material,
+            size,
+            colour,
+            attachments,
+            resolved,
+            depth: depth.create_view(&depth_aspect),
+            linear: whole(&linear),
+            attached_depth: whole(&attached_depth),
+            timing: None,
+        })
+    }
+
+    /// Draws one frame: clears to the backdrop, then draws the smoke.
+    pub fn draw(&mut self, gpu: &Headless, scene: &TestScene) -> Result<(), Error> {
+        self.draw_particles(gpu, scene, Particles::Slice(&scene.particles))
+    }
+
+    pub fn draw_particles(&mut self, gpu: &Headless, scene: &TestScene, particles: Particles<'_>) -> Result<(), Error> {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.prepare(gpu, &mut encoder, scene, particles)?;
+        self.render(&mut encoder, scene);
+        if let Some(timing) = &self.timing {
+            timing.resolve(&mut encoder);
+        }
+        gpu.submit(encoder)
+    }
+
+    /// Draws particles from a GPU buffer in their given order, without sorting.
+    pub fn draw_buffer(&mut self, gpu: &Headless, scene: &TestScene, particles: &[Particle]) -> Result<(), Error> {
+        let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
+        self.draw_particles(gpu, scene, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true })
+    }
+
+    /// Records `prepare`, the first half of a frame.
+    pub fn prepare(
+        &mut self,
+        gpu: &Headless,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &TestScene,
+        particles: Particles<'_>,
+    ) -> Result<(), Error> {
+        let system = System { bounds: scene.bounds, ..System::new(particles, &scene.settings, &self.material) };
+        let frame = Frame {
+            lights: &scene.lights,
+            systems: &[system],
+            time: scene.time,
+            stages: scene.stages.unwrap_or(std::slice::from_ref(&scene.debug_view)),
+            ..Frame::new(scene.view, scene_depth(scene.depth, &self.depth, &self.linear))
+        };
+        self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
+    }
+
+    /// Records the host's pass, the second half of a frame.
+    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) {
+        let clear = if scene.host.gamma_target {
+            gamma_target_colour(BACKDROP.truncate()).extend(BACKDROP.w)
+        } else {
+            BACKDROP
+        };
+        let [r, g, b, a] = clear.to_array().map(f64::from);
+        let attachments: Vec<_> = self
+            .attachments
+            .iter()
+            .enumerate()
+            .map(|(index, view)| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: self.resolved.as_ref().filter(|_| index == 0),
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })
+            })
+            .collect();
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("host"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: scene.attach_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.attached_depth,
+                depth_ops: None,
+                stencil_ops: None,
+            }),
+            timestamp_writes: self.timing.as_ref().and_then(|timing| timing.host_pass("host")),
+            ..Default::default()
+        });
+        self.renderer.render_stage(&mut pass, scene.debug_view);
+    }
+
+    /// Reads back the colour target as floats. sRGB formats are decoded to linear light.
+    pub fn picture(&self, gpu: &Headless) -> Result<Image<Vec4>, Error> {
+        Ok(Image { size: self.size, texels: gpu.read_rgba16float(&convert_to_rgba16float(gpu, &self.colour))? })
+    }
+
+    /// Reads back additional attachment number `index`.
+    pub fn additional_attachments(&self, gpu: &Headless, index: usize) -> Image<Vec4> {
+        let texels = gpu.read_rgba16float(&convert_to_rgba16float(gpu, self.attachments[index + 1].texture())).unwrap();
+        Image { size: self.size, texels }
+    }
+}
+
+/// Uploads particles to a vertex buffer, as a host with its own simulation does.
+fn particle_buffer(gpu: &Headless, particles: &[Particle]) -> wgpu::Buffer {
+    let bytes: &[u8] = bytemuck::cast_slice(particles);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("host particles"),
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
+pub fn scene_depth<'a>(
+    kind: DepthKind,
+    buffer: &'a wgpu::TextureView,
+    linear: &'a wgpu::TextureView,
+) -> SceneDepth<'a> {
+    match kind {
+        DepthKind::Buffer => SceneDepth::Buffer(buffer),
+        DepthKind::Linear => SceneDepth::Linear(linear),
+        DepthKind::Both => SceneDepth::Both { buffer, linear },
+    }
+}
