@@ -11,7 +11,7 @@ use haze_demo::shot::Shot;
 use crate::goldens;
 use crate::gpu::gpu;
 use crate::presets::{shot, without_smoke};
-use crate::psnr::{AGREEMENT, psnr_over};
+use crate::psnr::{MIN_PSNR, psnr_over};
 
 /// Name, shader file, text in it, and its replacement.
 type Mutant = (&'static str, &'static str, &'static str, &'static str);
@@ -74,13 +74,13 @@ fn mistakes_in_shaders_fail_golden_images_and_agreement() {
             let on_gpu = drawn(&context, shot, true);
             let behind = &empty[index];
             worst_psnr = worst_psnr.min(psnr_over([&on_gpu, &on_cpu[index]], [behind, behind]));
-            if worst_golden > goldens::TOLERANCE && worst_psnr < AGREEMENT {
+            if worst_golden > goldens::TOLERANCE && worst_psnr < MIN_PSNR {
                 break;
             }
         }
         gpu().check().unwrap();
         println!("{}: {worst_golden:.2} steps from the golden image, {worst_psnr:.1} dB from the CPU", mutant.0);
         assert!(worst_golden > goldens::TOLERANCE, "{} passes the golden images: {worst_golden:.2}", mutant.0);
-        assert!(worst_psnr < AGREEMENT, "{} passes the agreement of the renderers: {worst_psnr:.1} dB", mutant.0);
+        assert!(worst_psnr < MIN_PSNR, "{} passes the agreement of the renderers: {worst_psnr:.1} dB", mutant.0);
     }
 }

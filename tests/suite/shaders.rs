@@ -190,7 +190,7 @@ fn warm_up_reports_errors_that_only_other_settings_compile() {
     let host = Host::with_context(gpu(), &scene, Some(&folder.context().unwrap())).unwrap();
     let settings = [std::mem::take(&mut scene.settings)];
     let scene_depth = SceneDepthKind::Buffer(wgpu::TextureFormat::Depth32Float);
-    let expected = WarmUp { view: scene.view, scene_depth, settings: &settings, stages: &[DebugView::Final] };
+    let expected = WarmUp { view: scene.view, scene_depth, settings: &settings, debug_views: &[DebugView::Final] };
     host.renderer.warm_up(&expected).unwrap();
     let compiled = host.renderer.context().pipeline_count();
     let combined = WarmUp { debug_views: &[DebugView::Combined], ..expected };

@@ -177,7 +177,7 @@ impl Host {
             lights: &scene.lights,
             systems: &[system],
             time: scene.time,
-            stages: scene.stages.unwrap_or(std::slice::from_ref(&scene.debug_view)),
+            debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
             ..Frame::new(scene.view, scene_depth(scene.depth, &self.depth, &self.linear))
         };
         self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
@@ -218,7 +218,7 @@ impl Host {
             timestamp_writes: self.timing.as_ref().and_then(|timing| timing.host_pass("host")),
             ..Default::default()
         });
-        self.renderer.render_stage(&mut pass, scene.debug_view);
+        self.renderer.render_debug_view(&mut pass, scene.debug_view);
     }
 
     /// Reads back the colour target as floats. sRGB formats are decoded to linear light.

@@ -35,7 +35,7 @@ pub struct TestScene {
     /// Debug view that is drawn.
     pub debug_view: DebugView,
     /// Debug views that the renderer prepares; only the one that is drawn if `None`.
-    pub stages: Option<&'static [DebugView]>,
+    pub debug_views: Option<&'static [DebugView]>,
     /// Kind of scene depth that the renderer gets.
     pub depth: DepthKind,
     /// The wall covers the whole image, without the post.
@@ -168,7 +168,7 @@ impl TestScene {
             time: 1.0,
             up: Vec3::Y,
             debug_view: DebugView::Final,
-            stages: None,
+            debug_views: None,
             depth: DepthKind::Buffer,
             wall_everywhere: false,
             empty_linear: false,

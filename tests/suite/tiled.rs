@@ -67,7 +67,7 @@ pub fn assert_agreement(name: &str, scene: &TestScene) {
             "{name}: {to_raster:.1} dB against raster"
         );
         if cooperative {
-            let to_reference = psnr(&tiled, &stage.on_cpu());
+            let to_reference = psnr(&tiled, &scene.on_cpu());
             println!("{name}: CPU renderer {to_reference:.1} dB");
             let least = if steps { MIN_PSNR_WITH_STEPS } else { MIN_PSNR_TO_CPU };
             assert!(to_reference >= least, "{name}: {to_reference:.1} dB against the CPU renderer");

@@ -90,7 +90,7 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
         assert!(times.smoke_ms() - within + ms("host") <= times.whole_ms * 1.0001, "{times:?}");
         let own: f32 = DEFERRED_PASSES.iter().filter(|name| **name != "host").map(|name| ms(name)).sum();
         assert!((times.smoke_ms() - own).abs() < 1.0e-5 * own, "{times:?}");
-        assert!(times.passes.iter().all(|pass| pass.of_host == (pass.name == "host")));
+        assert!(times.passes.iter().all(|pass| pass.is_host == (pass.name == "host")));
     }
     scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
     let lit =

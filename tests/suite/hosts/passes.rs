@@ -16,13 +16,13 @@ use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 fn one_prepare_serves_every_debug_view() {
     for path in [RenderPath::Raster, RenderPath::Forward] {
         let mut all = TestScene::new(SIZE);
-        (all.settings.path, all.stages) = (path, Some(DebugView::ALL));
+        (all.settings.path, all.debug_views) = (path, Some(DebugView::ALL));
         let mut host = Host::new(gpu(), &all).unwrap();
         let mut encoder = encoder(gpu());
         host.prepare(gpu(), &mut encoder, &all, slice(&all)).unwrap();
         gpu().submit(encoder).unwrap();
         for &scene in DebugView::ALL {
-            let separate = TestScene { debug_view: scene, stages: None, ..TestScene::new(SIZE) };
+            let separate = TestScene { debug_view: scene, debug_views: None, ..TestScene::new(SIZE) };
             let separate = TestScene { settings: all.settings, ..separate };
             all.debug_view = scene;
             let mut encoder = self::encoder(gpu());
@@ -33,7 +33,7 @@ fn one_prepare_serves_every_debug_view() {
     }
     // A debug view that `prepare` was not told about draws nothing.
     let scene =
-        TestScene { stages: Some(&[DebugView::Final]), debug_view: DebugView::Overdraw, ..TestScene::new(SIZE) };
+        TestScene { debug_views: Some(&[DebugView::Final]), debug_view: DebugView::Overdraw, ..TestScene::new(SIZE) };
     assert!(scene.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
 }
 

@@ -16,7 +16,7 @@ fn warm_up<'a>(scene: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
         DepthKind::Linear => SceneDepthKind::Linear,
         DepthKind::Both => SceneDepthKind::Both(scene.host.depth_format),
     };
-    WarmUp { view: scene.view, scene_depth, settings, stages: std::slice::from_ref(&scene.debug_view) }
+    WarmUp { view: scene.view, scene_depth, settings, debug_views: std::slice::from_ref(&scene.debug_view) }
 }
 
 #[test]

@@ -32,11 +32,11 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
     for shape in [EmitterShape::Sphere, EmitterShape::Box, EmitterShape::Disc] {
         let emitter = Emitter { shape, ..emitter() };
         for time in [0.3, 7.0, 10_000.0] {
-            let emission = emitter.at(time);
+            let emission = emitter.snapshot(time);
             let mut scene = scene(Technique::Soft);
             emission.evaluate(&mut scene.particles);
             // The same bounding box for both, so that both are lit on the same plane.
-            scene.bounds = Some(emission.bounds(scene.settings.reach()));
+            scene.bounds = Some(emission.bounds(scene.settings.sprite_extent()));
             scene.settings.accumulate.order = BlendOrder::Sorted;
             let mut host = Host::new(gpu(), &scene).unwrap();
             let particles = scene.particles.clone();
