@@ -5,7 +5,7 @@ use haze::Particle;
 use haze::noise::{pcg3d, unit};
 use haze::preset::{EndBehaviour, ParticleFiles, UpAxis};
 
-use super::{FramePair, ParticleFrames};
+use super::particle_frames::{FramePair, ParticleFrames};
 
 impl ParticleFrames {
     /// Replaces `particles` with those at `time`, seconds. The same input gives the same output.
@@ -37,7 +37,7 @@ impl ParticleFrames {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Limits;
+    use super::super::particle_frames::Limits;
     use super::*;
 
     fn frames(texts: &[&str]) -> ParticleFrames {

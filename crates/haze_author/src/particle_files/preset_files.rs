@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::{Limits, ParticleFrames};
+use super::particle_frames::{Limits, ParticleFrames};
 use haze::emitter::MAX_PARTICLES;
 use haze::error::{Error, FieldError};
 use haze::preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};

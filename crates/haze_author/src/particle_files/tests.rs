@@ -1,5 +1,7 @@
 //! Tests of loading files and sequences, and of interpolation between frames.
 
+use std::path::Path;
+
 use super::*;
 
 const LIMITS: Limits = Limits { particles: 1 << 20, bytes: 1 << 30 };

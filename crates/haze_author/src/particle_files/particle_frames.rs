@@ -1,0 +1,126 @@
+//! Frames of a simulation in memory, loaded from one file or one file per frame.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::sync::Arc;
+
+use haze::assets::bounded_read;
+use haze::error::Error;
+
+use super::parse_error::ParseError;
+use super::particle_frame::ParticleFrame;
+use super::{csv_reader, ply};
+
+/// Size limit of one file, bytes.
+pub const MAX_FILE_BYTES: u64 = 256 << 20;
+
+/// Limits of a load.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Maximum number of particles in one frame.
+    pub particles: usize,
+    /// Maximum size of all frames in memory, bytes.
+    pub bytes: u64,
+}
+
+/// Frames of a simulation, sorted by frame number. A clone shares the memory.
+#[derive(Clone, Debug)]
+pub struct ParticleFrames(Arc<[(u32, ParticleFrame)]>);
+
+/// The two frames around a time, and the position between them.
+#[derive(Clone, Copy, Debug)]
+pub struct FramePair<'a> {
+    /// The frame at this time or before it.
+    pub before: &'a ParticleFrame,
+    /// The next frame, if there is one.
+    pub after: Option<&'a ParticleFrame>,
+    /// Fraction of the interval to the next frame that has passed, 0 to 1.
+    pub share: f32,
+}
+
+impl ParticleFrames {
+    /// Loads one file, or a sequence if the file name contains `#` in place of the frame number's digits.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Json`] with line and column for CSV, ASCII PLY and PLY headers; [`Error::Image`] for
+    /// everything else, with vertex and byte offset for binary PLY.
+    pub fn load(path: &Path, limits: Limits) -> Result<Self, Error> {
+        let (mut frames, mut bytes) = (Vec::new(), 0);
+        for (number, file) in haze::preset::frame_files(path)? {
+            let content = bounded_read::read(&file, "CSV or PLY file", MAX_FILE_BYTES)?;
+            let frame = parse(&file, &content, limits.particles).map_err(|error| error.into_error(&file))?;
+            bytes += frame.bytes();
+            if bytes > limits.bytes {
+                let [found, limit] = [bytes, limits.bytes].map(|bytes| bytes.div_ceil(1 << 20));
+                let reason = format!("{found} MiB of particles up to this frame; expected at most {limit} MiB");
+                return Err(Error::Image { path: file, reason });
+            }
+            frames.push((number, frame));
+        }
+        Ok(Self(frames.into()))
+    }
+
+    /// Returns the frames in order, with their numbers.
+    pub fn frames(&self) -> &[(u32, ParticleFrame)] {
+        &self.0
+    }
+
+    /// Returns the largest number of particles in one frame.
+    pub fn max_particles(&self) -> usize {
+        self.0.iter().map(|(_, frame)| frame.particles().len()).max().unwrap_or_default()
+    }
+
+    /// Returns the size in memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.0.iter().map(|(_, frame)| frame.bytes()).sum()
+    }
+
+    /// Returns the number of frames from the first to the last, including missing ones between them.
+    pub fn frame_count(&self) -> u32 {
+        self.0.last().map_or(1, |(last, _)| last - self.first() + 1)
+    }
+
+    /// Returns the frames around a time, in frames since the first. `None` before the first frame; after the last
+    /// frame, the last one with nothing after it.
+    pub fn frames_around(&self, frame: f64) -> Option<FramePair<'_>> {
+        let number = frame + f64::from(self.first());
+        let next = self.0.partition_point(|(at, _)| f64::from(*at) <= number);
+        let (start, before) = self.0.get(next.checked_sub(1)?)?;
+        let Some((end, after)) = self.0.get(next) else {
+            return Some(FramePair { before, after: None, share: 0.0 });
+        };
+        let share = ((number - f64::from(*start)) / f64::from(end - start)) as f32;
+        Some(FramePair { before, after: Some(after), share })
+    }
+
+    /// True if both share the same memory.
+    pub fn shares_memory(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
+    /// True if both lists share the same memory in every entry.
+    pub fn share_all_memory(some: &[Option<Self>], others: &[Option<Self>]) -> bool {
+        let shares_memory = |(one, other): (&Option<Self>, &Option<Self>)| match (one, other) {
+            (Some(one), Some(other)) => one.shares_memory(other),
+            (None, None) => true,
+            _ => false,
+        };
+        some.len() == others.len() && some.iter().zip(others).all(shares_memory)
+    }
+
+    fn first(&self) -> u32 {
+        self.0.first().map_or(0, |(first, _)| *first)
+    }
+}
+
+/// Parses one frame. The format follows from the path's extension: PLY for `.ply`, otherwise CSV. The path is not
+/// opened.
+///
+/// # Errors
+/// A [`ParseError`] with the position, if the content is malformed.
+pub fn parse(path: &Path, content: &[u8], max_particles: usize) -> Result<ParticleFrame, ParseError> {
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case(OsStr::new("ply")) => ply::read(content, max_particles),
+        _ => csv_reader::read(content, max_particles),
+    }
+}
