@@ -41,7 +41,7 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
-    /// Returns the traversal of the path `tiled`, as in [`PipelineInputs::tiles`](super::plan::Situation::tiles).
+    /// Returns the traversal of the path `tiled`, as in [`PipelineInputs::tiles`](super::plan::PipelineInputs::tiles).
     pub fn tiles(&self) -> Option<bool> {
         self.pipelines.tiled.as_ref().map(TiledPipelines::cooperative)
     }

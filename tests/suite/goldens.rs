@@ -1,6 +1,6 @@
 //! Golden images: both renderers must stay within a tolerance of images that were reviewed by eye.
 //!
-//! `HAZE_BLESS=1 cargo test goldens` writes them again; look at each before you commit it.
+//! `HAZE_BLESS=1 cargo test --package haze --test suite -- goldens` writes them again; look at each before you commit it.
 
 use std::path::{Path, PathBuf};
 

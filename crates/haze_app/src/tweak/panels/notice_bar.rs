@@ -15,7 +15,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, persistence: Option<&mut Persis
         return;
     }
     egui::Panel::top("notice").show(ui, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let path = truncate_middle(&session.document.path().display().to_string(), 80);
             ui.label(format!("{path} was changed by another program, and has unsaved changes here."));
             if ui.button("Load it").on_hover_text("Undo restores your changes").clicked() {
@@ -35,7 +35,7 @@ fn recovery(ui: &mut Ui, session: &mut Session, persistence: &mut Persistence) {
         (truncate_middle(&one.source.display().to_string(), 60), truncate_middle(&one.preset.name, 30));
     let text = format!("The program ended with unsaved work on {source}: {name}.");
     egui::Panel::top("recovery").show(ui, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.label(text);
             // It must not replace other unsaved work.
             let is_free = !session.document.is_dirty();

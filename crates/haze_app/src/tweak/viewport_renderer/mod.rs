@@ -38,14 +38,26 @@ pub struct ViewportRenderer {
     is_timed: bool,
 }
 
+fn render_state<'a>(window: &'a eframe::CreationContext<'_>) -> Result<&'a eframe::egui_wgpu::RenderState, Error> {
+    let none = || Error::NoDevice("the window has no graphics device".into());
+    window.wgpu_render_state.as_ref().ok_or_else(none)
+}
+
 impl ViewportRenderer {
     /// # Errors
     /// If there is no device, or it lacks what the demo renderer needs.
     pub fn new(window: &eframe::CreationContext<'_>) -> Result<Self, Error> {
-        let none = || Error::NoDevice("the window has no graphics device".into());
-        let render = window.wgpu_render_state.as_ref().ok_or_else(none)?;
+        let render = render_state(window)?;
+        Self::with_context(window, OffscreenContext::new(&render.adapter, &render.device, &render.queue))
+    }
+
+    /// Like [`new`](Self::new), with pipelines that other renderers of the window's device share.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_context(window: &eframe::CreationContext<'_>, context: OffscreenContext) -> Result<Self, Error> {
+        let render = render_state(window)?;
         let health = DeviceHealth::watch(&render.device, &window.egui_ctx);
-        let context = OffscreenContext::new(&render.adapter, &render.device, &render.queue);
         if render.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
             // Takes about 0.2 s on a GPU. A CPU adapter takes longer, and its paths cost about the same.
             context.measure_paths(|encoder| {

@@ -1,11 +1,14 @@
 //! Window for tests: controlled through accessible names, drawn by a real adapter.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use eframe::egui::{self, Vec2};
 use eframe::egui_wgpu;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, HarnessBuilder};
+use haze::Error;
+use haze_demo::offscreen_renderer::OffscreenContext;
 use image::RgbaImage;
 
 use super::open::device;
@@ -32,11 +35,32 @@ fn start(preset: &str, shaders: ShaderFolder) -> Start {
 
 /// Like [`window`], with any start state.
 pub fn open(start: Start, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
-    settled(Harness::builder().with_size(size).with_theme(theme).wgpu(), start)
+    let (setup, context) = shared_device();
+    let builder = Harness::builder().with_size(size).with_theme(theme).wgpu_setup(setup.clone());
+    settled(builder, |window| ViewportRenderer::with_context(window, context.clone()), start)
 }
 
-fn settled(builder: HarnessBuilder<Window>, start: Start) -> Harness<'static, Window> {
-    let open = |context: &mut _| Window::new(ViewportRenderer::new(context).unwrap(), start).unwrap();
+/// Device and pipelines that all tests of the process share, so that no pipeline is compiled twice.
+fn shared_device() -> &'static (egui_wgpu::WgpuSetup, OffscreenContext) {
+    static SHARED: LazyLock<(egui_wgpu::WgpuSetup, OffscreenContext)> = LazyLock::new(|| {
+        let setup = egui_kittest::wgpu::default_wgpu_setup();
+        let instance = pollster::block_on(setup.new_instance());
+        let options = egui_wgpu::RendererOptions::PREDICTABLE;
+        let configuration = egui_wgpu::WgpuConfiguration { wgpu_setup: setup, ..Default::default() };
+        let created = egui_wgpu::RenderState::create(&configuration, &instance, None, options);
+        let egui_wgpu::RenderState { adapter, device, queue, .. } = pollster::block_on(created).unwrap();
+        let context = OffscreenContext::new(&adapter, &device, &queue);
+        (egui_wgpu::WgpuSetupExisting { instance, adapter, device, queue }.into(), context)
+    });
+    &SHARED
+}
+
+fn settled(
+    builder: HarnessBuilder<Window>,
+    renderer: impl FnOnce(&eframe::CreationContext<'_>) -> Result<ViewportRenderer, Error>,
+    start: Start,
+) -> Harness<'static, Window> {
+    let open = |context: &mut eframe::CreationContext<'_>| Window::new(renderer(context).unwrap(), start).unwrap();
     let mut harness = builder.with_render_cursor(false).build_eframe(open);
     harness.run_steps(3);
     harness
@@ -48,7 +72,8 @@ pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
     if let egui_wgpu::WgpuSetup::CreateNew(setup) = &mut setup {
         setup.device_descriptor = std::sync::Arc::new(device);
     }
-    settled(Harness::builder().with_size(size).wgpu_setup(setup), start(preset, ShaderFolder::None))
+    let builder = Harness::builder().with_size(size).wgpu_setup(setup);
+    settled(builder, ViewportRenderer::new, start(preset, ShaderFolder::None))
 }
 
 /// Opens the menu of the row whose control has this name.

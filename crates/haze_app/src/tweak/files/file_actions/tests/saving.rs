@@ -16,7 +16,7 @@ fn changes_are_saved_by_menu_by_key_and_under_another_name() {
     bench.click("File");
     bench.window.get_by_label_contains("Save as").click();
     bench.window.run_steps(3);
-    assert!(bench.window.query_by_label_contains("no dialogs for files: type the path").is_some());
+    assert!(bench.window.query_by_label_contains("has no file dialog: type the path").is_some());
     let folder = format!("in {}", bench.folder.path().display());
     assert!(bench.window.query_by_label(&folder).is_some(), "{folder}");
     let other = bench.path("other.json");
