@@ -17,16 +17,16 @@ override HOST_DEPTH: bool = false;
 // True: the accumulation target is the output of light_target, light times amount, and amount.
 override LIT: bool = false;
 
-const SHADE_TREE_FINAL: u32 = 0u;
-const SHADE_TREE_COMBINED: u32 = 1u;
-const SHADE_TREE_DIFFUSE: u32 = 2u;
-const SHADE_TREE_SOFT_SCATTER: u32 = 3u;
-const SHADE_TREE_SPECULAR_SCATTER: u32 = 4u;
-const SHADE_TREE_NORMALS: u32 = 5u;
-const SHADE_TREE_AMOUNT: u32 = 6u;
-const SHADE_TREE_OVERDRAW: u32 = 7u;
-const SHADE_TREE_REDUCED_DEPTH: u32 = 8u;
-override DEBUG_VIEW: u32 = SHADE_TREE_FINAL;
+const DEBUG_VIEW_FINAL: u32 = 0u;
+const DEBUG_VIEW_COMBINED: u32 = 1u;
+const DEBUG_VIEW_DIFFUSE: u32 = 2u;
+const DEBUG_VIEW_SOFT_SCATTER: u32 = 3u;
+const DEBUG_VIEW_SPECULAR_SCATTER: u32 = 4u;
+const DEBUG_VIEW_NORMALS: u32 = 5u;
+const DEBUG_VIEW_AMOUNT: u32 = 6u;
+const DEBUG_VIEW_OVERDRAW: u32 = 7u;
+const DEBUG_VIEW_REDUCED_DEPTH: u32 = 8u;
+override DEBUG_VIEW: u32 = DEBUG_VIEW_FINAL;
 
 // The twelve triangles of a box, counter-clockwise seen from outside. Bit 0 of a corner is x, bit 1 is y, bit 2 is z.
 const BOX_CORNERS = array<u32, 36>(
@@ -55,7 +55,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = position.xy - view.origin;
-    if DEBUG_VIEW == SHADE_TREE_REDUCED_DEPTH {
+    if DEBUG_VIEW == DEBUG_VIEW_REDUCED_DEPTH {
         var depth = 0.0;
         if HOST_DEPTH {
             depth = scene_view_depth(pixel);
@@ -68,10 +68,10 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     let accumulated = sample_target(accumulation, pixel);
     let amount = accumulated.a;
-    if DEBUG_VIEW == SHADE_TREE_OVERDRAW {
+    if DEBUG_VIEW == DEBUG_VIEW_OVERDRAW {
         return vec4f(overdraw_colour(amount * 255.0), 1.0);
     }
-    if DEBUG_VIEW == SHADE_TREE_AMOUNT {
+    if DEBUG_VIEW == DEBUG_VIEW_AMOUNT {
         return vec4f(vec3f(amount), 1.0);
     }
     if amount <= 0.0 {
@@ -87,15 +87,15 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         extra = sample_target(extra_attachment, pixel);
     }
     let surface = surface_from_accumulation(accumulated, extra);
-    if DEBUG_VIEW == SHADE_TREE_NORMALS {
+    if DEBUG_VIEW == DEBUG_VIEW_NORMALS {
         return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;
     }
 
     var light = vec3f(0.0);
-    if DEBUG_VIEW != SHADE_TREE_SOFT_SCATTER {
+    if DEBUG_VIEW != DEBUG_VIEW_SOFT_SCATTER {
         light += diffuse(surface, amount, shading_position(pixel));
     }
-    if DEBUG_VIEW != SHADE_TREE_DIFFUSE {
+    if DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
         light += soft_scatter(amount);
     }
     return vec4f(target_colour(light), 1.0) * covered;

@@ -9,6 +9,7 @@ use super::buffers::{Capacity, Part, TileBuffers};
 use super::passes::TiledPasses;
 use super::shared::{Tiled, TiledKeys};
 use super::storage::WORD_BYTES;
+use crate::formula::tiles::{BITS_PER_WORD, run_count};
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::auto::PathWorkload;
 use crate::renderer::gpu::Gpu;
@@ -18,10 +19,10 @@ use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
 use crate::renderer::pass::sprites::Sprites;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
-use crate::renderer::pass::tile_bin::{RUN, TileBin};
+use crate::renderer::pass::tile_bin::TileBin;
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
-use crate::renderer::pass::tile_refine::{BATCH, TileRefine};
+use crate::renderer::pass::tile_refine::TileRefine;
 use crate::renderer::targets::ExtraAttachment;
 use crate::settings::AccumulationFormat;
 
@@ -79,7 +80,7 @@ impl TiledSystem {
         let TiledInputs { sprites, size, format, extra_attachment, attachments, depth, load } = *inputs;
         let most = max_storage_words(&tiled.limits);
         let cooperative = keys.accumulate.cooperative;
-        let runs = sprites.count.div_ceil(RUN);
+        let runs = run_count(sprites.count);
         let mut bin_side = match (cooperative, sprites.count > MANY) {
             (false, _) => BIN_SIDE_PER_INVOCATION,
             (true, false) => BIN_SIDE_COOPERATIVE,
@@ -97,7 +98,7 @@ impl TiledSystem {
         let touched = load.map_or(0.0, |load| load.touched(f64::from(bin_side), f64::from(bin_side)));
         let expected = (ENTRY_SAFETY_FACTOR * touched * f64::from(sprites.count)) as u32;
         // tile_refine needs as many words again, in whole batches per bin.
-        let expected = if cooperative { expected } else { 2 * expected + BATCH * bins };
+        let expected = if cooperative { expected } else { 2 * expected + BITS_PER_WORD * bins };
         let entries = wanted.max(expected).max(MIN_ENTRIES);
         let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, entries };
         let buffers = self.fit(gpu, tiled, needed.rounded_up(most));
