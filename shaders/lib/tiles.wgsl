@@ -35,8 +35,8 @@ const NO_LIST: u32 = 0xffffffffu;
 const PER_INVOCATION_TILE: vec2u = vec2u(8u, 4u);
 // Parts of a bin. With the usual bin side of 32 texels, a part is a tile.
 const PARTS: vec2u = vec2u(4u, 8u);
-// Sprites of a list that share one word per part, one bit each. Equal to the number of parts. BATCH in
-// src/renderer/pass/tile_refine.rs.
+// Sprites of a list that share one word per part, one bit each. Equal to the number of parts. In src/formula/tiles.rs
+// too.
 const BITS_PER_WORD: u32 = 32u;
 
 // Returns the number of words that tile_refine needs for a list of this length.
@@ -44,7 +44,7 @@ fn refine_words(length: u32) -> u32 {
     return (length + BITS_PER_WORD - 1u) / BITS_PER_WORD * BITS_PER_WORD;
 }
 
-// Sprites per run. RUN in src/renderer/pass/tile_bin.rs.
+// Sprites per run. RUN in src/formula/tiles.rs.
 const RUN: u32 = 64u;
 
 // Returns the number of runs of `count` sprites.

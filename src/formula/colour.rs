@@ -33,6 +33,11 @@ pub fn bounded_light(light: Vec3) -> Vec3 {
     light.min(Vec3::splat(MAX_HALF_FLOAT_LIGHT))
 }
 
+/// Light as the host's target stores it. `gamma_target`: as sRGB code.
+pub fn target_colour(gamma_target: bool, light: Vec3) -> Vec3 {
+    if gamma_target { gamma_target_colour(light) } else { bounded_light(light) }
+}
+
 /// Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
 pub fn overdraw_colour(layers: f32) -> Vec3 {
     let heat = if layers > 4.0 { layers.log2() - 1.0 } else { layers * 0.25 };

@@ -85,6 +85,11 @@ pub fn view_depth_from_linear(texel: f32) -> f32 {
     if texel < SKY_VIEW_DEPTH { texel } else { SKY_VIEW_DEPTH }
 }
 
+/// Depth of a reduced texel, 0..1. `coarse_copy`: one step of 16 bits farther, so that rounding hides no sprite.
+pub fn stored_depth(view_depth: f32, depth_limit: f32, coarse_copy: bool) -> f32 {
+    super::saturate(view_depth / depth_limit + if coarse_copy { 1.0 / 65535.0 } else { 0.0 })
+}
+
 /// True if the reduced texel keeps the farthest depth under it, false if it keeps the nearest.
 pub fn depth_downsample_keeps_farthest(mode: DepthDownsample, texel: IVec2) -> bool {
     match mode {

@@ -18,6 +18,8 @@ pub mod soft_fade;
 pub mod sprite;
 pub mod technique;
 pub mod texture;
+pub mod tile_sprite;
+pub mod tiles;
 pub mod tonemap;
 pub mod uniforms;
 pub mod upsample;

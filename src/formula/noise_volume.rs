@@ -4,16 +4,18 @@ use glam::{IVec3, Vec3, Vec4, Vec4Swizzles};
 
 use super::texture::Texture3d;
 
+/// Texel at a position, which wraps around.
+pub fn load_noise_volume(noise: &impl Texture3d, texel: IVec3) -> Vec4 {
+    noise.load(texel.rem_euclid(IVec3::splat(noise.dimensions() as i32)).as_uvec3())
+}
+
 /// Samples inverse density gradient (−1..1) and density. The noise repeats with every unit of `coordinate`.
 pub fn sample_noise_volume(noise: &impl Texture3d, coordinate: Vec3) -> Vec4 {
     let size = noise.dimensions() as i32;
     let at = (coordinate - coordinate.floor()) * size as f32 - 0.5;
     let base = at.floor();
     let f = at - base;
-    let load = |x, y, z| {
-        let texel = (base.as_ivec3() + IVec3::new(x, y, z)).rem_euclid(IVec3::splat(size));
-        noise.load(texel.as_uvec3())
-    };
+    let load = |x, y, z| load_noise_volume(noise, base.as_ivec3() + IVec3::new(x, y, z));
     let slice = |z| {
         let row = |y| load(0, y, z).lerp(load(1, y, z), f.x);
         row(0).lerp(row(1), f.y)

@@ -58,7 +58,8 @@ pub fn animation_frames(animation: SpriteAnimation, frame: f32, frame_count: f32
     }
 }
 
-fn load_sprite_bilinear(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, level: u32) -> Vec4 {
+/// Samples a frame at a mip level, filtered between four texels.
+pub fn load_sprite_bilinear(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, level: u32) -> Vec4 {
     let size = sprite.dimensions(level) as i32;
     let texel = uv * size as f32 - 0.5;
     let base = texel.floor();
@@ -71,8 +72,14 @@ fn load_sprite_bilinear(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, leve
     top.lerp(bottom, fraction.y)
 }
 
-fn sample_sprite_frame(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, lod: f32) -> Vec4 {
-    let last = (sprite.level_count() - 1) as f32;
+/// Last mip level of a sprite.
+pub fn last_level(sprite: &impl Texture2dArray) -> f32 {
+    (sprite.level_count() - 1) as f32
+}
+
+/// Samples a frame, filtered between texels and between mip levels.
+pub fn sample_sprite_frame(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, lod: f32) -> Vec4 {
+    let last = last_level(sprite);
     let level = lod.min(last);
     let base = level.floor();
     let fine = load_sprite_bilinear(sprite, uv, frame, base as u32);
@@ -113,6 +120,11 @@ pub fn sample_detail(detail: &impl Texture2dArray, uv: Vec2, frames: FlipbookFra
 /// Undoes a sprite's rotation, (cos, sin).
 pub fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
     Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
+}
+
+/// Corner 0 to 3 of a triangle strip, −1..1, y up.
+pub fn sprite_corner(index: u32) -> Vec2 {
+    Vec2::new((index % 2) as f32, (index / 2) as f32) * 2.0 - 1.0
 }
 
 /// Corner of a sprite's trimmed rectangle, −1..1, y up. `corner` is the one of the full square; `reach` is the extent

@@ -90,7 +90,7 @@ impl SpriteProjector<'_> {
         if technique == Technique::SphericalBillboard {
             radius *= system.billboard_radius;
         }
-        let half_depth = if technique.is_flat() { 0.0 } else { radius };
+        let half_depth = self.sprite_thickness(radius);
         let (front, back) = (-centre.z - half_depth, -centre.z + half_depth);
         let fade = near_fade(back, system.near_fade_start, system.near_fade_end);
         let amount = particle.shown_amount() * system.opacity * fade;
@@ -114,6 +114,16 @@ impl SpriteProjector<'_> {
     /// Returns the extent of a flat sprite from its centre, as fractions of half a side: left, down, right, up.
     pub fn trimmed_extent(&self, sprite: &ProjectedSprite) -> Vec4 {
         self.trim.trimmed_extent(sprite)
+    }
+
+    /// Returns the extent of a sprite in front of its centre and behind it, metres.
+    pub fn sprite_thickness(&self, radius: f32) -> f32 {
+        if self.technique.is_flat() { 0.0 } else { radius }
+    }
+
+    /// Returns the view depth at which the hardware tests a sprite. No part of the sprite is nearer.
+    pub fn sprite_front(&self, sprite: &ProjectedSprite) -> f32 {
+        (-sprite.centre.z - self.sprite_thickness(sprite.radius)).max(self.view.near)
     }
 
     /// Returns the position at which a sprite is drawn: a slab whose centre has passed the near plane is drawn on that
@@ -171,7 +181,8 @@ impl SpriteProjector<'_> {
     }
 
     /// Returns the corners of the trimmed square of a flat sprite, in pixels, in order around it.
-    fn corners(&self, sprite: &ProjectedSprite, reach: Vec4, rotation: f32) -> [Vec2; 4] {
+    /// Returns the corners of a flat sprite, NDC.
+    pub fn corners(&self, sprite: &ProjectedSprite, reach: Vec4, rotation: f32) -> [Vec2; 4] {
         let centre = self.clamped_to_near_plane(sprite.centre);
         let along = if self.view.orthographic > 0.5 { 1.0 } else { -centre.z };
         let turn = Vec2::from_angle(rotation) * sprite.radius;

@@ -155,6 +155,12 @@ fn wgsl_constants_match_rust() {
     assert_eq!(constant(&transfer, "MAX_HALF_FLOAT_LIGHT"), f64::from(formula::colour::MAX_HALF_FLOAT_LIGHT));
     assert_eq!(constant(&transfer, "SMOKE_DEPTH_TOLERANCE"), f64::from(formula::upsample::SMOKE_DEPTH_TOLERANCE));
     assert_eq!(constant(&transfer, "VISIBILITY_TAPS"), f64::from(formula::lighting::VISIBILITY_TAPS));
+    let accumulate = composed("tile_accumulate.wgsl");
+    assert_eq!(constant(&accumulate, "RUN"), f64::from(formula::tiles::RUN));
+    assert_eq!(constant(&accumulate, "BITS_PER_WORD"), f64::from(formula::tiles::BITS_PER_WORD));
+    assert_eq!(constant(&accumulate, "EVERYTHING"), f64::from(formula::tiles::EVERYTHING));
+    assert_eq!(constant(&accumulate, "HIDDEN_KEY"), f64::from(formula::tiles::HIDDEN_KEY));
+    assert_eq!(constant(&accumulate, "OPAQUE"), f64::from(formula::tiles::OPAQUE));
 }
 
 macro_rules! assert_choices {

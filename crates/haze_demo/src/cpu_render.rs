@@ -1,4 +1,4 @@
-//! Renders a shot, scene and smoke, on the CPU. stage.rs does so on the GPU.
+//! Renders a shot, scene and smoke, on the CPU. offscreen_renderer.rs does so on the GPU.
 
 use glam::{Vec3, Vec4};
 

@@ -156,13 +156,7 @@ impl OffscreenRenderer {
             time: shot.preset.time,
             up: Vec3::Y,
             debug_views: stages,
-            ..Frame::new(
-                view,
-                match &sized.targets.linear {
-                    Some(linear) => SceneDepth::Both { buffer: depth, linear },
-                    None => SceneDepth::Buffer(depth),
-                },
-            )
+            ..Frame::new(view, sized.scene_depth())
         };
         self.renderer.prepare(device, queue, encoder, &frame)?;
         for &stage in stages {
@@ -276,6 +270,14 @@ impl OffscreenRenderer {
 }
 
 impl SizedTargets {
+    fn scene_depth(&self) -> SceneDepth<'_> {
+        let buffer = &self.targets.depth;
+        match &self.targets.linear {
+            Some(linear) => SceneDepth::Both { buffer, linear },
+            None => SceneDepth::Buffer(buffer),
+        }
+    }
+
     fn size(&self) -> UVec2 {
         UVec2::new(self.targets.colour.width(), self.targets.colour.height())
     }

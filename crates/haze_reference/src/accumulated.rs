@@ -9,9 +9,13 @@ use haze::settings::Upsample;
 
 /// Finished target of a system.
 pub struct AccumulatedTarget<'a> {
+    /// System that was accumulated.
     pub visible: &'a VisibleSystem<'a>,
+    /// Baked diffuse light: the faces of a cubemap, one motif, or empty.
     pub baked: &'a [Image<Vec3>],
+    /// View depth at the resolution of the target, metres.
     pub reduced_depth: &'a Image<f32>,
+    /// Normals, or light from right, top and front, and amounts.
     pub accumulation: &'a Image<Vec4>,
     /// Second target: the sum of the normals' weights, or the other half of six-way light.
     pub extra_attachment: Option<&'a Image<Vec4>>,

@@ -1,13 +1,13 @@
 //! CPU renderer: the whole frame in f32, with the same passes as the GPU renderer. It is the oracle of the tests, and
 //! draws on machines without a GPU driver.
 
-mod accumulated;
+pub mod accumulated;
 pub mod blend_unit;
 mod input;
-mod pass;
+pub mod pass;
 mod probe;
-mod sprite;
-mod visible_system;
+pub mod sprite;
+pub mod visible_system;
 
 use glam::Vec4;
 

@@ -22,20 +22,29 @@ use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid};
 
 /// Sprite in view space.
 pub struct SpriteSetup {
+    /// Centre, metres.
     pub centre: Vec3,
+    /// View depth of the centre, metres.
     pub view_depth: f32,
+    /// Half the side of a square, or the radius of a sphere, metres.
     pub radius: f32,
+    /// Cosine and sine of the rotation.
     pub rotation: Vec2,
+    /// Amount after near fade and opacity.
     pub amount: f32,
+    /// Mip level.
     pub lod: f32,
+    /// Frames shown.
     pub frames: FlipbookFrames,
     /// Squares only: extent from the centre to the left, bottom, right and top, as shares of half a side.
     pub reach: Vec4,
+    /// Share of the particle's life that has passed.
     pub age: f32,
     /// Weight of the normal under the order `weighted`.
     pub weight: f32,
-    /// Pixels that the sprite can cover: upper left and lower right corner.
+    /// Upper left corner of the pixels that the sprite can cover.
     pub min: Vec2,
+    /// Lower right corner of the pixels that the sprite can cover.
     pub max: Vec2,
 }
 
@@ -46,6 +55,7 @@ pub struct SpriteFragment {
     pub normal: Vec3,
     /// View space, for sprites lit by six-way maps.
     pub six_way: SixWay,
+    /// 0 to 1.
     pub amount: f32,
 }
 
@@ -120,7 +130,8 @@ impl VisibleSystem<'_> {
         }
     }
 
-    fn projector(&self) -> SpriteProjector<'_> {
+    /// Projector of the system's sprites.
+    pub fn projector(&self) -> SpriteProjector<'_> {
         SpriteProjector { view: &self.view, system: &self.system, technique: self.settings.technique, trim: &self.trim }
     }
 
@@ -177,7 +188,8 @@ impl VisibleSystem<'_> {
         Some(SpriteFragment { amount, ..texel })
     }
 
-    fn fade_before(&self, scene: f32, view_depth: f32) -> f32 {
+    /// Soft fade of a point in front of the scene.
+    pub fn fade_before(&self, scene: f32, view_depth: f32) -> f32 {
         let system = &self.system;
         let curve = self.settings.soft_fade.curve;
         soft_fade(curve, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon)
@@ -195,7 +207,7 @@ impl VisibleSystem<'_> {
     }
 
     /// Values of the sprite's image at a position, rotated with the sprite.
-    fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> SpriteFragment {
+    pub fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> SpriteFragment {
         let SpriteSetup { frames, lod, rotation, .. } = *sprite;
         if let Some(maps) = self.material.six_way.as_ref().filter(|_| self.settings.is_six_way()) {
             let negative = offset_frames(frames, self.system.frame_count as i32);
@@ -212,7 +224,8 @@ impl VisibleSystem<'_> {
         SpriteFragment { normal: rotate_normal(texel.xyz(), rotation), six_way: SixWay::default(), amount: texel.w }
     }
 
-    fn sphere_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
+    /// Values of a spherical sprite at a pixel; `None` if it is hidden.
+    pub fn sphere_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
         let system = &self.system;
         let ray = self.view_position(pixel, 1.0);
         let (origin, along) =
@@ -234,7 +247,8 @@ impl VisibleSystem<'_> {
         Some(SpriteFragment { amount, ..texel })
     }
 
-    fn volumetric_fragment(
+    /// Values of a volumetric sprite along a ray.
+    pub fn volumetric_fragment(
         &self,
         sprite: &SpriteSetup,
         scene: f32,

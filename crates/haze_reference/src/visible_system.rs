@@ -21,17 +21,27 @@ use haze::view_setup::{
 
 /// Visible system, with the input of its passes.
 pub struct VisibleSystem<'a> {
+    /// Camera.
     pub view: ViewUniform,
+    /// Inverse of the view matrix.
     pub world_from_view: Mat4,
+    /// Uniforms of the system.
     pub system: SystemUniform,
+    /// Placement of the system in the view.
     pub setup: SystemSetup,
+    /// Box that contains every sprite, world space.
     pub bounds: Bounds,
+    /// Lights that reach the system, view space.
     pub lights: Vec<LightUniform>,
     /// In drawing order.
     pub particles: Vec<Particle>,
+    /// Trimming of the sprites.
     pub trim: SpriteTrim,
+    /// Depth buffer of the scene, 0..1.
     pub scene_depth: &'a Image<f32>,
+    /// Settings of the system.
     pub settings: &'a Settings,
+    /// Images of the system.
     pub material: &'a MaterialAssets,
 }
 
@@ -82,6 +92,7 @@ impl<'a> VisibleSystem<'a> {
         debug_view.shows_lit_smoke() && self.settings.accumulate.lights_per_texel(self.view.size.as_uvec2())
     }
 
+    /// View depth of the scene at a pixel, metres.
     pub fn scene_view_depth(&self, pixel: IVec2) -> f32 {
         view_depth_from_ndc_depth(self.scene_depth.load(pixel), self.view.depth_coefficients)
     }
@@ -92,6 +103,7 @@ impl<'a> VisibleSystem<'a> {
         view_position(ray, view_depth, self.view.orthographic)
     }
 
+    /// Pixel of a point in view space.
     pub fn pixel_from_view(&self, position: Vec3) -> Vec2 {
         let clip = self.view.clip_from_view * position.extend(1.0);
         pixel_from_ndc(clip.xy() / clip.w, self.view.size)

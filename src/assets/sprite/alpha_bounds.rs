@@ -43,7 +43,8 @@ impl AlphaBounds {
         UVec2::new(self.level_count, self.texels.len() as u32 / self.level_count)
     }
 
-    pub(crate) fn bytes(&self) -> &[u8] {
+    /// Returns the texels as the shaders read them, frame by frame: two words of cells, one of the extent, one of padding.
+    pub fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(&self.texels)
     }
 

@@ -5,8 +5,6 @@
 
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 
-/// Sprites that one invocation assigns to bins: `RUN` in `shaders/lib/tiles.wgsl`.
-pub(crate) const RUN: u32 = 64;
 /// Up to this many sprites, one dispatch makes all lists: the number of bits of `touching` in `shaders/tile_bin.wgsl`.
 pub(crate) const MAX_SPRITES_SINGLE_DISPATCH: u32 = 1 << 15;
 

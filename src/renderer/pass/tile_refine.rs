@@ -11,8 +11,6 @@ use crate::renderer::sprite_instances::SpriteKey;
 
 /// Texels of a tile: `PER_INVOCATION_TILE` in `shaders/lib/tiles.wgsl`.
 pub(crate) const PER_INVOCATION_TILE: UVec2 = UVec2::new(8, 4);
-/// Sprites of a list whose bits share one word: `BITS_PER_WORD` in `shaders/lib/tiles.wgsl`.
-pub(crate) const BITS_PER_WORD: u32 = 32;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

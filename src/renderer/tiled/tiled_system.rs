@@ -9,6 +9,7 @@ use super::storage_buffers::WORD_BYTES;
 use super::tile_buffers::{Capacity, ParticleRange, TileBuffers};
 use super::tiled_passes::TiledPasses;
 use super::tiled_pipelines::{TiledKeys, TiledPipelines};
+use crate::formula::tiles::{BITS_PER_WORD, run_count};
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::auto::PathWorkload;
 use crate::renderer::gpu::Gpu;
@@ -17,10 +18,10 @@ use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
-use crate::renderer::pass::tile_bin::{RUN, TileBin};
+use crate::renderer::pass::tile_bin::TileBin;
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
-use crate::renderer::pass::tile_refine::{BITS_PER_WORD, TileRefine};
+use crate::renderer::pass::tile_refine::TileRefine;
 use crate::renderer::sprite_instances::Sprites;
 use crate::renderer::targets::ExtraAttachment;
 use crate::settings::AccumulationFormat;
@@ -170,7 +171,7 @@ struct BinLayout {
 impl BinLayout {
     /// Doubles the usual side of a bin until all counts fit into a buffer of `max_words` words.
     fn new(size: UVec2, sprites: u32, cooperative: bool, max_words: u32) -> Self {
-        let runs = sprites.div_ceil(RUN);
+        let runs = run_count(sprites);
         let mut side = match (cooperative, sprites > LARGE_BIN_PARTICLES) {
             (false, _) => BIN_SIDE_PER_INVOCATION,
             (true, false) => BIN_SIDE_COOPERATIVE,

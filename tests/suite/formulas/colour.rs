@@ -1,5 +1,6 @@
 //! Formula tests of `shaders/lib/colour.wgsl`.
 
+use glam::vec3;
 use haze::formula::colour;
 
 use super::Formula;
@@ -7,6 +8,21 @@ use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v3};
 
 pub fn formulas() -> Vec<Formula> {
     vec![
+        Formula {
+            name: "target_colour",
+            file: "lib/colour.wgsl",
+            wgsl: "GAMMA_TARGET = x(0) > 0.5; y3(0, target_colour(vec3f(x(1), x(2), x(3) * 40000.0)));",
+            reference: |x| colour::target_colour(x[0] > 0.5, vec3(x[1], x[2], x[3] * 40000.0)).to_array().to_vec(),
+            cases: random(100, &[(0.0, 1.0); 4]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                (
+                    "if GAMMA_TARGET {\n        return gamma_target_colour(light)",
+                    "if GAMMA_TARGET {\n        return light",
+                ),
+                ("    return bounded_light(light);", "    return light;"),
+            ],
+        },
         Formula {
             name: "luminance",
             file: "lib/colour.wgsl",

@@ -4,103 +4,138 @@ use glam::{UVec2, UVec3};
 use haze::noise::NoiseVolume;
 use haze::ramp::Ramp;
 use haze::sprite::Sprite;
+use haze::sprite::alpha_bounds::AlphaBounds;
 use haze::wgpu;
 use haze_demo::headless::Headless;
 
-/// Runs a compute shader on cases of `width` numbers each and returns as many results per case. A ramp, a sprite, a
-/// noise volume and a sampler are bound too.
-pub fn compute(
-    gpu: &Headless,
-    source: &str,
-    cases: &[Vec<f32>],
-    width: usize,
-    ramp: &Ramp,
-    sprite: &Sprite,
-    noise: &NoiseVolume,
-) -> Vec<Vec<f32>> {
+use super::fixture::uniform_bytes;
+use super::inputs::{test_noise, test_ramp, test_sprite};
+
+/// Runs a compute shader on cases of `width` numbers each and returns as many results per case. Group 0 has the cases,
+/// the results, and the test's textures and sampler; group 1 has the uniforms of the fixture.
+pub fn compute(gpu: &Headless, source: &str, cases: &[Vec<f32>], width: usize) -> Vec<Vec<f32>> {
     let device = &gpu.device;
     let mut inputs = vec![0.0_f32; cases.len() * width];
     for (row, case) in inputs.chunks_mut(width).zip(cases) {
         row[..case.len()].copy_from_slice(case);
     }
     let bytes: &[u8] = bytemuck::cast_slice(&inputs);
-    let buffer = |usage| {
+    let buffer = |size, usage| {
         device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("formula"),
-            size: bytes.len() as u64,
-            usage: usage | wgpu::BufferUsages::STORAGE,
+            size,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         })
     };
-    let (input, output) = (buffer(wgpu::BufferUsages::COPY_DST), buffer(wgpu::BufferUsages::COPY_SRC));
+    let input = buffer(bytes.len() as u64, wgpu::BufferUsages::STORAGE);
+    let output = buffer(bytes.len() as u64, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     gpu.queue.write_buffer(&input, 0, bytes);
-
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("formula"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
+    let uniforms = uniform_bytes().map(|bytes| {
+        let uniform = buffer(bytes.len() as u64, wgpu::BufferUsages::UNIFORM);
+        gpu.queue.write_buffer(&uniform, 0, &bytes);
+        uniform
     });
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
-    let storage = |read_only| wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Storage { read_only },
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    let texture = |view_dimension| wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension,
-        multisampled: false,
-    };
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("formula"),
-        entries: &[
-            entry(0, storage(true)),
-            entry(1, storage(false)),
-            entry(2, texture(wgpu::TextureViewDimension::D2)),
-            entry(3, texture(wgpu::TextureViewDimension::D2Array)),
-            entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-            entry(5, texture(wgpu::TextureViewDimension::D3)),
-        ],
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("formula"),
-        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("formula"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        })),
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: wgpu::PipelineCompilationOptions {
-            constants: &[("EXACT_FILTERING", 1.0)],
-            ..Default::default()
-        },
-        cache: None,
-    });
-    let (ramp, sprite, noise) = (upload_ramp(gpu, ramp), upload_sprite(gpu, sprite), upload_noise(gpu, noise));
+    let layouts = layouts(device);
+    let pipeline = pipeline(device, source, &layouts);
+    let views = [upload_ramp(gpu, &test_ramp()), upload_sprite(gpu, &test_sprite())];
+    let others = [upload_noise(gpu, test_noise()), upload_alpha_bounds(gpu, &AlphaBounds::new(&test_sprite(), None))];
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor::default());
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("formula"),
-        layout: &layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&ramp) },
-            wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&sprite) },
-            wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&sampler) },
-            wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::TextureView(&noise) },
+    let [ramp, sprite] = views.each_ref().map(wgpu::BindingResource::TextureView);
+    let [noise, alpha_bounds] = others.each_ref().map(wgpu::BindingResource::TextureView);
+    let group = bind(
+        device,
+        &layouts[0],
+        &[
+            input.as_entire_binding(),
+            output.as_entire_binding(),
+            ramp,
+            sprite,
+            wgpu::BindingResource::Sampler(&sampler),
+            noise,
+            alpha_bounds,
         ],
-    });
+    );
+    let fixture = bind(device, &layouts[1], &uniforms.each_ref().map(wgpu::Buffer::as_entire_binding));
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
+        pass.set_bind_group(1, &fixture, &[]);
         pass.dispatch_workgroups(cases.len() as u32, 1, 1);
     }
     gpu.submit(encoder).unwrap();
     let results: Vec<f32> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&output).unwrap());
     results.chunks(width).map(<[f32]>::to_vec).collect()
+}
+
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    fn entry<'a>((binding, resource): (u32, &wgpu::BindingResource<'a>)) -> wgpu::BindGroupEntry<'a> {
+        wgpu::BindGroupEntry { binding, resource: resource.clone() }
+    }
+    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("formula"), layout, entries: &entries })
+}
+
+/// Layouts of groups 0 and 1.
+fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 2] {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let storage = |read_only| buffer(wgpu::BufferBindingType::Storage { read_only });
+    let uniform = buffer(wgpu::BufferBindingType::Uniform);
+    let texture =
+        |sample_type, view_dimension| wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
+    let float = |view_dimension| texture(wgpu::TextureSampleType::Float { filterable: true }, view_dimension);
+    let layout = |types: &[wgpu::BindingType]| {
+        let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        };
+        let entries: Vec<_> = (0..).zip(types).map(entry).collect();
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("formula"), entries: &entries })
+    };
+    let inputs = layout(&[
+        storage(true),
+        storage(false),
+        float(wgpu::TextureViewDimension::D2),
+        float(wgpu::TextureViewDimension::D2Array),
+        wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        float(wgpu::TextureViewDimension::D3),
+        texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2),
+    ]);
+    [inputs, layout(&[uniform; 3])]
+}
+
+fn pipeline(device: &wgpu::Device, source: &str, layouts: &[wgpu::BindGroupLayout; 2]) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("formula"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("formula"),
+        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("formula"),
+            bind_group_layouts: &layouts.each_ref().map(Some),
+            immediate_size: 0,
+        })),
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+fn upload_alpha_bounds(gpu: &Headless, alpha_bounds: &AlphaBounds) -> wgpu::TextureView {
+    let size = alpha_bounds.size();
+    let size = wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+    let levels = [(alpha_bounds.bytes().to_vec(), 16 * size.width, size)];
+    upload(gpu, wgpu::TextureFormat::Rgba32Uint, size, &levels, wgpu::TextureViewDimension::D2)
 }
 
 fn upload_ramp(gpu: &Headless, ramp: &Ramp) -> wgpu::TextureView {

@@ -5,10 +5,22 @@ use haze::formula::depth;
 use haze::settings::DepthDownsample;
 
 use super::Formula;
-use super::inputs::{count, random, v4, with_choices};
+use super::inputs::{ARITHMETIC, count, random, v4, with_choices};
 
 pub fn formulas() -> Vec<Formula> {
     vec![
+        Formula {
+            name: "stored_depth",
+            file: "depth_downsample.wgsl",
+            wgsl: "COARSE_COPY = x(2) > 0.5; system.depth_limit = x(1); y(0, 1000.0 * stored_depth(x(0)));",
+            reference: |x| vec![1000.0 * depth::stored_depth(x[0], x[1], x[2] > 0.5)],
+            cases: random(100, &[(0.0, 9.0), (2.0, 8.0), (0.0, 1.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("saturate(view_depth / system.depth_limit", "(view_depth / system.depth_limit"),
+                ("1.0 / 65535.0, COARSE_COPY", "0.0, COARSE_COPY"),
+            ],
+        },
         Formula {
             name: "view_depth_from_ndc_depth",
             file: "lib/depth.wgsl",

@@ -67,17 +67,42 @@ pub fn test_ramp() -> Ramp {
     Ramp::from_linear(UVec2::new(8, 4), (0..32).map(colour))
 }
 
-/// Returns a flipbook of three 8x8 frames with different pseudo-random texels and a transparent border.
-pub fn test_sprite() -> Sprite {
+/// Returns the image of [`test_sprite`].
+pub fn test_sprite_sheet() -> image::RgbaImage {
     let mut sheet = image::RgbaImage::new(24, 8);
     for (x, y, pixel) in sheet.enumerate_pixels_mut() {
         let hash = pcg3d(UVec3::new(x, y, 3));
         let border = x % 8 == 0 || x % 8 == 7 || y == 0 || y == 7;
-        let alpha = if border { 0 } else { hash.x as u8 };
+        let is_clear = border || x % 8 > 4 || y > 3 + x / 8;
+        let alpha = if is_clear { 0 } else { hash.x as u8 };
         *pixel = image::Rgba([hash.y as u8, hash.z as u8, (hash.y >> 8) as u8, alpha]);
     }
+    sheet
+}
+
+/// Returns a flipbook of three 8x8 frames with different pseudo-random texels. Transparent at the border, on the
+/// right, and at the bottom, there by a row less in each frame.
+pub fn test_sprite() -> Sprite {
     let layout = SpriteLayout { columns: 3, rows: 1, y_down: false };
-    Sprite::from_image(std::path::Path::new("test"), &sheet, layout).unwrap()
+    Sprite::from_image(std::path::Path::new("test"), &test_sprite_sheet(), layout).unwrap()
+}
+
+/// Returns the word that `word(i)` reads in WGSL: its upper and its lower 16 bits are two numbers.
+pub fn word(x: &[f32]) -> u32 {
+    (x[0] as u32) << 16 | x[1] as u32
+}
+
+/// Returns the two numbers that `y_word(i, value)` writes in WGSL.
+pub fn halves(word: u32) -> [f32; 2] {
+    [word >> 16, word & 0xffff].map(|half| half as f32)
+}
+
+/// Range of a half of [`word`].
+pub const HALF: (f32, f32) = (0.0, 65535.9);
+
+/// Returns 1 for true and 0 for false.
+pub fn flag(value: bool) -> Vec<f32> {
+    vec![f32::from(value)]
 }
 
 /// One frame of a sprite at mip level 0.

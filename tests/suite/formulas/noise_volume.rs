@@ -8,6 +8,16 @@ use super::inputs::{ARITHMETIC, random, test_noise, v3, with_choices};
 pub fn formulas() -> Vec<Formula> {
     vec![
         Formula {
+            name: "load_noise_volume",
+            file: "lib/noise_volume.wgsl",
+            wgsl: "let size = vec3i(textureDimensions(test_noise)); \
+                   y4(0, load_noise_volume(test_noise, vec3i(floor(vec3f(x(0), x(1), x(2)))), size));",
+            reference: |x| noise_volume::load_noise_volume(test_noise(), v3(x).floor().as_ivec3()).to_array().to_vec(),
+            cases: random(100, &[(-20.0, 20.0); 3]),
+            tolerance: 1e-6,
+            mutants: &[("((texel % size) + size) % size", "clamp(texel, vec3i(0), size - 1)")],
+        },
+        Formula {
             name: "sample_noise_volume",
             file: "lib/noise_volume.wgsl",
             wgsl: "let v = sample_noise_volume(test_noise, test_sampler, vec3f(x(0), x(1), x(2))); \

@@ -120,6 +120,79 @@ pub fn formulas() -> Vec<Formula> {
             mutants: &[("mix(first.x, second.x, frames.blend)", "first.x"), ("first.yz", "second.yz")],
         },
         Formula {
+            name: "load_sprite_bilinear",
+            file: "lib/sprite.wgsl",
+            wgsl: "y4(0, load_sprite_bilinear(test_sprite, vec2f(x(0), x(1)), i32(x(2)), i32(x(3))));",
+            reference: |x| {
+                let texel = sprite::load_sprite_bilinear(&test_sprite(), v2(x), x[2] as i32, x[3] as u32);
+                texel.to_array().to_vec()
+            },
+            cases: random(200, &[(-0.2, 1.2), (-0.2, 1.2), (0.0, 2.99), (0.0, 3.99)]),
+            tolerance: 1e-5,
+            mutants: &[
+                ("uv * vec2f(size) - 0.5", "uv * vec2f(size)"),
+                ("vec2i(high.x, low.y), frame", "low, frame"),
+                ("mix(top, bottom, fraction.y)", "mix(bottom, top, fraction.y)"),
+            ],
+        },
+        Formula {
+            name: "last_level",
+            file: "lib/sprite.wgsl",
+            wgsl: "y(0, last_level(test_sprite));",
+            reference: |_| vec![sprite::last_level(&test_sprite())],
+            cases: vec![vec![]],
+            tolerance: 0.0,
+            mutants: &[("+ 1.0e-3)", "+ 1.0)"), ("+ 1.0e-3)", "- 1.0e-3)")],
+        },
+        Formula {
+            name: "sample_sprite_frame",
+            file: "lib/sprite.wgsl",
+            wgsl: "y4(0, sample_sprite_frame(test_sprite, test_sampler, vec2f(x(0), x(1)), i32(x(2)), x(3)));",
+            reference: |x| sprite::sample_sprite_frame(&test_sprite(), v2(x), x[2] as i32, x[3]).to_array().to_vec(),
+            cases: random(200, &[(0.0, 1.0), (0.0, 1.0), (0.0, 2.99), (0.0, 5.0)]),
+            tolerance: 1e-5,
+            mutants: &[("min(lod, last)", "lod * 0.5"), ("mix(fine, coarse, level - base)", "fine")],
+        },
+        Formula {
+            name: "sample_at_level",
+            file: "lib/sprite.wgsl",
+            // At whole levels, loads and lookups give the same texel.
+            wgsl: "LOADS_SPRITE = x(4) > 0.5; \
+                   y4(0, sample_at_level(test_sprite, test_sampler, vec2f(x(0), x(1)), i32(x(2)), floor(x(3))));",
+            reference: |x| {
+                sprite::sample_sprite_frame(&test_sprite(), v2(x), x[2] as i32, x[3].floor()).to_array().to_vec()
+            },
+            cases: random(200, &[(0.0, 1.0), (0.0, 1.0), (0.0, 2.99), (0.0, 5.0), (0.0, 1.0)]),
+            tolerance: 1e-5,
+            mutants: &[("min(level, last_level(sprite))", "0.0"), ("uv, frame, level);", "uv, frame, 0.0);")],
+        },
+        Formula {
+            name: "sprite_corner",
+            file: "lib/sprite.wgsl",
+            wgsl: "y2(0, sprite_corner(u32(x(0))));",
+            reference: |x| sprite::sprite_corner(x[0] as u32).to_array().to_vec(),
+            cases: (0..4_u8).map(|corner| vec![f32::from(corner)]).collect(),
+            tolerance: 0.0,
+            mutants: &[("f32(index >> 1u)", "f32(index & 1u)")],
+        },
+        Formula {
+            name: "sample_flipbook",
+            file: "lib/sprite.wgsl",
+            wgsl: "let f = flipbook_frames(x(2), 3.0); \
+                   y4(0, sample_flipbook(test_sprite, test_sampler, vec2f(x(0), x(1)), f, vec2f(x(3), x(4)), x(5)));",
+            reference: |x| {
+                let frames = sprite::flipbook_frames(x[2], 3.0);
+                sprite::sample_flipbook(&test_sprite(), v2(x), frames, v2(&x[3..]), x[5]).to_array().to_vec()
+            },
+            cases: random(200, &[(0.0, 1.0), (0.0, 1.0), (0.0, 9.0), (-0.1, 0.1), (-0.1, 0.1), (0.0, 4.0)]),
+            tolerance: 1e-5,
+            mutants: &[
+                ("uv - motion * frames.blend", "uv"),
+                ("uv + motion * (1.0 - frames.blend)", "uv + motion"),
+                ("mix(texel, next, frames.blend)", "texel"),
+            ],
+        },
+        Formula {
             name: "unrotate",
             file: "lib/sprite.wgsl",
             wgsl: "let v = unrotate(vec2f(x(0), x(1)), vec2f(x(2), x(3))); y(0, v.x); y(1, v.y);",

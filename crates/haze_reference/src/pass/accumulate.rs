@@ -11,6 +11,7 @@ use haze::settings::{AccumulationFormat, BlendOrder};
 use haze::view_setup::TexelGrid;
 
 impl VisibleSystem<'_> {
+    /// Returns the accumulation target. `overdraw`: counts layers instead, in steps of 1/255.
     pub fn accumulate(&self, reduced_depth: &Image<f32>, overdraw: bool) -> Image<Vec4> {
         let accumulate = &self.settings.accumulate;
         self.blend(reduced_depth, |fragment, weight, texel| {

@@ -8,6 +8,7 @@ use haze::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
 use haze::settings::{DepthDownsample, DepthSource};
 
 impl VisibleSystem<'_> {
+    /// Returns the scene's view depth at the resolution of the target, metres.
     pub fn depth_downsample(&self) -> Image<f32> {
         let mut reduced = Image::new(self.setup.rect.size, 0.0);
         let mode = self.settings.accumulate.depth_downsample;

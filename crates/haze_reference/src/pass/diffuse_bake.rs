@@ -22,10 +22,12 @@ impl VisibleSystem<'_> {
         sample_ramp(ramp, self.settings.ramp_filter, u)
     }
 
+    /// Sum of all lights through the diffuse ramp.
     pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
         self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position)).sum()
     }
 
+    /// Contribution of a light through the diffuse ramp.
     pub fn diffuse_from_light(&self, light: &LightUniform, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
         let sample = sample_light(light, position);
         let at = Vec2::new(diffuse_coordinate(normal, sample.direction), covered);
@@ -39,10 +41,12 @@ impl VisibleSystem<'_> {
         falloff * light.colour * sample.attenuation
     }
 
+    /// Sum of all lights through six-way maps.
     pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3) -> Vec3 {
         self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position)).sum()
     }
 
+    /// Contribution of a light through six-way maps.
     pub fn six_way_from_light(&self, light: &LightUniform, six_way: &SixWay, position: Vec3) -> Vec3 {
         let sample = sample_light(light, position);
         let response =
@@ -50,6 +54,7 @@ impl VisibleSystem<'_> {
         light.colour * (response * sample.attenuation) * self.system.six_way_colour
     }
 
+    /// Even backlight of smoke by its amount.
     pub fn soft_scatter(&self, amount: f32) -> Vec3 {
         let system = &self.system;
         let colour = match self.settings.soft_scatter.mode {

@@ -11,6 +11,7 @@ use haze::formula::lighting::coverage;
 use haze::view_setup::TexelGrid;
 
 impl VisibleSystem<'_> {
+    /// Lights and blends every sprite over the image.
     pub fn forward(&self, picture: &mut Image<Vec4>) {
         let grid = TexelGrid { origin: Vec2::ZERO, scale: 1.0, size: picture.size };
         let mode = self.settings.blend_mode;

@@ -6,4 +6,4 @@ mod diffuse_bake;
 mod forward;
 mod light_target;
 mod specular_scatter;
-mod transfer;
+pub mod transfer;

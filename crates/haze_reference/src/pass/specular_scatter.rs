@@ -21,6 +21,7 @@ pub struct GlowQuad<'a> {
 }
 
 impl AccumulatedTarget<'_> {
+    /// Adds the glow of all lights to the image.
     pub fn specular_scatter(&self, picture: &mut Image<Vec4>) {
         for glow in self.visible.lights.iter().filter_map(|light| self.glow_quad(light)) {
             picture.for_each(|at, texel| {

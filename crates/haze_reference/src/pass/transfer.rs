@@ -24,6 +24,7 @@ pub struct Surface {
 }
 
 impl AccumulatedTarget<'_> {
+    /// Diffuse light on a surface, by the system's mode.
     pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
         let (visible, normal) = (self.visible, surface.normal);
         if visible.settings.is_six_way() {
@@ -45,6 +46,7 @@ impl AccumulatedTarget<'_> {
         light * visible.system.diffuse_intensity
     }
 
+    /// Lights the smoke, or shows a debug view of it, and blends it over the image.
     pub fn transfer(&self, debug_view: DebugView, picture: &mut Image<Vec4>) {
         picture.for_each(|at, texel| {
             let pixel = at.as_vec2() + 0.5;
@@ -74,6 +76,7 @@ impl AccumulatedTarget<'_> {
         }
     }
 
+    /// Premultiplied light and coverage at a pixel, or a debug view of them; `None` without smoke.
     pub fn transfer_fragment(&self, debug_view: DebugView, pixel: Vec2) -> Option<Vec4> {
         let system = &self.visible.system;
         if debug_view == DebugView::ReducedDepth {
@@ -140,6 +143,7 @@ impl AccumulatedTarget<'_> {
         Surface { normal, six_way: SixWay::default() }
     }
 
+    /// Amount and surface at a pixel.
     pub fn amount_and_surface(&self, pixel: Vec2) -> (f32, Surface) {
         let accumulated = self.sample_target(self.accumulation, pixel);
         (accumulated.w, self.surface_at(accumulated, pixel))

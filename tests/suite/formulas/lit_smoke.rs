@@ -1,0 +1,306 @@
+//! Formula tests of `shaders/lib/lit_smoke.wgsl`, `shaders/lib/diffuse.wgsl`, `shaders/lib/accumulated.wgsl`,
+//! `shaders/lib/bindings.wgsl` and `shaders/specular_scatter.wgsl`.
+
+use glam::{IVec2, Vec3, Vec4};
+use haze::formula::six_way::SixWay;
+use haze::image::Image;
+use haze::settings::*;
+use haze_reference::accumulated::AccumulatedTarget;
+use haze_reference::pass::transfer::Surface;
+use haze_reference::visible_system::VisibleSystem;
+
+use super::Formula;
+use super::fixture::{COLOURS, DEFAULTS, DEPTHS, SIZE, accumulated_target, visible_system};
+use super::inputs::{TRANSCENDENTAL, count, random, unit_vectors, v2, v3, v4, with_choices};
+
+const SIDE: (f32, f32) = (-1.0, 1.0);
+/// A position in view space, near the smoke.
+const PLACE: [(f32, f32); 3] = [(-2.0, 2.0), (-2.0, 2.0), (-7.0, -5.0)];
+
+/// The reduced depth in metres, as the reference stores it.
+fn reduced_depth(visible: &VisibleSystem<'_>) -> Image<f32> {
+    let limit = visible.system.depth_limit;
+    Image { size: SIZE, texels: DEPTHS.texels.iter().map(|depth| depth * limit).collect() }
+}
+
+fn with_target<T>(
+    settings: &Settings,
+    change: impl Fn(&mut VisibleSystem<'_>),
+    f: impl Fn(&AccumulatedTarget<'_>) -> T,
+) -> T {
+    let mut visible = visible_system(settings);
+    change(&mut visible);
+    let depth = reduced_depth(&visible);
+    f(&accumulated_target(&visible, &depth))
+}
+
+/// Settings with values that the shader reads as override constants.
+fn changed(change: impl Fn(&mut Settings)) -> Settings {
+    let mut settings = Settings::default();
+    change(&mut settings);
+    settings
+}
+
+pub fn formulas() -> Vec<Formula> {
+    [textures(), lights(), surfaces()].into_iter().flatten().collect()
+}
+
+fn textures() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "load_scene_depth",
+            file: "lib/bindings.wgsl",
+            wgsl: "view.origin = vec2f(2.0, 1.0); y(0, load_scene_depth(vec2i(i32(x(0)), i32(x(1)))));",
+            reference: |x| vec![DEPTHS.load(IVec2::new(x[0] as i32 + 2, x[1] as i32 + 1))],
+            cases: random(30, &[(0.0, 5.9), (0.0, 2.9)]),
+            tolerance: 1e-5,
+            mutants: &[("pixel + vec2i(view.origin)", "pixel")],
+        },
+        Formula {
+            name: "scene_view_depth",
+            file: "lib/accumulated.wgsl",
+            wgsl: "y(0, scene_view_depth(vec2f(x(0), x(1))));",
+            reference: |x| vec![visible_system(&DEFAULTS).scene_view_depth(v2(x).as_ivec2())],
+            cases: random(30, &[(0.0, 7.9), (0.0, 3.9)]),
+            tolerance: 1e-3,
+            mutants: &[(
+                "view_depth_from_ndc_depth(load_scene_depth(vec2i(pixel)), view.depth_coefficients)",
+                "load_scene_depth(vec2i(pixel))",
+            )],
+        },
+        Formula {
+            name: "clamped_texel",
+            file: "lib/accumulated.wgsl",
+            wgsl: "let at = clamped_texel(vec2i(floor(vec2f(x(0), x(1))))); y4(0, textureLoad(test_ramp, at, 0));",
+            reference: |x| COLOURS.load(v2(x).floor().as_ivec2()).to_array().to_vec(),
+            cases: random(50, &[(-5.0, 14.0), (-5.0, 9.0)]),
+            tolerance: 1e-5,
+            mutants: &[
+                ("vec2i(system.target_size) - 1)", "vec2i(system.target_size) - 2)"),
+                ("clamp(texel, vec2i(0),", "clamp(texel, vec2i(1),"),
+            ],
+        },
+        Formula {
+            name: "sample_target",
+            file: "lib/accumulated.wgsl",
+            wgsl: "UPSAMPLE = u32(x(0)); system.scale = select(2.0, 1.0, x(3) < 0.2); system.depth_limit = 8.0; \
+                   system.smoke_depth_limit = 6.0; y4(0, sample_target(test_ramp, vec2f(x(1), x(2))));",
+            reference: |x| {
+                let settings = changed(|s| s.accumulate.upsample = Upsample::ALL[x[0] as usize]);
+                let scale = if x[3] < 0.2 { 1.0 } else { 2.0 };
+                let change = |visible: &mut VisibleSystem<'_>| {
+                    (visible.system.scale, visible.system.depth_limit) = (scale, 8.0);
+                    visible.system.smoke_depth_limit = 6.0;
+                };
+                let pixel = v2(&x[1..]);
+                with_target(&settings, change, |target| target.sample_target(&COLOURS, pixel).to_array().to_vec())
+            },
+            cases: with_choices(count(Upsample::ALL), &[(-0.5, 7.9), (-0.5, 3.9), (0.0, 1.0)]),
+            tolerance: 2e-3,
+            mutants: &[
+                ("let corner = texel - 0.5;", "let corner = texel;"),
+                ("if any(texel < vec2f(0.0)) ||", "if"),
+                ("clamped_texel(base + vec2i(1, 0))", "clamped_texel(base)"),
+                ("let offset = vec2i(i % 4, i / 4) - 1;", "let offset = vec2i(i % 4, i / 4);"),
+            ],
+        },
+        Formula {
+            name: "shading_position",
+            file: "lib/accumulated.wgsl",
+            wgsl: "view.orthographic = f32(x(2) > 0.5); y3(0, shading_position(vec2f(x(0), x(1))));",
+            reference: |x| {
+                let mut visible = visible_system(&DEFAULTS);
+                visible.view.orthographic = f32::from(x[2] > 0.5);
+                visible.view_position(v2(x), -visible.system.centre.z).to_array().to_vec()
+            },
+            cases: random(60, &[(0.0, 8.0), (0.0, 4.0), (0.0, 1.0)]),
+            tolerance: 1e-5,
+            mutants: &[("-system.centre.z, view.orthographic", "1.0, view.orthographic")],
+        },
+        Formula {
+            name: "light_visibility",
+            file: "specular_scatter.wgsl",
+            wgsl: "y(0, light_visibility(vec2f(x(0), x(1)), x(2), x(3)));",
+            reference: |x| vec![with_target(&DEFAULTS, |_| {}, |target| target.light_visibility(v2(x), x[2], x[3]))],
+            cases: random(100, &[(0.0, 8.0), (0.0, 4.0), (0.5, 3.0), (0.1, 0.6)]),
+            tolerance: 1e-5,
+            mutants: &[("pixel + visibility_tap(i, radius)", "pixel"), (">= light_depth", "< light_depth")],
+        },
+    ]
+}
+
+fn lights() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "diffuse_from_lights",
+            file: "lib/diffuse.wgsl",
+            wgsl: "BACKLIGHT = u32(x(0)); \
+                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7))));",
+            reference: |x| {
+                let settings = changed(|s| s.diffuse.backlight = Backlight::ALL[x[0] as usize]);
+                visible_system(&settings).diffuse_from_lights(v3(&x[1..]), x[4], v3(&x[5..])).to_array().to_vec()
+            },
+            cases: unit_vectors(
+                with_choices(count(Backlight::ALL), &[SIDE, SIDE, SIDE, (0.0, 1.0), PLACE[0], PLACE[1], PLACE[2]]),
+                1,
+            ),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("sum += falloff * lights[i].colour * light.attenuation;", "sum += falloff * lights[i].colour;"),
+                (
+                    "diffuse_coordinate(normal, light.direction), covered",
+                    "diffuse_coordinate(normal, light.direction), 0.5",
+                ),
+                (
+                    "for (var i = 0u; i < system.light_count; i++) {\n        let light = sample_light(lights[i], position);\n        let at",
+                    "for (var i = 0u; i < 1u; i++) {\n        let light = sample_light(lights[i], position);\n        let at",
+                ),
+            ],
+        },
+        Formula {
+            name: "diffuse_from_six_way",
+            file: "lib/diffuse.wgsl",
+            wgsl: "let s = SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
+                   system.six_way_colour = vec3f(0.9, 0.7, 0.5); \
+                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8))));",
+            reference: |x| {
+                let mut visible = visible_system(&DEFAULTS);
+                visible.system.six_way_colour = Vec3::new(0.9, 0.7, 0.5);
+                let six_way = SixWay { positive: v3(x), negative: v3(&x[3..]) };
+                visible.diffuse_from_six_way(&six_way, v3(&x[6..])).to_array().to_vec()
+            },
+            cases: random(
+                100,
+                &[(0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), PLACE[0], PLACE[1], PLACE[2]],
+            ),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("return sum * system.six_way_colour", "return sum"),
+                ("(response * light.attenuation)", "response"),
+            ],
+        },
+        Formula {
+            name: "soft_scatter",
+            file: "lib/diffuse.wgsl",
+            wgsl: "SOFT_SCATTER_MODE = u32(x(0)); system.soft_scatter_intensity = 0.7; y3(0, soft_scatter(x(1)));",
+            reference: |x| {
+                let settings = changed(|s| s.soft_scatter.mode = SoftScatterMode::ALL[x[0] as usize]);
+                let mut visible = visible_system(&settings);
+                visible.system.soft_scatter_intensity = 0.7;
+                visible.soft_scatter(x[1]).to_array().to_vec()
+            },
+            cases: with_choices(count(SoftScatterMode::ALL), &[(0.0, 1.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                (
+                    "mix(system.scatter_colour, system.ambient_colour, weight)",
+                    "mix(system.ambient_colour, system.scatter_colour, weight)",
+                ),
+                ("linear_sampler, amount) * system.soft_scatter_intensity", "linear_sampler, amount)"),
+            ],
+        },
+        Formula {
+            name: "smoke_coverage",
+            file: "lib/lit_smoke.wgsl",
+            wgsl: "COVERAGE_MODE = u32(x(0)); y(0, smoke_coverage(x(1)));",
+            reference: |x| {
+                let settings = changed(|s| s.coverage = CoverageMode::ALL[x[0] as usize]);
+                vec![with_target(&settings, |_| {}, |target| target.coverage(x[1]))]
+            },
+            cases: with_choices(count(CoverageMode::ALL), &[(0.0, 1.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("let covered = coverage(amount, system.boost)", "let covered = amount"),
+                ("if COVERAGE_MODE == COVERAGE_MODE_RAMP", "if false"),
+            ],
+        },
+    ]
+}
+
+fn surfaces() -> Vec<Formula> {
+    // Modes of diffuse light that read no baked texture: ramp, painted motif and spherical harmonics.
+    let modes = |mut case: Vec<f32>| {
+        case[0] = [DiffuseMode::Ramp, DiffuseMode::PaintedMotif, DiffuseMode::SphericalHarmonics][case[0] as usize]
+            as u32 as f32;
+        case
+    };
+    vec![
+        Formula {
+            name: "surface_from_accumulation",
+            file: "lib/lit_smoke.wgsl",
+            wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY = x(9) > 0.7; WEIGHT_SUM = x(9) < 0.3; \
+                   NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, WEIGHT_SUM); \
+                   let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8))); \
+                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative);",
+            reference: |x| {
+                let settings = changed(|s| {
+                    s.accumulate.decode = NormalDecode::ALL[x[0] as usize];
+                    s.accumulate.encoding = NormalEncoding::Signed;
+                    if x[9] > 0.7 {
+                        s.lighting = Lighting::SixWay;
+                    }
+                    if x[9] < 0.3 {
+                        (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
+                    }
+                });
+                let surface = with_target(&settings, |_| {}, |target| target.surface(v4(&x[1..]), v4(&x[5..])));
+                let SixWay { positive, negative } = surface.six_way;
+                [surface.normal, positive, negative].map(|v| v.to_array()).concat()
+            },
+            cases: with_choices(
+                count(NormalDecode::ALL),
+                &[SIDE, SIDE, (0.0, 1.0), (0.1, 1.0), (0.1, 1.0), SIDE, SIDE, (0.1, 1.0), (0.0, 1.0)],
+            ),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("weights = extra_attachment.r;", "weights = accumulated.a * 2.0;"),
+                ("max(accumulated.rgb, vec3f(0.0)) * scale", "accumulated.rgb * scale"),
+                (
+                    "normal_from_six_way(surface.six_way.positive, surface.six_way.negative)",
+                    "normal_from_six_way(surface.six_way.negative, surface.six_way.positive)",
+                ),
+            ],
+        },
+        Formula {
+            name: "diffuse",
+            file: "lib/lit_smoke.wgsl",
+            wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY = x(8) > 0.8; system.diffuse_intensity = 0.6; \
+                   for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
+                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5))); \
+                   y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",
+            reference: |x| {
+                let settings = changed(|s| {
+                    s.diffuse.mode = DiffuseMode::ALL[x[0] as usize];
+                    if x[8] > 0.8 {
+                        s.lighting = Lighting::SixWay;
+                    }
+                });
+                let change = |visible: &mut VisibleSystem<'_>| {
+                    visible.system.diffuse_intensity = 0.6;
+                    visible.system.spherical_harmonics =
+                        std::array::from_fn(|i| Vec4::new(0.3, 0.2, 0.1, 0.0) * i as f32);
+                };
+                let six_way = SixWay { positive: Vec3::new(0.2, 0.4, 0.6), negative: Vec3::new(0.1, 0.3, 0.5) };
+                let surface = Surface { normal: v3(&x[1..]), six_way };
+                with_target(&settings, change, |target| target.diffuse(&surface, x[4], v3(&x[5..])).to_array().to_vec())
+            },
+            cases: unit_vectors(
+                with_choices(3, &[SIDE, SIDE, SIDE, (0.0, 1.0), PLACE[0], PLACE[1], PLACE[2], (0.0, 1.0)])
+                    .into_iter()
+                    .map(modes)
+                    .collect(),
+                1,
+            ),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("return light * system.diffuse_intensity;", "return light;"),
+                ("motif_position(normal) * 0.5 + 0.5", "motif_position(normal)"),
+                (
+                    "diffuse_from_six_way(surface.six_way, position) * system.diffuse_intensity",
+                    "diffuse_from_six_way(surface.six_way, position)",
+                ),
+                ("coverage(amount, system.boost), position)", "amount, position)"),
+            ],
+        },
+    ]
+}

@@ -1,0 +1,294 @@
+//! Formula tests of `shaders/lib/sprite_fragment.wgsl`.
+
+use glam::{Vec2, Vec3};
+use haze::formula::depth::{view_depth_from_linear, view_depth_from_ndc_depth};
+use haze::formula::sprite::{animation_frames, flipbook_frames};
+use haze::formula::technique::RayInterval;
+use haze::formula::uniforms::SystemUniform;
+use haze::settings::{FadeCurve, Lighting, Settings, SpriteAnimation, Technique};
+use haze_reference::sprite::{SpriteFragment, SpriteSetup};
+
+use super::Formula;
+use super::fixture::{DEFAULTS, visible_system};
+use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v2, v3, with_choices};
+use super::sprite_vertex::technique;
+
+/// A sprite straight ahead, with frame 0.7 of the flipbook.
+fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
+    SpriteSetup {
+        centre,
+        view_depth: -centre.z,
+        radius,
+        rotation: Vec2::new(0.6, 0.8),
+        amount: 0.8,
+        lod,
+        frames: flipbook_frames(0.7, 3.0),
+        reach: glam::Vec4::ONE,
+        age: 0.5,
+        weight: 1.0,
+        min: Vec2::ZERO,
+        max: Vec2::ZERO,
+    }
+}
+
+/// WGSL of [`sprite`]: the centre in numbers 1 to 3, the radius in number 4.
+macro_rules! with_sprite {
+    ($wgsl:literal) => {
+        concat!(
+            "TECHNIQUE = u32(x(0)); var in: SpriteVertex; in.centre_radius = vec4f(x(1), x(2), x(3), x(4)); \
+             in.amount_lod_frame_age = vec4f(0.8, x(5), 0.7, 0.5); in.rotation = vec2f(0.6, 0.8); \
+             let frames = flipbook_frames(0.7, 3.0); ",
+            $wgsl
+        )
+    };
+}
+
+fn numbers(fragment: &SpriteFragment) -> Vec<f32> {
+    [&fragment.normal.to_array()[..], &[fragment.amount]].concat()
+}
+
+/// Settings of a technique with a short fade.
+fn settings(x: &[f32]) -> Settings {
+    let mut settings = technique(x);
+    settings.soft_fade.curve = FadeCurve::Linear;
+    settings
+}
+
+/// Changes of the uniforms that make every technique visible.
+fn changed(system: SystemUniform) -> SystemUniform {
+    SystemUniform {
+        billboard_density: 1.5,
+        density: 1.2,
+        volume_opacity: 3.0,
+        march_steps: 5,
+        noise_octaves: 2,
+        ..system
+    }
+}
+
+macro_rules! changes {
+    () => {
+        "FADE_CURVE = FADE_CURVE_LINEAR; system.billboard_density = 1.5; system.density = 1.2; \
+         system.volume_opacity = 3.0; system.march_steps = 5u; system.noise_octaves = 2u; "
+    };
+}
+
+pub fn formulas() -> Vec<Formula> {
+    [depths(), texels(), techniques()].into_iter().flatten().collect()
+}
+
+fn depths() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "host_view_depth",
+            file: "lib/sprite_fragment.wgsl",
+            wgsl: "LINEAR_DEPTH = x(0) > 0.5; view.depth_offset = x(2); y(0, host_view_depth(x(1)));",
+            reference: |x| {
+                let coefficients = visible_system(&DEFAULTS).view.depth_coefficients;
+                vec![match x[0] > 0.5 {
+                    true => view_depth_from_linear(x[1] + x[2]),
+                    false => view_depth_from_ndc_depth(x[1], coefficients),
+                }]
+            },
+            cases: random(60, &[(0.0, 1.0), (0.0, 0.99), (-2.0, 2.0)]),
+            tolerance: 1e-4,
+            mutants: &[("texel + view.depth_offset", "texel"), ("if LINEAR_DEPTH {", "if !LINEAR_DEPTH {")],
+        },
+        Formula {
+            name: "fragment_frames",
+            file: "lib/sprite_fragment.wgsl",
+            wgsl: "SPRITE_ANIMATION = u32(x(0)); var in: SpriteVertex; in.amount_lod_frame_age.z = x(1); \
+                   let f = fragment_frames(in); y3(0, vec3f(f32(f.first), f32(f.second), f.blend));",
+            reference: |x| {
+                let frames = animation_frames(SpriteAnimation::ALL[x[0] as usize], x[1], 3.0);
+                vec![frames.first as f32, frames.second as f32, frames.blend]
+            },
+            cases: with_choices(count(SpriteAnimation::ALL), &[(0.0, 9.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("in.amount_lod_frame_age.z, system.frame_count);\n}", "0.0, system.frame_count);\n}")],
+        },
+        Formula {
+            name: "fade_before",
+            file: "lib/sprite_fragment.wgsl",
+            wgsl: "FADE_CURVE = u32(x(0)); y(0, fade_before(x(1), x(2)));",
+            reference: |x| {
+                let mut settings = Settings::default();
+                settings.soft_fade.curve = FadeCurve::ALL[x[0] as usize];
+                vec![visible_system(&settings).fade_before(x[1], x[2])]
+            },
+            cases: with_choices(count(FadeCurve::ALL), &[(4.0, 6.0), (4.0, 6.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("scene - view_depth, system.fade_scale", "view_depth - scene, system.fade_scale")],
+        },
+    ]
+}
+
+fn texels() -> Vec<Formula> {
+    vec![Formula {
+        name: "sprite_texel",
+        file: "lib/sprite_fragment.wgsl",
+        wgsl: with_sprite!(
+            "DEBUG_SPRITE = x(0) == 1.0; SIX_WAY = x(0) == 2.0; \
+             if SIX_WAY { system.frame_count = 1.0; } \
+             let f = sprite_texel(in, vec2f(x(6), x(7)), flipbook_frames(select(0.7, 0.0, SIX_WAY), \
+             system.frame_count), vec2f(x(8), x(9))); y3(0, f.normal); y(3, f.amount); y3(4, f.six_way.positive); \
+             y3(7, f.six_way.negative);"
+        ),
+        reference: |x| {
+            let mut settings = Settings::default();
+            settings.sprite.debug_sprite = x[0] == 1.0;
+            if x[0] == 2.0 {
+                settings.lighting = Lighting::SixWay;
+            }
+            let mut visible = visible_system(&settings);
+            let mut sprite = sprite(v3(&x[1..]), x[4], x[5]);
+            if settings.is_six_way() {
+                (visible.system.frame_count, sprite.frames) = (1.0, flipbook_frames(0.0, 1.0));
+            }
+            let fragment = visible.sprite_texel(&sprite, v2(&x[6..]), v2(&x[8..]));
+            let six_way = [fragment.six_way.positive.to_array(), fragment.six_way.negative.to_array()].concat();
+            [numbers(&fragment), six_way].concat()
+        },
+        cases: with_choices(
+            3,
+            &[
+                (-1.0, 1.0),
+                (-1.0, 1.0),
+                (-6.0, -2.0),
+                (0.1, 1.0),
+                (0.0, 3.0),
+                (0.0, 1.0),
+                (0.0, 1.0),
+                (-0.1, 0.1),
+                (-0.1, 0.1),
+            ],
+        ),
+        tolerance: 1e-5,
+        mutants: &[
+            ("offset_frames(frames, 2 * count)", "offset_frames(frames, count)"),
+            ("rotate_normal(texel.xyz, in.rotation)", "texel.xyz"),
+            ("if !DEBUG_SPRITE {", "if true {"),
+            (
+                "uv, frames, motion, lod);\n    }\n    return SpriteFragment",
+                "uv, frames, -motion, lod);\n    }\n    return SpriteFragment",
+            ),
+        ],
+    }]
+}
+
+fn techniques() -> Vec<Formula> {
+    /// Centre, radius, mip level, pixel and scene depth.
+    const RANGES: [(f32, f32); 8] =
+        [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -1.0), (1.0, 2.5), (0.0, 1.0), (2.0, 6.0), (1.0, 3.0), (1.0, 7.0)];
+    /// The ray of the second group: entry and length of the interval.
+    const MARCH: [(f32, f32); 8] =
+        [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -3.0), (1.0, 2.0), (0.0, 1.0), (1.5, 3.0), (0.5, 2.0), (1.0, 7.0)];
+    let visible_fragment: fn(&[f32]) -> Vec<f32> = |x| {
+        let settings = settings(x);
+        let mut visible = visible_system(&settings);
+        visible.system = changed(visible.system);
+        let sprite = sprite(v3(&x[1..]), x[4], x[5]);
+        let fragment = visible.technique_fragment(&sprite, v2(&x[6..]), x[8]);
+        fragment.map_or(vec![0.0; 4], |fragment| numbers(&fragment))
+    };
+    vec![
+        Formula {
+            name: "technique_fragment",
+            file: "lib/sprite_fragment.wgsl",
+            // Squares: the position in the sprite, from the pixel. The reference leaves out pixels outside of it.
+            wgsl: concat!(
+                changes!(),
+                with_sprite!(
+                    "\
+                let ray = ndc_from_pixel(vec2f(x(6), x(7)), view.size) * view.ray_scale + view.ray_offset; \
+                in.view_position = view_position(ray, 1.0, view.orthographic); \
+                let depth = max(-in.centre_radius.z, view.near); \
+                let local = unrotate(ray * depth - in.centre_radius.xy, in.rotation) / in.centre_radius.w; \
+                in.uv = sprite_uv(local); \
+                if !is_sphere() && any(abs(local) > vec2f(1.0)) { return; } \
+                let f = technique_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount);"
+                )
+            ),
+            reference: visible_fragment,
+            cases: with_choices(count(Technique::ALL), &RANGES),
+            tolerance: 1e-3,
+            mutants: &[
+                ("amount *= visible_slab_fraction(view_depth, radius, view.near);", ""),
+                ("fade = hard_fade(scene - texel_depth)", "fade = hard_fade(scene - view_depth)"),
+                ("default: { fade = fade_before(scene, texel_depth); }", "default: { fade = 1.0; }"),
+                ("fragment.amount *= amount * fade", "fragment.amount *= fade"),
+                ("system.density * fragment.amount * amount", "system.density * amount"),
+                ("depth_sprite_depth(view_depth, texel.x, radius)", "view_depth"),
+            ],
+        },
+        Formula {
+            name: "sphere_fragment",
+            file: "lib/sprite_fragment.wgsl",
+            wgsl: concat!(
+                changes!(),
+                with_sprite!(
+                    "\
+                TECHNIQUE = TECHNIQUE_SPHERICAL_BILLBOARD; view.orthographic = x(9); \
+                let ray = ndc_from_pixel(vec2f(x(6), x(7)), view.size) * view.ray_scale + view.ray_offset; \
+                in.view_position = view_position(ray, 1.0, view.orthographic); \
+                let f = sphere_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount);"
+                )
+            ),
+            reference: |x| {
+                let settings = settings(&[Technique::SphericalBillboard as u32 as f32]);
+                let mut visible = visible_system(&settings);
+                (visible.system, visible.view.orthographic) = (changed(visible.system), x[9]);
+                let fragment = visible.sphere_fragment(&sprite(v3(&x[1..]), x[4], x[5]), v2(&x[6..]), x[8]);
+                fragment.map_or(vec![0.0; 4], |fragment| numbers(&fragment))
+            },
+            cases: {
+                let numbered = |(index, case): (usize, Vec<f32>)| [case, vec![(index % 2) as f32]].concat();
+                with_choices(1, &RANGES).into_iter().chain(with_choices(2, &RANGES)).enumerate().map(numbered).collect()
+            },
+            tolerance: 1e-3,
+            mutants: &[
+                (
+                    "spherical_billboard_amount(density, length(interval.axis)",
+                    "spherical_billboard_amount(density, 0.0",
+                ),
+                (
+                    "let place = unrotate(interval.axis.xy, in.rotation) / radius;",
+                    "let place = interval.axis.xy / radius;",
+                ),
+                ("in.view_position.xy * view.orthographic, 0.0", "vec2f(0.0), 0.0"),
+            ],
+        },
+        Formula {
+            name: "volumetric_fragment",
+            file: "lib/sprite_fragment.wgsl",
+            wgsl: concat!(
+                changes!(),
+                with_sprite!(
+                    "\
+                TECHNIQUE = select(TECHNIQUE_VOLUMETRIC_HARD, TECHNIQUE_VOLUMETRIC_SOFT, x(0) > 0.5); \
+                let along = normalize(vec3f(0.1, -0.05, -1.0)); \
+                let f = volumetric_fragment(in, x(8), vec3f(0.0), along, RayInterval(x(6), x(6) + x(7), vec3f(0.0))); \
+                y3(0, f.normal); y(3, f.amount);"
+                )
+            ),
+            reference: |x| {
+                let technique = if x[0] > 0.5 { Technique::VolumetricSoft } else { Technique::VolumetricHard };
+                let settings = settings(&[technique as u32 as f32]);
+                let mut visible = visible_system(&settings);
+                visible.system = changed(visible.system);
+                let along = Vec3::new(0.1, -0.05, -1.0).normalize();
+                let interval = RayInterval { enter: x[6], leave: x[6] + x[7], axis: Vec3::ZERO };
+                let sprite = sprite(v3(&x[1..]), x[4], x[5]);
+                numbers(&visible.volumetric_fragment(&sprite, x[8], Vec3::ZERO, along, interval))
+            },
+            cases: with_choices(2, &MARCH),
+            tolerance: 1e-3,
+            mutants: &[
+                ("if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {", "if false {"),
+                ("transmittance *= 1.0 - amount;", ""),
+                ("normal / max(total, 1.0e-6)", "normal"),
+                ("(f32(i) + 0.5) * step", "f32(i) * step"),
+            ],
+        },
+    ]
+}
