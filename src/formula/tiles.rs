@@ -6,7 +6,7 @@ use glam::UVec2;
 use super::uniforms::TilesUniform;
 
 /// Start of the list of a bin without a list: the bin reads all sprites.
-pub const EVERYTHING: u32 = u32::MAX;
+pub const NO_LIST: u32 = u32::MAX;
 /// Key of hidden sprites: sorts behind all visible ones.
 pub const HIDDEN_KEY: u32 = u32::MAX;
 /// Transmittance at which a traversal may stop: 2⁻¹⁰, a quarter of an 8-bit step.
@@ -72,10 +72,10 @@ pub fn bin_list(tiles: &TilesUniform, shown: u32, entries: u32, length: u32, mor
     let share = u64::from(u32::MAX / (tiles.columns * tiles.rows));
     let size = u64::from(length) + u64::from(more);
     if size > share {
-        return (UVec2::new(EVERYTHING, shown), entries);
+        return (UVec2::new(NO_LIST, shown), entries);
     }
     let fits = list_fits(entries, size as u32, tiles.capacity);
-    let list = if fits { UVec2::new(entries, length) } else { UVec2::new(EVERYTHING, shown) };
+    let list = if fits { UVec2::new(entries, length) } else { UVec2::new(NO_LIST, shown) };
     (list, entries + size as u32)
 }
 
@@ -88,27 +88,27 @@ pub fn bits_below(count: u32) -> u32 {
 /// behind the list.
 pub fn bits_of(lists: &[u32], list: UVec2, batch: u32, part: u32) -> u32 {
     let all = bits_below((list.y - batch).min(BITS_PER_WORD));
-    if list.x == EVERYTHING { all } else { lists[(list.x + list.y + batch + part) as usize] & all }
+    if list.x == NO_LIST { all } else { lists[(list.x + list.y + batch + part) as usize] & all }
 }
 
 /// Index of a sprite of a list: an entry of the list, or of all sorted sprites if the bin has no list.
-pub fn sprite_number(lists: &[u32], numbers: &[u32], list: UVec2, at: u32) -> u32 {
-    if list.x == EVERYTHING { numbers[at as usize] } else { lists[(list.x + at) as usize] }
+pub fn sprite_index(lists: &[u32], numbers: &[u32], list: UVec2, at: u32) -> u32 {
+    if list.x == NO_LIST { numbers[at as usize] } else { lists[(list.x + at) as usize] }
 }
 
 /// True if the smoke in front hides all further sprites. `stops`: the traversal may stop there.
-pub fn is_done(stops: bool, transmittance: f32) -> bool {
+pub fn is_opaque(stops: bool, transmittance: f32) -> bool {
     stops && transmittance <= OPAQUE
 }
 
 /// True also if the scene hides all further sprites: none begins before the view depth `front`, and none that begins
 /// beyond `end` is visible.
 pub fn is_opaque_or_occluded(stops: bool, transmittance: f32, front: f32, end: f32) -> bool {
-    is_done(stops, transmittance) || front > end
+    is_opaque(stops, transmittance) || front > end
 }
 
 /// True if a sorted sprite is visible. Without a sort, every sprite counts as visible.
-pub fn is_shown(sorted: bool, key: u32) -> bool {
+pub fn is_visible(sorted: bool, key: u32) -> bool {
     !sorted || key != HIDDEN_KEY
 }
 

@@ -17,7 +17,6 @@ use haze_author::path_trace::{DensityVolume, MEDIA, Medium, PathTrace, PathTrace
 use haze_author::ramp::response::{LightResponse, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::six_way_layout;
-use haze_reference;
 
 const LIGHTS: usize = 8;
 /// Flipbook frames in use; each puff shows one of them.

@@ -158,7 +158,7 @@ fn wgsl_constants_match_rust() {
     let accumulate = composed("tile_accumulate.wgsl");
     assert_eq!(constant(&accumulate, "RUN"), f64::from(formula::tiles::RUN));
     assert_eq!(constant(&accumulate, "BITS_PER_WORD"), f64::from(formula::tiles::BITS_PER_WORD));
-    assert_eq!(constant(&accumulate, "EVERYTHING"), f64::from(formula::tiles::EVERYTHING));
+    assert_eq!(constant(&accumulate, "NO_LIST"), f64::from(formula::tiles::NO_LIST));
     assert_eq!(constant(&accumulate, "HIDDEN_KEY"), f64::from(formula::tiles::HIDDEN_KEY));
     assert_eq!(constant(&accumulate, "OPAQUE"), f64::from(formula::tiles::OPAQUE));
 }

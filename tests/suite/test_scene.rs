@@ -14,7 +14,6 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::sprite::six_way::six_way_layout;
-use haze_reference;
 
 use crate::gpu::gpu;
 use crate::test_host::HostKind;

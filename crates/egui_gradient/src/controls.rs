@@ -62,7 +62,7 @@ fn position_field(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
     match typed {
         None => {}
         Some(NumberInput::Multiply(times)) => {
-            context.edit_selected(MOVE, |all, selection| stop_operations::scale(all, selection, times))
+            context.edit_selected(MOVE, |all, selection| stop_operations::scale(all, selection, times));
         }
         Some(typed) => {
             let at = typed.apply_to(lead.at);
@@ -215,13 +215,13 @@ fn stop_buttons(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
     let about = of("Space all stops evenly", "Space the selected stops evenly");
     if button(ui, is_many, "Distribute", &about) {
         context.edit_selected(["distribute", "distribute a part"], |all, selection| {
-            stop_operations::distribute(all, selection)
+            stop_operations::distribute(all, selection);
         });
     }
     let about = "Give the range after each stop the same width: for constant curves";
     if button(ui, is_many, "Steps", about) {
         context.edit_selected(["even steps", "even steps in a part"], |all, selection| {
-            stop_operations::distribute_steps(all, selection)
+            stop_operations::distribute_steps(all, selection);
         });
     }
     if button(ui, true, "Copy", "Copy all stops as recipe text (Ctrl+C on a stop)") {

@@ -89,7 +89,7 @@ fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &G
         let colour = colour_at(gradient, at);
         let before = (context.stops.clone(), context.editor.selection.clone());
         context.edit("add a stop", |stops, selection| {
-            *selection = Selection::one(stop_operations::add(stops, at, colour))
+            *selection = Selection::one(stop_operations::add(stops, at, colour));
         });
         if let Some(origin) = origin.filter(|_| response.drag_started()) {
             handles::begin_drag(context, origin.x, place, before, true);

@@ -162,7 +162,7 @@ const NUMBERS: [u32; 16] = [9, 8, 7, 6, 5, 4, 3, 2, 1, 0, 19, 18, 17, 16, 15, 14
 
 /// A list of five sprites that starts at a word from 0 to 3, or a bin without a list.
 fn list(x: &[f32]) -> UVec2 {
-    uvec2(if x[0] > 3.0 { tiles::EVERYTHING } else { x[0] as u32 }, 5)
+    uvec2(if x[0] > 3.0 { tiles::NO_LIST } else { x[0] as u32 }, 5)
 }
 
 fn lists() -> Vec<Formula> {
@@ -170,9 +170,9 @@ fn lists() -> Vec<Formula> {
         Formula {
             name: "bin_list",
             file: "tile_bin.wgsl",
-            wgsl: "tiles.columns = 5u; tiles.rows = 3u; tiles.capacity = word(6); tally.shown = 77u; \
-                   atomicStore(&tally.entries, word(0)); let l = bin_list(word(2), word(4)); y_word(0, l.x); \
-                   y_word(2, l.y); y_word(4, atomicLoad(&tally.entries));",
+            wgsl: "tiles.columns = 5u; tiles.rows = 3u; tiles.capacity = word(6); counters.shown = 77u; \
+                   atomicStore(&counters.entries, word(0)); let l = bin_list(word(2), word(4)); y_word(0, l.x); \
+                   y_word(2, l.y); y_word(4, atomicLoad(&counters.entries));",
             reference: |x| {
                 let tiles = TilesUniform { capacity: word(&x[6..]), ..TILES };
                 let (list, entries) = tiles::bin_list(&tiles, 77, word(x), word(&x[2..]), word(&x[4..]));
@@ -189,14 +189,14 @@ fn lists() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "sprite_number",
+            name: "sprite_index",
             file: "tile_accumulate.wgsl",
             wgsl: "lists = array<u32, 16>(3u, 1u, 4u, 1u, 5u, 9u, 2u, 6u, 0x55555555u, 0x0f0f0f0fu, 0x12345678u, 8u, 9u, \
                    7u, 9u, 3u); \
                    numbers = array<u32, 16>(9u, 8u, 7u, 6u, 5u, 4u, 3u, 2u, 1u, 0u, 19u, 18u, 17u, 16u, 15u, 14u); \
-                   let list = vec2u(select(u32(x(0)), EVERYTHING, x(0) > 3.0), 5u); \
-                   y(0, f32(sprite_number(list, u32(x(1)))));",
-            reference: |x| vec![tiles::sprite_number(&LISTS, &NUMBERS, list(x), x[1] as u32) as f32],
+                   let list = vec2u(select(u32(x(0)), NO_LIST, x(0) > 3.0), 5u); \
+                   y(0, f32(sprite_index(list, u32(x(1)))));",
+            reference: |x| vec![tiles::sprite_index(&LISTS, &NUMBERS, list(x), x[1] as u32) as f32],
             cases: random(60, &[(0.0, 6.0), (0.0, 4.9)]),
             tolerance: 0.0,
             mutants: &[("lists[list.x + at]", "lists[at]"), ("return numbers[at];", "return at;")],
@@ -205,7 +205,7 @@ fn lists() -> Vec<Formula> {
             name: "bits_of",
             file: "tile_accumulate.wgsl",
             wgsl: "lists = array<u32, 16>(3u, 1u, 4u, 1u, 5u, 9u, 2u, 6u, 0x55555555u, 0x0f0f0f0fu, 0x12345678u, 8u, 9u, \
-                   7u, 9u, 3u); let list = vec2u(select(u32(x(0)), EVERYTHING, x(0) > 3.0), 5u); \
+                   7u, 9u, 3u); let list = vec2u(select(u32(x(0)), NO_LIST, x(0) > 3.0), 5u); \
                    y_word(0, bits_of(list, 0u, u32(x(1))));",
             reference: |x| halves(tiles::bits_of(&LISTS, list(x), 0, x[1] as u32)).to_vec(),
             cases: random(60, &[(0.0, 6.0), (0.0, 5.9)]),
@@ -222,10 +222,10 @@ fn lists() -> Vec<Formula> {
             mutants: &[("0xffffffffu, count >= 32u", "0u, count >= 32u"), ("(1u << count) - 1u", "(2u << count) - 1u")],
         },
         Formula {
-            name: "is_done",
+            name: "is_opaque",
             file: "tile_accumulate.wgsl",
-            wgsl: "STOPS = x(0) > 0.5; var t: Texel; t.transmittance = x(1); y(0, f32(is_done(t)));",
-            reference: |x| flag(tiles::is_done(x[0] > 0.5, x[1])),
+            wgsl: "STOPS = x(0) > 0.5; var t: Texel; t.transmittance = x(1); y(0, f32(is_opaque(t)));",
+            reference: |x| flag(tiles::is_opaque(x[0] > 0.5, x[1])),
             cases: random(100, &[(0.0, 1.0), (0.0, 0.002)]),
             tolerance: 0.0,
             mutants: &[
@@ -241,15 +241,15 @@ fn lists() -> Vec<Formula> {
             reference: |x| flag(tiles::is_opaque_or_occluded(x[0] > 0.5, x[1], x[2], x[3])),
             cases: random(200, &[(0.0, 1.0), (0.0, 0.002), (1.0, 5.0), (1.0, 5.0)]),
             tolerance: 0.0,
-            mutants: &[("is_done(texel) || front", "front"), ("front > texel.end", "front > texel.scene")],
+            mutants: &[("is_opaque(texel) || front", "front"), ("front > texel.end", "front > texel.scene")],
         },
         Formula {
-            name: "is_shown",
+            name: "is_visible",
             file: "tile_gather.wgsl",
-            wgsl: "SORTED = x(0) > 0.5; keys[3] = select(u32(x(1)), HIDDEN_KEY, x(1) > 5.0); y(0, f32(is_shown(3u)));",
+            wgsl: "SORTED = x(0) > 0.5; keys[3] = select(u32(x(1)), HIDDEN_KEY, x(1) > 5.0); y(0, f32(is_visible(3u)));",
             reference: |x| {
                 let key = if x[1] > 5.0 { tiles::HIDDEN_KEY } else { x[1] as u32 };
-                flag(tiles::is_shown(x[0] > 0.5, key))
+                flag(tiles::is_visible(x[0] > 0.5, key))
             },
             cases: random(50, &[(0.0, 1.0), (0.0, 10.0)]),
             tolerance: 0.0,

@@ -120,7 +120,7 @@ fn settings(preset: &Preset) -> Vec<Setting> {
     };
     let pairs = field_values(preset).into_iter().zip(field_values(&plain));
     let setting = |((path, value), (_, default)): ((String, FieldValue), (String, FieldValue))| {
-        let no_effect_reason = no_effect_reason(&preset, &path, SIZE);
+        let no_effect_reason = no_effect_reason(preset, &path, SIZE);
         Setting { path, value, default, no_effect_reason }
     };
     pairs.map(setting).collect()

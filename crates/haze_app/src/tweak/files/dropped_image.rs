@@ -64,7 +64,7 @@ impl DroppedImage {
         }
         let of = preset.systems.get(system).map_or("", |system| &system.name);
         let said = self.fields.first().map(|(field, name)| {
-            let idle = no_effect_reason(&preset, &path(field), size);
+            let idle = no_effect_reason(preset, &path(field), size);
             let idle = idle.map(|reason| format!("; without effect here: {reason}")).unwrap_or_default();
             format!("{name} is the {} of {of} now{idle}", field.replace('_', " "))
         });

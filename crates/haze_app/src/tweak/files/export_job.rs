@@ -170,7 +170,7 @@ impl ExportJob {
         while let Some(done) = self.worker.poll() {
             match done {
                 Some(ExportResult::Written(path)) => {
-                    session.messages.info("export", format!("written: {}", path.display()))
+                    session.messages.info("export", format!("written: {}", path.display()));
                 }
                 Some(ExportResult::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
                 Some(ExportResult::Failed(error)) => session.messages.error("export", error),

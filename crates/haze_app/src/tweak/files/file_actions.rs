@@ -95,7 +95,7 @@ impl FileActions {
         while let Some(done) = self.worker.poll() {
             match done {
                 Some(FileResult::Opened(document, loaded)) => {
-                    self.begin_or_ask(AfterUnsaved::Show(document, loaded), session)
+                    self.begin_or_ask(AfterUnsaved::Show(document, loaded), session);
                 }
                 Some(FileResult::Saved(saving, done)) => self.saved(*saving, done, session),
                 Some(FileResult::Dropped(system, dropped)) => {

@@ -27,7 +27,7 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
             ControlTarget::Macro(param) => macro_row(ui, context, system, index, param),
             ControlTarget::System(field, usual) => show_named(ui, context, &path, system, (name, field, usual)),
             ControlTarget::Camera(field, usual) => {
-                show_named(ui, context, &[("camera", None)], camera, (name, field, usual))
+                show_named(ui, context, &[("camera", None)], camera, (name, field, usual));
             }
             ControlTarget::KeyLight(field, usual) => {
                 let Some((key, light)) = key.and_then(|key| Some((key, lights.get_mut(key)?))) else { continue };

@@ -57,7 +57,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
 fn freeze(ui: &mut Ui, preset: &mut Preset, size: UVec2) {
     let path = |index| format!("systems[{index}].settings.sprite.freeze_animation");
     let idle: Option<Vec<_>> =
-        (0..preset.systems.len()).map(|index| no_effect_reason(&preset, &path(index), size)).collect();
+        (0..preset.systems.len()).map(|index| no_effect_reason(preset, &path(index), size)).collect();
     let idle = idle.map(|reasons| reasons.first().copied().unwrap_or("there is no smoke"));
     let is_frozen = preset.systems.iter().any(|system| system.settings.sprite.freeze_animation);
     let button = ui.add_enabled(idle.is_none(), egui::Button::selectable(is_frozen, "Freeze"));
