@@ -1,9 +1,8 @@
 // accumulate: blends the normal and the amount of every sprite into the accumulation target.
 // Reads   particles (instances; sorted: back to front), sprite flipbook, detail map or noise, reduced depth (or the
 //         host's own).
-// Writes  accumulation target: rgb = sum of premultiplied normals, a = amount; second target: sum of weights if needed.
-//         Six-way sprites: light from right, top and front with the amount; second target: light from left, bottom and
-//         back with the sum of weights.
+// Writes  accumulation target: rgb = sum of premultiplied normals, or light from right, top and front if SIX_WAY;
+//         a = amount; and the other textures of lib/attachments.wgsl that the system has.
 // Blend   sorted: ONE, ONE_MINUS_SRC_ALPHA: normals are blended, amounts add smoothly, A = 1 - product of (1 - a).
 //         weighted: ONE, ONE for normals, amounts as for sorted.
 // Source  OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
@@ -41,10 +40,17 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
     return out;
 }
 
+// One output per texture of the target. Those that the system does not have are not written.
 struct Accumulated {
-    @location(0) normal_and_amount: vec4f,
-    // Used if biased normals are weighted, and if SIX_WAY.
-    @location(1) extra_attachment: vec4f,
+    @location(0) texture_0: vec4f,
+    @location(1) texture_1: vec4f,
+    @location(2) texture_2: vec4f,
+    @location(3) texture_3: vec4f,
+}
+
+fn accumulated_from(normal_and_amount: vec4f, attachments: Attachments) -> Accumulated {
+    let slots = slots_from_attachments(normal_and_amount, attachments);
+    return Accumulated(slots[0], slots[1], slots[2], slots[3]);
 }
 
 @fragment
@@ -63,17 +69,18 @@ fn fragment(in: SpriteVertex) -> Accumulated {
         discard;
     }
     if OVERDRAW {
-        return Accumulated(vec4f(OVERDRAW_STEP), vec4f(0.0));
+        var none: Attachments;
+        return accumulated_from(vec4f(OVERDRAW_STEP), none);
     }
     let weight = fragment.amount * in.weight;
+    let attachments = attachments_from_fragment(fragment, weight);
     if SIX_WAY {
         // Saves blending two targets: six of ten texels of a sprite are clear.
         if fragment.amount <= 0.0 {
             discard;
         }
-        let light = fragment.six_way;
-        return Accumulated(vec4f(light.positive * weight, fragment.amount), vec4f(light.negative * weight, weight));
+        return accumulated_from(vec4f(fragment.six_way.positive * weight, fragment.amount), attachments);
     }
     let accumulated = accumulation_from_normal(NORMAL_ENCODING, fragment.normal, fragment.amount, in.weight);
-    return Accumulated(accumulated, vec4f(weight));
+    return accumulated_from(accumulated, attachments);
 }

@@ -23,11 +23,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if amount <= 0.0 {
         return vec4f(0.0);
     }
-    var extra = vec4f(0.0);
-    if WEIGHT_SUM || SIX_WAY {
-        extra = textureLoad(extra_attachment, vec2i(texel), 0);
-    }
-    let surface = surface_from_accumulation(accumulated, extra);
+    let surface = surface_from_accumulation(accumulated, load_attachments(vec2i(texel)));
     // The centre of the texel represents all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * system.scale;
     let light = diffuse(surface, amount, shading_position(pixel)) + soft_scatter(amount);

@@ -20,17 +20,14 @@
 @group(3) @binding(5) var<storage, read> bins: array<vec2u>;
 // Reduced depth, or the host's depth if HOST_DEPTH.
 @group(3) @binding(6) var tested_depth: texture_2d<f32>;
-// One of these two is the target, depending on its format.
-@group(3) @binding(7) var float_target: texture_storage_2d<rgba16float, write>;
-@group(3) @binding(8) var byte_target: texture_storage_2d<rgba8unorm, write>;
-// Second target: one of these, or none.
-@group(3) @binding(9) var weight_target: texture_storage_2d<r32float, write>;
-@group(3) @binding(10) var six_way_target: texture_storage_2d<rgba16float, write>;
+// Textures of the target. The renderer replaces the formats by those of the system's textures.
+@group(3) @binding(7) var texture_0: texture_storage_2d<rgba16float, write>;
+@group(3) @binding(8) var texture_1: texture_storage_2d<rgba16float, write>;
+@group(3) @binding(9) var texture_2: texture_storage_2d<rgba16float, write>;
+@group(3) @binding(10) var texture_3: texture_storage_2d<rgba16float, write>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override WEIGHTED: bool = false;
-override BYTE_TARGET: bool = false;
-override SUMS_WEIGHTS: bool = false;
 // True: the traversal stops where the smoke is opaque.
 override STOPS: bool = true;
 
@@ -47,9 +44,8 @@ struct Texel {
     end: f32,
     // Premultiplied sum over all sprites in front: normals, or light from right, top and front if SIX_WAY.
     normals: vec3f,
-    // Light from left, bottom and back.
-    negative: vec3f,
-    weights: f32,
+    // Sums of the other textures.
+    attachments: Attachments,
     transmittance: f32,
 }
 
@@ -73,11 +69,10 @@ fn accumulate_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bo
     let weight = amount * seen * select(1.0, in.weight, WEIGHTED);
     if SIX_WAY {
         next.normals += fragment.six_way.positive * weight;
-        next.negative += fragment.six_way.negative * weight;
     } else {
         next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, 1.0, weight).rgb;
     }
-    next.weights += weight;
+    next.attachments = add_attachments(texel.attachments, attachments_from_fragment(fragment, weight));
     next.transmittance *= 1.0 - amount;
     return next;
 }
@@ -93,17 +88,16 @@ fn is_opaque_or_occluded(texel: Texel, front: f32) -> bool {
 }
 
 fn write_texel(place: vec2u, texel: Texel) {
-    let accumulated = vec4f(texel.normals, 1.0 - texel.transmittance);
-    if BYTE_TARGET {
-        textureStore(byte_target, place, accumulated);
-    } else {
-        textureStore(float_target, place, accumulated);
+    let slots = slots_from_attachments(vec4f(texel.normals, 1.0 - texel.transmittance), texel.attachments);
+    textureStore(texture_0, place, slots[0]);
+    if ATTACHMENT_COUNT > 1u {
+        textureStore(texture_1, place, slots[1]);
     }
-    if SUMS_WEIGHTS {
-        textureStore(weight_target, place, vec4f(texel.weights));
+    if ATTACHMENT_COUNT > 2u {
+        textureStore(texture_2, place, slots[2]);
     }
-    if SIX_WAY {
-        textureStore(six_way_target, place, vec4f(texel.negative, texel.weights));
+    if ATTACHMENT_COUNT > 3u {
+        textureStore(texture_3, place, slots[3]);
     }
 }
 

@@ -82,11 +82,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
         return vec4f(target_colour(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
     }
-    var extra = vec4f(0.0);
-    if WEIGHT_SUM || SIX_WAY {
-        extra = sample_target(extra_attachment, pixel);
-    }
-    let surface = surface_from_accumulation(accumulated, extra);
+    let surface = surface_from_accumulation(accumulated, sample_attachments(pixel));
     if DEBUG_VIEW == DEBUG_VIEW_NORMALS {
         return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;
     }

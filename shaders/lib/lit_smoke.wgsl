@@ -2,14 +2,16 @@
 
 #import "lib/diffuse.wgsl"
 #import "lib/accumulated.wgsl"
+#import "lib/attachments.wgsl"
 #import "lib/normal.wgsl"
 #import "lib/diffuse_bake.wgsl"
 
 // Six faces of baked light by normal (cubemap), or one image of a lit sphere (motif).
 @group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
-// Second target. If WEIGHT_SUM: the sum of the normals' weights in r. If SIX_WAY: light from left, bottom and back, and
-// the sum of weights.
-@group(3) @binding(3) var extra_attachment: texture_2d<f32>;
+// Textures of the accumulation target behind the first. Those that the system does not have are not read.
+@group(3) @binding(3) var texture_1: texture_2d<f32>;
+@group(3) @binding(4) var texture_2: texture_2d<f32>;
+@group(3) @binding(5) var texture_3: texture_2d<f32>;
 
 const DIFFUSE_MODE_RAMP: u32 = 0u;
 const DIFFUSE_MODE_CUBEMAP: u32 = 1u;
@@ -19,8 +21,6 @@ const DIFFUSE_MODE_SPHERICAL_HARMONICS: u32 = 4u;
 override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
-override WEIGHT_SUM: bool = false;
-override SIX_WAY: bool = false;
 const COVERAGE_MODE_LINEAR: u32 = 0u;
 const COVERAGE_MODE_RAMP: u32 = 1u;
 override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
@@ -29,30 +29,61 @@ override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
 struct Surface {
     // Unit length, view space.
     normal: vec3f,
-    // If SIX_WAY.
+    // If the target has six-way light.
     six_way: SixWay,
 }
 
-// Decodes a texel of the target, and of the second target if there is one.
-fn surface_from_accumulation(accumulated: vec4f, extra_attachment: vec4f) -> Surface {
+// Samples the textures behind the first at a pixel of the view.
+fn sample_attachments(pixel: vec2f) -> Attachments {
+    var slots: array<vec4f, MAX_TARGET_ATTACHMENTS>;
+    if ATTACHMENT_COUNT > 1u {
+        slots[1] = sample_target(texture_1, pixel);
+    }
+    if ATTACHMENT_COUNT > 2u {
+        slots[2] = sample_target(texture_2, pixel);
+    }
+    if ATTACHMENT_COUNT > 3u {
+        slots[3] = sample_target(texture_3, pixel);
+    }
+    return attachments_from_slots(slots);
+}
+
+// Loads a texel of the textures behind the first.
+fn load_attachments(texel: vec2i) -> Attachments {
+    var slots: array<vec4f, MAX_TARGET_ATTACHMENTS>;
+    if ATTACHMENT_COUNT > 1u {
+        slots[1] = textureLoad(texture_1, texel, 0);
+    }
+    if ATTACHMENT_COUNT > 2u {
+        slots[2] = textureLoad(texture_2, texel, 0);
+    }
+    if ATTACHMENT_COUNT > 3u {
+        slots[3] = textureLoad(texture_3, texel, 0);
+    }
+    return attachments_from_slots(slots);
+}
+
+// Decodes a texel of the first texture, and the values of the others.
+fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Surface {
     var surface: Surface;
-    if SIX_WAY {
+    if SIX_WAY_SLOT != 0u {
         // The fit of an upsampler may fall below 0, which means no light.
-        let scale = 1.0 / max(extra_attachment.a, 1.0e-6);
-        surface.six_way = SixWay(max(accumulated.rgb, vec3f(0.0)) * scale, max(extra_attachment.rgb, vec3f(0.0)) * scale);
+        let negative = attachments.six_way;
+        let scale = 1.0 / max(negative.a, 1.0e-6);
+        surface.six_way = SixWay(max(accumulated.rgb, vec3f(0.0)) * scale, max(negative.rgb, vec3f(0.0)) * scale);
         surface.normal = normal_from_six_way(surface.six_way.positive, surface.six_way.negative);
         return surface;
     }
     var weights = accumulated.a;
-    if WEIGHT_SUM {
-        weights = extra_attachment.r;
+    if WEIGHTS_SLOT != 0u {
+        weights = attachments.weights;
     }
     surface.normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
     return surface;
 }
 
 fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
-    if SIX_WAY {
+    if SIX_WAY_SLOT != 0u {
         return diffuse_from_six_way(surface.six_way, position) * system.diffuse_intensity;
     }
     let normal = surface.normal;

@@ -1,6 +1,7 @@
 // Fragment of a sprite under every technique, shared by accumulate and forward.
 
 #import "lib/sprite_vertex.wgsl"
+#import "lib/attachments.wgsl"
 #import "lib/depth.wgsl"
 #import "lib/noise_volume.wgsl"
 #import "lib/normal.wgsl"
@@ -24,6 +25,18 @@ struct SpriteFragment {
 
 const NO_LIGHT: SixWay = SixWay(vec3f(0.0), vec3f(0.0));
 const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, true);
+
+// Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal.
+fn attachments_from_fragment(fragment: SpriteFragment, weight: f32) -> Attachments {
+    var values: Attachments;
+    if SIX_WAY_SLOT != 0u {
+        values.six_way = vec4f(fragment.six_way.negative * weight, weight);
+    }
+    if WEIGHTS_SLOT != 0u {
+        values.weights = weight;
+    }
+    return values;
+}
 
 // True if the technique reads the scene's depth in the shader.
 fn reads_scene() -> bool {

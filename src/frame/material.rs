@@ -9,6 +9,8 @@ pub struct Material {
     /// Number of the context that created it.
     pub(crate) context: u64,
     pub(crate) bind_group: wgpu::BindGroup,
+    /// The part of it that the passes that light accumulated smoke read.
+    pub(crate) lighting: wgpu::BindGroup,
     pub(crate) info: MaterialInfo,
     pub(crate) bytes: u64,
 }

@@ -114,7 +114,7 @@ impl Context {
     ) -> Result<Material, Error> {
         self.validate_device(device)?;
         let Shared { layouts, textures, number, .. } = &*self.0;
-        Ok(create_material(&Gpu { device, queue }, &layouts.material, textures, *number, assets)?)
+        Ok(create_material(&Gpu { device, queue }, layouts, textures, *number, assets)?)
     }
 
     /// Returns the number of pipelines compiled so far. It stays constant once everything that a program draws has been

@@ -3,15 +3,25 @@
 use super::gpu::capabilities::tiles_are_supported;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::MAX_LIGHTS;
+use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 
 /// Size of the lights' uniform block, bytes.
 pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as u64;
+
+/// Bindings of a material that the passes that light accumulated smoke read: the ramps, their sampler, and the painted
+/// motif. WebGPU and WebGL2 guarantee 16 textures per stage, too few for all of the material's with the target's.
+pub(crate) const LIGHTING_BINDINGS: [u32; 7] = [1, 2, 3, 4, 5, 10, 12];
+
+/// Number of textures that transfer reads: first attachment, reduced depth, baked light, further attachments.
+pub(crate) const TRANSFER_TEXTURES: usize = 3 + (MAX_TARGET_ATTACHMENTS - 1);
 
 #[derive(Debug)]
 pub(crate) struct Layouts {
     pub frame: wgpu::BindGroupLayout,
     pub system: wgpu::BindGroupLayout,
     pub material: wgpu::BindGroupLayout,
+    /// As `material`, with [`LIGHTING_BINDINGS`] only.
+    pub lighting: wgpu::BindGroupLayout,
     pub accumulate: wgpu::BindGroupLayout,
     pub transfer: wgpu::BindGroupLayout,
 }
@@ -34,44 +44,39 @@ impl Layouts {
         };
         let mut visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
         visibility.set(wgpu::ShaderStages::COMPUTE, tiles_are_supported(device));
-        let layout = |label, types: &[wgpu::BindingType]| {
+        let layout_of = |label, is_bound: &dyn Fn(u32) -> bool, types: &[wgpu::BindingType]| {
             let entries: Vec<_> = (0..)
                 .zip(types)
+                .filter(|(binding, _)| is_bound(*binding))
                 .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None })
                 .collect();
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
+        let layout = |label, types: &[wgpu::BindingType]| layout_of(label, &|_| true, types);
+        let material = [
+            texture(filterable, D2Array),
+            texture(filterable, D2),
+            texture(filterable, D2),
+            texture(filterable, D2),
+            texture(filterable, D2),
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            texture(filterable, D2Array),
+            texture(filterable, D2),
+            texture(filterable, D3),
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            texture(filterable, D2),
+            texture(wgpu::TextureSampleType::Uint, D2),
+            texture(filterable, D2),
+        ];
+        let mut transfer = [texture(unfilterable, D2); TRANSFER_TEXTURES];
+        transfer[2] = texture(filterable, D2Array);
         Self {
             frame: layout("haze frame", &[uniform(size_of::<ViewUniform>() as u64), texture(unfilterable, D2)]),
             system: layout("haze system", &[uniform(size_of::<SystemUniform>() as u64), uniform(LIGHTS_SIZE)]),
-            material: layout(
-                "haze material",
-                &[
-                    texture(filterable, D2Array),
-                    texture(filterable, D2),
-                    texture(filterable, D2),
-                    texture(filterable, D2),
-                    texture(filterable, D2),
-                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    texture(filterable, D2Array),
-                    texture(filterable, D2),
-                    texture(filterable, D3),
-                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    texture(filterable, D2),
-                    texture(wgpu::TextureSampleType::Uint, D2),
-                    texture(filterable, D2),
-                ],
-            ),
+            material: layout("haze material", &material),
+            lighting: layout_of("haze material lighting", &|binding| LIGHTING_BINDINGS.contains(&binding), &material),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),
-            transfer: layout(
-                "haze transfer inputs",
-                &[
-                    texture(unfilterable, D2),
-                    texture(unfilterable, D2),
-                    texture(filterable, D2Array),
-                    texture(unfilterable, D2),
-                ],
-            ),
+            transfer: layout("haze transfer inputs", &transfer),
         }
     }
 }

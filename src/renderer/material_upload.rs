@@ -4,6 +4,7 @@ use glam::UVec2;
 
 use super::gpu::Gpu;
 use super::gpu::capabilities::array_layers;
+use super::layouts::{LIGHTING_BINDINGS, Layouts};
 use crate::assets::material_assets::MaterialAssets;
 use crate::assets::noise::NoiseVolume;
 use crate::assets::ramp::Ramp;
@@ -52,7 +53,7 @@ impl SharedTextures {
 /// Names an image that is too large for the device, or six-way maps that do not fit the sprite.
 pub(crate) fn create_material(
     gpu: &Gpu<'_>,
-    layout: &wgpu::BindGroupLayout,
+    layouts: &Layouts,
     shared: &SharedTextures,
     context: u64,
     assets: &MaterialAssets,
@@ -75,26 +76,32 @@ pub(crate) fn create_material(
     let texture = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
     let sampler =
         |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
-    let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("haze material"),
-        layout,
-        entries: &[
-            texture(0, &sprite),
-            texture(1, &diffuse_ramp),
-            texture(2, &soft_scatter_ramp),
-            texture(3, &specular_ramp),
-            texture(4, &motif),
-            sampler(5, &shared.linear),
-            texture(6, detail.as_ref().unwrap_or(&shared.no_detail)),
-            texture(7, &age_ramp),
-            texture(8, &noise),
-            sampler(9, &shared.repeat),
-            texture(10, &coverage_ramp),
-            texture(11, &alpha_bounds),
-            texture(12, &backlight_ramp),
-        ],
-    });
-    Ok(Material { context, bind_group, info, bytes })
+    let entries = [
+        texture(0, &sprite),
+        texture(1, &diffuse_ramp),
+        texture(2, &soft_scatter_ramp),
+        texture(3, &specular_ramp),
+        texture(4, &motif),
+        sampler(5, &shared.linear),
+        texture(6, detail.as_ref().unwrap_or(&shared.no_detail)),
+        texture(7, &age_ramp),
+        texture(8, &noise),
+        sampler(9, &shared.repeat),
+        texture(10, &coverage_ramp),
+        texture(11, &alpha_bounds),
+        texture(12, &backlight_ramp),
+    ];
+    let bind = |label, layout, entries: &[wgpu::BindGroupEntry<'_>]| {
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
+    };
+    let lighting = LIGHTING_BINDINGS.map(|binding| entries[binding as usize].clone());
+    Ok(Material {
+        context,
+        bind_group: bind("haze material", &layouts.material, &entries),
+        lighting: bind("haze material lighting", &layouts.lighting, &lighting),
+        info,
+        bytes,
+    })
 }
 
 /// Refuses images that are too large for the device, and six-way maps that do not fit the sprite.

@@ -39,8 +39,9 @@ impl Pipelines {
     ) -> Result<Self, E> {
         let frame_and_system = [Some(&layouts.frame), Some(&layouts.system)];
         let material = [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material)];
-        let with = |inputs| [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material), Some(inputs)];
-        let (accumulate, transfer) = (with(&layouts.accumulate), with(&layouts.transfer));
+        let with = |material, inputs| [Some(&layouts.frame), Some(&layouts.system), Some(material), Some(inputs)];
+        let accumulate = with(&layouts.material, &layouts.accumulate);
+        let transfer = with(&layouts.lighting, &layouts.transfer);
         macro_rules! variants {
             ($pass:ident, $groups:expr) => {{
                 let name = stringify!($pass);

@@ -13,13 +13,13 @@ use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::TransferKey;
 use super::sprite_instances::SpriteKey;
-use super::targets::ExtraAttachment;
 use super::tiled::TiledKeys;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
 use crate::settings::{
     BlendOrder, DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, RenderPath, Settings, Technique,
 };
+use crate::view_setup::AttachmentSet;
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,7 +165,7 @@ fn deferred<'a>(
     let lighting = LightingKey {
         encoding: accumulate.encoding,
         decode: accumulate.decode,
-        extra_attachment: ExtraAttachment::of(settings),
+        attachments: AttachmentSet::of(settings),
         diffuse_mode: settings.diffuse.mode,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
@@ -178,7 +178,7 @@ fn deferred<'a>(
         format: accumulate.format,
         encoding: accumulate.encoding,
         order: accumulate.order,
-        extra_attachment: ExtraAttachment::of(settings),
+        attachments: AttachmentSet::of(settings),
         sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
         host_depth,
         depth_test,
@@ -228,7 +228,7 @@ fn deferred<'a>(
 }
 
 fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filtering: bool) -> TiledKeys {
-    let &AccumulateKey { format, encoding, order, extra_attachment, sprite, host_depth, .. } = key;
+    let &AccumulateKey { format, encoding, order, attachments, sprite, host_depth, .. } = key;
     let weighted = order == BlendOrder::Weighted;
     TiledKeys {
         project: TileProjectKey { sprite, weighted },
@@ -237,7 +237,7 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filt
             format,
             encoding,
             weighted,
-            extra_attachment,
+            attachments,
             host_depth,
             // With weighted normals every sprite counts, even behind opaque smoke.
             stops: layers == Layers::Visible && !weighted,

@@ -45,7 +45,7 @@ impl SpriteKey {
     }
 
     /// Returns the override constants of the shared files, followed by the pass's own.
-    pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
+    pub fn constants(&self, of_pass: impl IntoIterator<Item = Constant>) -> Vec<Constant> {
         let shared = [
             enum_constant!("TECHNIQUE", self.technique),
             enum_constant!("SPRITE_ANIMATION", self.animation),

@@ -162,8 +162,6 @@ impl PassBuilder<'_> {
                     let inputs = TiledInputs {
                         sprites: &sprites,
                         size,
-                        format: keys.accumulate.format,
-                        extra_attachment: keys.accumulate.extra_attachment,
                         attachments: &accumulation.attachments,
                         depth: accumulation.reduced_depth.as_ref().unwrap_or(&depth.depth),
                         workload: tiles.workload,

@@ -188,6 +188,7 @@ impl SystemState {
         let (accumulation, baked_diffuse) = self.targets.textures()?;
         Some(TargetViews {
             accumulation: &accumulation.attachments,
+            roles: accumulation.roles(),
             reduced_depth: accumulation.reduced_depth.as_ref(),
             baked_diffuse: &baked_diffuse.faces,
             origin: setup.rect.origin,
@@ -263,6 +264,7 @@ impl SystemState {
             frame: depth.frame.clone(),
             system: self.bindings.clone(),
             material: system.material.bind_group.clone(),
+            lighting: system.material.lighting.clone(),
         };
         let (sprites, particle_pass) = self.particles(context, system.particles, settings, &groups)?;
         let sampled = matches!(particle_pass, Some(ParticlePass::Emit(_))).then_some(particles_per_sample);

@@ -3,10 +3,11 @@
 use glam::UVec2;
 
 use super::context::Shared;
-use super::layouts::bind_textures;
+use super::layouts::{TRANSFER_TEXTURES, bind_textures};
 use super::plan::DeferredPlan;
-use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse, ExtraAttachment};
+use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse};
 use crate::settings::Settings;
+use crate::view_setup::AttachmentSet;
 
 /// Textures of one system, and their bind groups, which are recreated with the textures.
 #[derive(Debug, Default)]
@@ -50,7 +51,7 @@ impl SystemTargets {
         let device = &shared.device;
         let key = AccumulationKey {
             format: settings.accumulate.format,
-            extra_attachment: ExtraAttachment::of(settings),
+            attachments: AttachmentSet::of(settings),
             depth_source: settings.accumulate.depth_source,
             overdraw: plan.overdraw.is_some(),
             lit: plan.light_target.is_some(),
@@ -67,12 +68,12 @@ impl SystemTargets {
             let depth = accumulation.reduced_depth.as_ref();
             let amount = &accumulation.attachments[0];
             let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
-            // Placeholders: without a reduced depth or a second attachment no shader reads these bindings, but they
-            // must be filled.
+            // Placeholders: no shader reads the depth or the further attachments that a system does not have, but the
+            // bindings must be filled.
             let transfer = |amount| {
-                let depth = depth.unwrap_or(amount);
-                let extra_attachment = accumulation.attachments.get(1).unwrap_or(amount);
-                let inputs = [amount, depth, &baked_diffuse.array, extra_attachment];
+                let mut inputs = [amount; TRANSFER_TEXTURES];
+                (inputs[1], inputs[2]) = (depth.unwrap_or(amount), &baked_diffuse.array);
+                inputs[3..].iter_mut().zip(&accumulation.attachments[1..]).for_each(|(input, view)| *input = view);
                 bind_textures(device, "haze transfer inputs", transfer, inputs)
             };
             TargetInputs {

@@ -6,6 +6,7 @@ use super::auto::PathReason;
 use super::context::Shared;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear_target;
+use super::targets::validate_attachments;
 use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::error::FieldError;
 use crate::frame::validate_input::{
@@ -13,6 +14,7 @@ use crate::frame::validate_input::{
 };
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, RenderPath, Technique};
+use crate::view_setup::AttachmentSet;
 
 /// Validates everything except the view's matrices.
 ///
@@ -89,6 +91,9 @@ fn validate_depth_texture(
 
 fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
+    if !system.settings.is_forward() {
+        validate_attachments(index, AttachmentSet::of(system.settings), system.settings.accumulate.format)?;
+    }
     if system.settings.path == RenderPath::Tiled && shared.tiles().is_none() {
         let expected =
             "\"raster\", or a device with compute shaders and WebGPU's default limits; OpenGL is not supported";

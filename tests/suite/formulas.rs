@@ -177,6 +177,13 @@ const INDIRECT: &[(&str, &str)] = &[
     ("init_texel", "fills a struct from tested functions"),
     ("accumulate_sprite", "calls technique_fragment for a struct of init_texel"),
     ("reads_scene", "decides only whether the scene's depth is read, not a value"),
+    ("attachments_from_fragment", "fills a struct from tested functions; whole frames compare every role"),
+    ("accumulated_from", "maps a struct to the outputs of the pass"),
+    ("add_attachments", "adds structs member by member; tests of the tiled path cover it"),
+    ("slots_from_attachments", "maps roles to texture slots by override constants"),
+    ("attachments_from_slots", "maps texture slots to roles by override constants"),
+    ("sample_attachments", "reads the pass's textures by the tested sample_target"),
+    ("load_attachments", "reads the pass's textures"),
 ];
 
 #[test]

@@ -21,8 +21,8 @@ const MUTANTS: &[Mutant] = &[
         // Gives the image of a blend state with the factor SrcAlpha for colour.
         "wrong blend factor",
         "accumulate.wgsl",
-        "return Accumulated(accumulated, ",
-        "return Accumulated(vec4f(accumulated.rgb * accumulated.a, accumulated.a), ",
+        "return accumulated_from(accumulated, ",
+        "return accumulated_from(vec4f(accumulated.rgb * accumulated.a, accumulated.a), ",
     ),
     // Reversed winding gives the image of the other cull mode.
     ("wrong face culled", "transfer.wgsl", "corners[index]", "corners[35u - index]"),

@@ -207,7 +207,11 @@ fn warm_up_reports_errors_that_only_other_settings_compile() {
 fn missing_and_circular_imports_are_reported_at_the_import_line() {
     let imports = |import: &str| {
         let folder = ShaderFolder::new();
-        folder.edit("lib/colour.wgsl", "const MAX_HALF_FLOAT_LIGHT", &format!("#import \"{import}\"\nconst MAX_HALF_FLOAT_LIGHT"));
+        folder.edit(
+            "lib/colour.wgsl",
+            "const MAX_HALF_FLOAT_LIGHT",
+            &format!("#import \"{import}\"\nconst MAX_HALF_FLOAT_LIGHT"),
+        );
         folder
             .write("lib/round.wgsl", "#import \"lib/about.wgsl\"\n")
             .write("lib/about.wgsl", "\n#import \"lib/round.wgsl\"");

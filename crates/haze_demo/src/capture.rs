@@ -4,12 +4,12 @@ use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::shot::Shot;
 use super::texture_readback::TextureReadback;
-use haze::TargetViews;
 use haze::assets::image::Image;
 use haze::error::Error;
 use haze::frame::Particle;
 use haze::settings::Settings;
-use haze_reference::{Probe, ProbeTextures, probe};
+use haze::{AttachmentSet, TargetViews};
+use haze_reference::{AccumulatedTextures, Probe, ProbeTextures, probe};
 
 /// Pending readback of a frame's targets.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub struct Capture {
 struct CapturedTarget {
     size: UVec2,
     depth_limit: f32,
-    has_extra_attachment: bool,
+    roles: AttachmentSet,
     has_depth: bool,
     /// Number of cube faces of baked light.
     faces: usize,
@@ -58,7 +58,7 @@ impl Capture {
         let target = |views: &TargetViews<'_>| CapturedTarget {
             size: views.size,
             depth_limit: views.depth_limit,
-            has_extra_attachment: views.accumulation.len() > 1,
+            roles: views.roles,
             has_depth: views.reduced_depth.is_some(),
             faces: views.baked_diffuse.len(),
         };
@@ -80,9 +80,10 @@ impl Capture {
         let scene_depth = depth.depths(&bytes, depth.size());
         let behind = behind.colours(&bytes, 0, behind.size());
         let mut system = |target: &CapturedTarget| {
-            let mut colours = || Some(regions.next()?.colours(&bytes, 0, target.size));
-            let accumulation = colours()?;
-            let extra_attachment = if target.has_extra_attachment { Some(colours()?) } else { None };
+            let mut accumulation = AccumulatedTextures::default();
+            for role in target.roles.iter() {
+                accumulation[role as usize] = Some(regions.next()?.colours(&bytes, 0, target.size));
+            }
             let reduced_depth = if target.has_depth {
                 let mut depth = regions.next()?.depths(&bytes, target.size);
                 depth.texels.iter_mut().for_each(|depth| *depth *= target.depth_limit);
@@ -96,7 +97,7 @@ impl Capture {
                 baked =
                     (0..target.faces as u32).map(|face| rgb(&region.colours(&bytes, face, region.size()))).collect();
             }
-            Some(ProbeTextures { accumulation, extra_attachment, reduced_depth, baked })
+            Some(ProbeTextures { accumulation, reduced_depth, baked })
         };
         let systems = self.systems.iter().map(|target| target.as_ref().and_then(&mut system)).collect();
         Some(CapturedFrame { scene_depth, behind, systems })

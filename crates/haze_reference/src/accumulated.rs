@@ -6,6 +6,13 @@ use super::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::upsample::{GuidedFit, add_texel, bilinear_suffices, fitted_value, guided_weight, upsample_weights};
 use haze::settings::Upsample;
+use haze::view_setup::AttachmentRole;
+
+/// Textures of the accumulation target, indexed by role; `None` for those that the system does not have.
+pub type AccumulatedTextures = [Option<Image<Vec4>>; AttachmentRole::ALL.len()];
+
+/// Values of a texel, indexed by role; 0 for textures that the system does not have.
+pub type Attachments = [Vec4; AttachmentRole::ALL.len()];
 
 /// Finished target of a system.
 pub struct AccumulatedTarget<'a> {
@@ -15,15 +22,32 @@ pub struct AccumulatedTarget<'a> {
     pub baked: &'a [Image<Vec3>],
     /// View depth at the resolution of the target, metres.
     pub reduced_depth: &'a Image<f32>,
-    /// Normals, or light from right, top and front, and amounts.
-    pub accumulation: &'a Image<Vec4>,
-    /// Second target: the sum of the normals' weights, or the other half of six-way light.
-    pub extra_attachment: Option<&'a Image<Vec4>>,
+    /// Textures of the accumulation target, by role.
+    pub textures: &'a AccumulatedTextures,
     /// Output of light_target. `None` if texels are lit as they are read.
     pub lit: Option<Image<Vec4>>,
 }
 
 impl AccumulatedTarget<'_> {
+    /// Values by role. `accumulated`: value of the first texture. `read` reads one of the others.
+    pub fn attachments(&self, accumulated: Vec4, read: impl Fn(&Image<Vec4>) -> Vec4) -> Attachments {
+        AttachmentRole::ALL.map(|role| match (role, &self.textures[role as usize]) {
+            (AttachmentRole::NormalAndAmount, _) => accumulated,
+            (_, Some(texture)) => read(texture),
+            (_, None) => Vec4::ZERO,
+        })
+    }
+
+    /// Samples the first texture.
+    pub fn sample_accumulated(&self, pixel: Vec2) -> Vec4 {
+        self.first_texture().map_or(Vec4::ZERO, |texture| self.sample_target(texture, pixel))
+    }
+
+    /// Normal and amount. Every target has this texture.
+    pub fn first_texture(&self) -> Option<&Image<Vec4>> {
+        self.textures[AttachmentRole::NormalAndAmount as usize].as_ref()
+    }
+
     /// Samples a texture of the accumulation target. `sample_target()` in accumulated.wgsl.
     pub fn sample_target(&self, target: &Image<Vec4>, pixel: Vec2) -> Vec4 {
         self.sample_texels(|at| target.load(at), pixel)

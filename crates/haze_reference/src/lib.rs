@@ -16,6 +16,7 @@ use haze::error::FieldError;
 use haze::settings::DebugView;
 
 use accumulated::AccumulatedTarget;
+pub use accumulated::AccumulatedTextures;
 pub use input::{Frame, System};
 pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
 use visible_system::visible_systems;
@@ -34,13 +35,13 @@ pub fn render(frame: &Frame<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldE
             continue;
         }
         let reduced_depth = visible.depth_downsample();
-        let accumulation = visible.accumulate(&reduced_depth, frame.debug_view == DebugView::Overdraw);
-        let extra_attachment = visible.extra_attachment(&reduced_depth);
+        let textures = match frame.debug_view {
+            DebugView::Overdraw => visible.overdraw(&reduced_depth),
+            _ => visible.accumulate(&reduced_depth),
+        };
         let baked = visible.diffuse_bake();
-        let (reduced_depth, accumulation, extra_attachment) =
-            (&reduced_depth, &accumulation, extra_attachment.as_ref());
-        let mut smoke =
-            AccumulatedTarget { visible, baked: &baked, reduced_depth, accumulation, extra_attachment, lit: None };
+        let (reduced_depth, textures) = (&reduced_depth, &textures);
+        let mut smoke = AccumulatedTarget { visible, baked: &baked, reduced_depth, textures, lit: None };
         if visible.lights_per_texel(frame.debug_view) {
             smoke.lit = Some(smoke.light_target());
         }

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use super::accumulated::AccumulatedTarget;
+use super::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use super::blend_unit::premultiplied_over;
 use super::input::Frame;
 use super::visible_system::{VisibleSystem, visible_systems};
@@ -17,10 +17,9 @@ use haze::view_setup::{ViewGeometry, light_uniforms};
 /// part in use.
 #[derive(Clone, Debug)]
 pub struct ProbeTextures {
-    /// Normal and amount, as the target encodes them.
-    pub accumulation: Image<Vec4>,
-    /// Second target: in x the sum of the normals' weights, or the other half of six-way light.
-    pub extra_attachment: Option<Image<Vec4>>,
+    /// Textures of the accumulation target, indexed by [`AttachmentRole`](haze::AttachmentRole); `None` for
+    /// those that the system does not have.
+    pub accumulation: AccumulatedTextures,
     /// Linear view depth, metres; `None` if sprites are compared with the scene's own.
     pub reduced_depth: Option<Image<f32>>,
     /// Light by normal: the faces of a cubemap, one motif, or empty.
@@ -138,21 +137,14 @@ impl<'a> ProbedSystem<'a> {
         texels: &'a ProbeTextures,
         reduced_depth: &'a Image<f32>,
     ) -> Result<Self, FieldError> {
-        let ProbeTextures { accumulation, extra_attachment, baked, .. } = texels;
+        let ProbeTextures { accumulation: textures, baked, .. } = texels;
         let size = visible.setup.rect.size;
-        let sizes = [Some(accumulation.size), extra_attachment.as_ref().map(|t| t.size), Some(reduced_depth.size)];
-        if let Some(other) = sizes.into_iter().flatten().find(|other| *other != size) {
+        let sizes = textures.iter().flatten().map(|texture| texture.size).chain([reduced_depth.size]);
+        if let Some(other) = sizes.into_iter().find(|other| *other != size) {
             let value = format!("{}x{}", other.x, other.y);
             return Err(FieldError::new("texels", value, format!("{}x{}, the size of the system", size.x, size.y)));
         }
-        let accumulated = AccumulatedTarget {
-            visible,
-            baked,
-            reduced_depth,
-            accumulation,
-            extra_attachment: extra_attachment.as_ref(),
-            lit: None,
-        };
+        let accumulated = AccumulatedTarget { visible, baked, reduced_depth, textures, lit: None };
         let view = ViewGeometry::new(&haze::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {

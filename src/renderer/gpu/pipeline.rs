@@ -9,11 +9,23 @@ use super::error_scopes::with_error_scopes;
 use crate::error::{Error, one_line};
 
 /// Shader of a pass.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Shader {
     pub module: wgpu::ShaderModule,
     /// File of the pass.
     pub path: PathBuf,
+    /// WGSL without imports.
+    pub text: String,
+}
+
+impl Shader {
+    /// Returns the shader with its text changed. `name`: name of the pass, used as label.
+    pub fn with_text(&self, device: &wgpu::Device, name: &str, change: impl FnOnce(&str) -> String) -> Self {
+        let text = change(&self.text);
+        let source = wgpu::ShaderSource::Wgsl(text.as_str().into());
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source });
+        Self { module, path: self.path.clone(), text }
+    }
 }
 
 /// Shader of a pass, and its pipelines by key. A pipeline is compiled on first use, from any thread.
@@ -29,7 +41,8 @@ pub(crate) struct PipelineVariants<K, P: PipelineDescription = RenderPipelineDes
 pub(crate) struct Common {
     /// Name of the pass, used as label.
     name: &'static str,
-    shader: Shader,
+    module: wgpu::ShaderModule,
+    path: PathBuf,
     layout: wgpu::PipelineLayout,
     cache: Option<wgpu::PipelineCache>,
 }
@@ -74,7 +87,8 @@ impl<K: Copy + Eq + Hash, P: PipelineDescription> PipelineVariants<K, P> {
             bind_group_layouts: groups,
             immediate_size: 0,
         });
-        let common = Common { name, shader, layout, cache: cache.cloned() };
+        let Shader { module, path, text: _ } = shader;
+        let common = Common { name, module, path, layout, cache: cache.cloned() };
         Self { common, describe, pipelines: Mutex::default() }
     }
 
@@ -94,7 +108,7 @@ impl<K: Copy + Eq + Hash, P: PipelineDescription> PipelineVariants<K, P> {
             let stages = [("VERTEX", "vertex"), ("FRAGMENT", "fragment"), ("COMPUTE", "compute")];
             let plain = |text: String, (stage, name): (&str, _)| text.replace(&format!("ShaderStages({stage})"), name);
             let reason = one_line(stages.into_iter().fold(reason, plain));
-            Error::Shader { path: self.common.shader.path.clone(), line: 1, column: 1, reason }
+            Error::Shader { path: self.common.path.clone(), line: 1, column: 1, reason }
         })?;
         self.keep(key, compiled);
         Ok(())
@@ -128,7 +142,7 @@ impl PipelineDescription for RenderPipelineDescription {
             label: Some(common.name),
             layout: Some(&common.layout),
             vertex: wgpu::VertexState {
-                module: &common.shader.module,
+                module: &common.module,
                 entry_point: Some("vertex"),
                 compilation_options: options.clone(),
                 buffers: self.buffers,
@@ -137,7 +151,7 @@ impl PipelineDescription for RenderPipelineDescription {
             depth_stencil: self.depth_stencil.clone(),
             multisample: wgpu::MultisampleState { count: self.sample_count, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
-                module: &common.shader.module,
+                module: &common.module,
                 entry_point: Some("fragment"),
                 compilation_options: options,
                 targets: &self.targets,
@@ -155,7 +169,7 @@ impl PipelineDescription for ComputePipelineDescription {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(common.name),
             layout: Some(&common.layout),
-            module: &common.shader.module,
+            module: &common.module,
             entry_point: Some(self.entry_point),
             compilation_options: wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() },
             cache: common.cache.as_ref(),

@@ -2,7 +2,7 @@
 //!
 //! Reads: particles, sprite flipbook, detail map or noise, reduced depth or the host's own.
 //! Writes: accumulation target.
-//! Blend: ONE, ONE_MINUS_SRC_ALPHA; weighted normals ONE, ONE.
+//! Blend: ONE, ONE_MINUS_SRC_ALPHA; weighted normals ONE, ONE. Per texture: `targets/attachments.rs`.
 //! Source: OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
 
 use std::sync::Arc;
@@ -12,14 +12,15 @@ use glam::UVec2;
 use super::Groups;
 use crate::renderer::gpu::host_pass::MAX_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{
-    ADD_ALL, PREMULTIPLIED_OVER, QUAD_STRIP, RenderPipelineDescription, WEIGHTED_SUM, bool_constant, color_target,
-    depth_compare, enum_constant, read_only_depth,
+    ADD_ALL, QUAD_STRIP, RenderPipelineDescription, bool_constant, color_target, depth_compare, enum_constant,
+    read_only_depth,
 };
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor, tested_depth};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
-use crate::renderer::targets::{DEPTH_COPY_FORMAT, ExtraAttachment, REDUCED_DEPTH_FORMAT, accumulation_layout};
+use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, attachment_constants, attachments};
 use crate::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
+use crate::view_setup::AttachmentSet;
 
 /// Key of an accumulation pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,7 +28,7 @@ pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub order: BlendOrder,
-    pub extra_attachment: ExtraAttachment,
+    pub attachments: AttachmentSet,
     pub sprite: SpriteKey,
     /// True if sprites are compared with the host's own depth instead of the reduced depth.
     pub host_depth: bool,
@@ -51,14 +52,7 @@ pub(crate) enum DepthTest {
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: AccumulateKey) -> RenderPipelineDescription {
-    // Blend states of the first and the second texture.
-    let blends = match (key.overdraw, key.order) {
-        (true, _) => [ADD_ALL; 2],
-        (false, BlendOrder::Sorted) => [PREMULTIPLIED_OVER; 2],
-        // Weights add up; the second texture's alpha has nothing else.
-        (false, BlendOrder::Weighted) => [WEIGHTED_SUM, ADD_ALL],
-    };
-    let extra_attachment = if key.overdraw { ExtraAttachment::Nothing } else { key.extra_attachment };
+    let set = if key.overdraw { AttachmentSet::NORMAL_AND_AMOUNT } else { key.attachments };
     RenderPipelineDescription {
         buffers: const { &[Some(PARTICLE_LAYOUT)] },
         primitive: QUAD_STRIP,
@@ -69,19 +63,20 @@ pub(crate) fn describe(key: AccumulateKey) -> RenderPipelineDescription {
             DepthTest::Host(format, reversed) => Some(read_only_depth(format, depth_compare(reversed))),
         },
         sample_count: 1,
-        targets: accumulation_layout(key.format, extra_attachment, false)
-            .iter()
-            .zip(blends)
-            .map(|(attachment, blend)| color_target(attachment.format, Some(blend)))
+        targets: attachments(set)
+            .map(|row| {
+                let blend = if key.overdraw { ADD_ALL } else { row.blend(key.order) };
+                color_target(row.texture_format(key.format, false), Some(blend))
+            })
             .collect(),
-        constants: key.sprite.constants([
+        constants: key.sprite.constants(attachment_constants(set).chain([
             enum_constant!("NORMAL_ENCODING", key.encoding),
             bool_constant("HOST_DEPTH", key.host_depth),
             bool_constant("WEIGHTED", key.order == BlendOrder::Weighted),
             // The copy is too coarse to replace the shader's own test.
             bool_constant("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
             bool_constant("OVERDRAW", key.overdraw),
-        ]),
+        ])),
     }
 }
 

@@ -12,15 +12,16 @@ use super::Groups;
 use crate::renderer::gpu::pipeline::{Constant, RenderPipelineDescription, bool_constant, color_target, enum_constant};
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor};
 use crate::renderer::gpu::timing::Timing;
-use crate::renderer::targets::{ExtraAttachment, LIT_FORMAT};
+use crate::renderer::targets::{LIT_FORMAT, attachment_constants};
 use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
+use crate::view_setup::AttachmentSet;
 
 /// Lighting options that select a pipeline, here and in transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct LightingKey {
     pub encoding: NormalEncoding,
     pub decode: NormalDecode,
-    pub extra_attachment: ExtraAttachment,
+    pub attachments: AttachmentSet,
     pub diffuse_mode: DiffuseMode,
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
@@ -36,13 +37,11 @@ impl LightingKey {
             enum_constant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
             enum_constant!("NORMAL_ENCODING", self.encoding),
             enum_constant!("NORMAL_DECODE", self.decode),
-            bool_constant("WEIGHT_SUM", self.extra_attachment == ExtraAttachment::Weights),
-            bool_constant("SIX_WAY", self.extra_attachment == ExtraAttachment::SixWay),
             enum_constant!("BACKLIGHT", self.backlight),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
             bool_constant("EXACT_FILTERING", self.exact_filtering),
         ];
-        shared.into_iter().chain(of_pass).collect()
+        shared.into_iter().chain(attachment_constants(self.attachments)).chain(of_pass).collect()
     }
 }
 
@@ -75,7 +74,7 @@ impl LightTarget {
         let mut pass = begin_pass(encoder, "light_target", &[color_attachment(&self.target)], None, timing);
         set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
-        self.groups.bind(&mut pass);
+        self.groups.bind_for_lighting(&mut pass);
         pass.set_bind_group(3, &self.inputs, &[]);
         pass.draw(0..3, 0..1);
     }

@@ -23,13 +23,24 @@ pub(crate) struct Groups {
     pub frame: wgpu::BindGroup,
     pub system: wgpu::BindGroup,
     pub material: wgpu::BindGroup,
+    /// The part of the material that the passes that light accumulated smoke read.
+    pub lighting: wgpu::BindGroup,
 }
 
 impl Groups {
     fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.bind_with(pass, &self.material);
+    }
+
+    /// Binds the groups of a pass that lights accumulated smoke.
+    fn bind_for_lighting(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.bind_with(pass, &self.lighting);
+    }
+
+    fn bind_with(&self, pass: &mut wgpu::RenderPass<'_>, material: &wgpu::BindGroup) {
         pass.set_bind_group(0, &self.frame, &[]);
         pass.set_bind_group(1, &self.system, &[]);
-        pass.set_bind_group(2, &self.material, &[]);
+        pass.set_bind_group(2, material, &[]);
     }
 
     fn bind_to_compute(&self, pass: &mut wgpu::ComputePass<'_>) {

@@ -52,7 +52,7 @@ pub(crate) struct SpecularScatter {
 impl SpecularScatter {
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
-        self.groups.bind(pass);
+        self.groups.bind_for_lighting(pass);
         pass.set_bind_group(3, &self.inputs, &[]);
         pass.draw(0..4, 0..self.lights);
     }

@@ -10,8 +10,9 @@ use super::Groups;
 use super::tile_refine;
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant, enum_constant};
 use crate::renderer::sprite_instances::SpriteKey;
-use crate::renderer::targets::ExtraAttachment;
+use crate::renderer::targets::{TiledFormats, attachment_constants, tiled_formats};
 use crate::settings::{AccumulationFormat, NormalEncoding};
+use crate::view_setup::AttachmentSet;
 
 /// Texels per workgroup of the entry points `cooperative` and `per_invocation` in `shaders/tile_accumulate.wgsl`.
 const COOPERATIVE_TILE: UVec2 = UVec2::new(8, 16);
@@ -25,7 +26,7 @@ pub(crate) struct TileAccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub weighted: bool,
-    pub extra_attachment: ExtraAttachment,
+    pub attachments: AttachmentSet,
     /// True if sprites are compared with the host's own depth instead of the reduced depth.
     pub host_depth: bool,
     /// True if the traversal stops where a texel is opaque.
@@ -34,19 +35,24 @@ pub(crate) struct TileAccumulateKey {
     pub cooperative: bool,
 }
 
+impl TileAccumulateKey {
+    /// Returns the formats of the textures that the pass writes.
+    pub fn formats(&self) -> TiledFormats {
+        tiled_formats(self.attachments, self.format)
+    }
+}
+
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileAccumulateKey) -> ComputePipelineDescription {
     ComputePipelineDescription {
         entry_point: if key.cooperative { "cooperative" } else { "per_invocation" },
-        constants: key.sprite.constants([
+        constants: key.sprite.constants(attachment_constants(key.attachments).chain([
             enum_constant!("NORMAL_ENCODING", key.encoding),
             bool_constant("HOST_DEPTH", key.host_depth),
             bool_constant("WEIGHTED", key.weighted),
-            bool_constant("BYTE_TARGET", key.format == AccumulationFormat::Rgba8Unorm),
-            bool_constant("SUMS_WEIGHTS", key.extra_attachment == ExtraAttachment::Weights),
             bool_constant("STOPS", key.stops),
             bool_constant("LOADS_SPRITE", !key.cooperative),
-        ]),
+        ])),
     }
 }
 

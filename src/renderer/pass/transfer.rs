@@ -88,7 +88,7 @@ impl Transfer {
             _ => Some(&self.inputs),
         };
         pass.set_pipeline(pipeline);
-        self.groups.bind(pass);
+        self.groups.bind_for_lighting(pass);
         pass.set_bind_group(3, inputs, &[]);
         pass.draw(0..BOX_VERTICES, 0..1);
     }

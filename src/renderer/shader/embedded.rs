@@ -31,6 +31,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "tile_refine.wgsl",
     "transfer.wgsl",
     "lib/accumulated.wgsl",
+    "lib/attachments.wgsl",
     "lib/bindings.wgsl",
     "lib/blending.wgsl",
     "lib/colour.wgsl",

@@ -14,7 +14,7 @@ pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Resu
     // A test composes every embedded shader, so this cannot fail. The device would report an empty module like any
     // other error.
     let composed = Sources::embedded().compose(&file_of(name)).unwrap_or_default();
-    Ok(Shader { module: create(device, name, &composed), path: composed.path })
+    Ok(Shader { module: create(device, name, &composed), path: composed.path, text: composed.text })
 }
 
 /// Creates the shader of a pass from sources that may contain errors.
@@ -26,7 +26,7 @@ pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources:
     let mut module = None;
     let created = with_error_scopes(device, || module.insert(create(device, name, &composed)).clone());
     match created {
-        Ok(module) => Ok(Shader { module, path: composed.path }),
+        Ok(module) => Ok(Shader { module, path: composed.path, text: composed.text }),
         Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
             let info = module.and_then(|module| poll_once(module.get_compilation_info()));
             match info.and_then(|info| info.messages.into_iter().next()) {

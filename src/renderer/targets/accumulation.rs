@@ -4,81 +4,11 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use super::attachments::attachments;
 use super::texture_allocator::TextureAllocator;
 use crate::renderer::gpu::idle_counter::IdleCounter;
-use crate::settings::{AccumulationFormat, DepthSource, Settings};
-
-/// Description of one texture of the accumulation target. Every texture is cleared to zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct AccumulationAttachment {
-    pub label: &'static str,
-    pub format: wgpu::TextureFormat,
-}
-
-/// Content of the target's second texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum ExtraAttachment {
-    Nothing,
-    /// Sum of the normals' weights.
-    Weights,
-    /// Light from left, bottom and back, and the sum of weights. The first texture then has light from right, top and
-    /// front, and the amount.
-    SixWay,
-}
-
-impl ExtraAttachment {
-    pub fn of(settings: &Settings) -> Self {
-        match (settings.is_six_way(), settings.accumulate.sums_weights()) {
-            (true, _) => Self::SixWay,
-            (false, true) => Self::Weights,
-            (false, false) => Self::Nothing,
-        }
-    }
-}
-
-/// Returns the textures of the accumulation target. `tiled`: true if compute shaders write it.
-pub(crate) fn accumulation_layout(
-    format: AccumulationFormat,
-    extra_attachment: ExtraAttachment,
-    tiled: bool,
-) -> Vec<AccumulationAttachment> {
-    let format = texture_format(format);
-    let [weights, six_way] =
-        if tiled { [TILED_WEIGHTS_FORMAT, TILED_SIX_WAY_FORMAT] } else { [wgpu::TextureFormat::R16Float, format] };
-    let first = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
-    let extra_attachment = match extra_attachment {
-        ExtraAttachment::Nothing => None,
-        ExtraAttachment::Weights => {
-            Some(AccumulationAttachment { label: "haze accumulation: weights", format: weights })
-        }
-        ExtraAttachment::SixWay => {
-            Some(AccumulationAttachment { label: "haze accumulation: six-way", format: six_way })
-        }
-    };
-    std::iter::once(first).chain(extra_attachment).collect()
-}
-
-/// Differs from raster's `R16Float`: WebGPU guarantees neither storage writes to `R16Float` nor blending into
-/// `R32Float`.
-const TILED_WEIGHTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
-
-/// Independent of the first texture's format: WebGPU guarantees only four storage textures per shader, and a shader
-/// declares the format of each.
-const TILED_SIX_WAY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-
-/// Returns the formats of the targets that compute shaders write: the first texture in either accumulation format, the
-/// sum of weights, and six-way light.
-pub(crate) fn tiled_formats() -> [wgpu::TextureFormat; 4] {
-    let [float, byte] = [AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm].map(texture_format);
-    [float, byte, TILED_WEIGHTS_FORMAT, TILED_SIX_WAY_FORMAT]
-}
-
-fn texture_format(format: AccumulationFormat) -> wgpu::TextureFormat {
-    match format {
-        AccumulationFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
-        AccumulationFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
-    }
-}
+use crate::settings::{AccumulationFormat, DepthSource};
+use crate::view_setup::AttachmentSet;
 
 /// A depth format, so that it can be attached and the hardware rejects hidden sprites. Every backend can render to it,
 /// which does not hold for `R32Float`.
@@ -94,7 +24,7 @@ pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Fl
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct AccumulationKey {
     pub format: AccumulationFormat,
-    pub extra_attachment: ExtraAttachment,
+    pub attachments: AttachmentSet,
     pub depth_source: DepthSource,
     /// True if layers are counted as well.
     pub overdraw: bool,
@@ -112,6 +42,7 @@ pub(crate) struct AccumulationTarget {
     key: AccumulationKey,
     size: UVec2,
     idle: IdleCounter,
+    /// In the order of their roles.
     pub attachments: Arc<[wgpu::TextureView]>,
     /// Counted layers, in the format of the first attachment.
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
@@ -148,6 +79,11 @@ impl AccumulationTarget {
         (target, is_new)
     }
 
+    /// Returns the roles of the textures.
+    pub fn roles(&self) -> AttachmentSet {
+        self.key.attachments
+    }
+
     /// Returns true if the textures hold `size` texels and have not been much too large for more than 120 frames.
     fn is_suitable_for(&mut self, size: UVec2) -> bool {
         if self.key.depth_source == DepthSource::Host {
@@ -160,14 +96,14 @@ impl AccumulationTarget {
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
         let mut textures = TextureAllocator { device, bytes: 0, storage: false };
-        let mut create = |extra_attachment, tiled| -> Arc<[_]> {
+        let mut create = |set, tiled| -> Arc<[_]> {
             textures.storage = tiled;
-            let layout = accumulation_layout(key.format, extra_attachment, tiled).into_iter();
-            layout.map(|attachment| textures.create_whole(attachment.label, attachment.format, size)).collect()
+            let mut texture = |format, label| textures.create_whole(label, format, size);
+            attachments(set).map(|row| texture(row.texture_format(key.format, tiled), row.label)).collect()
         };
-        let attachments = create(key.extra_attachment, key.tiled);
+        let attachments = create(key.attachments, key.tiled);
         // Layers are always counted by hardware blending.
-        let overdraw = key.overdraw.then(|| create(ExtraAttachment::Nothing, false));
+        let overdraw = key.overdraw.then(|| create(AttachmentSet::NORMAL_AND_AMOUNT, false));
         textures.storage = false;
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;

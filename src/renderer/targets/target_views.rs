@@ -2,14 +2,17 @@
 
 use glam::{IVec2, UVec2};
 
+use crate::view_setup::AttachmentSet;
+
 /// Textures of one system. All share one grid: texel (i, j) covers `scale` by `scale` pixels of the view, from `scale`
 /// · (`origin` + (i, j)). The part in use has `size` texels and starts at texel (0, 0) of the textures, which may be
 /// larger. All have the usage `COPY_SRC`.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetViews<'a> {
-    /// First texture: premultiplied normal in rgb, amount in a. With six-way light: light from right, top and front in
-    /// rgb. A second texture, if any, has the sum of weights, or the other three sides of six-way light.
+    /// Textures of the accumulation target, in the order of `roles`. The first has normal and amount.
     pub accumulation: &'a [wgpu::TextureView],
+    /// Roles of the textures of `accumulation`.
+    pub roles: AttachmentSet,
     /// Linear view depth divided by `depth_limit`, `Depth32Float`; `None` if sprites are compared with the host's own
     /// depth.
     pub reduced_depth: Option<&'a wgpu::TextureView>,

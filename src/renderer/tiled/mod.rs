@@ -1,5 +1,6 @@
 //! Accumulation by compute shaders: resources that all systems of a device share, and those of each system.
 
+mod accumulate_variants;
 mod emitted_particles;
 mod sort_buffers;
 mod sorted_particles;

@@ -10,8 +10,8 @@ use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::sprite_instances::Sprites;
-use crate::renderer::targets::ExtraAttachment;
-use crate::settings::AccumulationFormat;
+use crate::renderer::targets::TiledFormats;
+use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 
 /// Bytes of a sprite: `TileSprite` in `shaders/lib/tile_sprite.wgsl`.
 pub(crate) const TILE_SPRITE_BYTES: u64 = 64;
@@ -178,19 +178,13 @@ impl TileBuffers {
         &mut self,
         gpu: &Gpu<'_>,
         tiled: &TiledPipelines,
-        (format, extra_attachment): (AccumulationFormat, ExtraAttachment),
+        formats: TiledFormats,
         attachments: &[wgpu::TextureView],
         depth: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
-        let [float, byte, weights, six_way] = &tiled.placeholders;
-        let (float, byte) = match format {
-            AccumulationFormat::Rgba16Float => (attachments.first().unwrap_or(float), byte),
-            AccumulationFormat::Rgba8Unorm => (float, attachments.first().unwrap_or(byte)),
-        };
-        let second = |of| attachments.get(1).filter(|_| extra_attachment == of);
-        let weights = second(ExtraAttachment::Weights).unwrap_or(weights);
-        let six_way = second(ExtraAttachment::SixWay).unwrap_or(six_way);
-        let views = [depth, float, byte, weights, six_way];
+        let mut views = [depth; 1 + MAX_TARGET_ATTACHMENTS];
+        let placeholders = tiled.accumulate.placeholders.iter().skip(attachments.len());
+        views[1..].iter_mut().zip(attachments.iter().chain(placeholders)).for_each(|(bound, view)| *bound = view);
         match &self.accumulate {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {
@@ -198,7 +192,7 @@ impl TileBuffers {
                 let buffers = [&*uniform, sprites, rects, sort.indices(), lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
-                let group = bind(gpu.device, &tiled.layouts.accumulate, resources);
+                let group = bind(gpu.device, &tiled.accumulate.get(gpu.device, formats).layout, resources);
                 self.accumulate = Some((views.map(wgpu::TextureView::clone).to_vec(), group.clone()));
                 group
             }

@@ -2,8 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::UVec2;
-
+use super::accumulate_variants::AccumulateVariants;
 use crate::error::Error;
 use crate::formula::uniforms::{EmitterUniform, TilesUniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineVariants, Shader};
@@ -11,12 +10,11 @@ use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
 use crate::renderer::pass::sort::{self, SortKey};
-use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
+use crate::renderer::pass::tile_accumulate::TileAccumulateKey;
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_gather::{self, TileGatherKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
 use crate::renderer::pass::tile_refine::{self, TileRefineKey};
-use crate::renderer::targets::{storage_target, tiled_formats};
 
 /// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
 #[derive(Debug)]
@@ -26,8 +24,6 @@ pub(crate) struct TiledPipelines {
     cooperative: AtomicBool,
     /// Queried once, because every query copies all limits.
     pub limits: wgpu::Limits,
-    /// Placeholder of one texel for each target format, bound in place of targets that a system does not have.
-    pub placeholders: [wgpu::TextureView; 4],
     emit: PipelineVariants<(), ComputePipelineDescription>,
     depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
@@ -35,7 +31,7 @@ pub(crate) struct TiledPipelines {
     gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
     bin: PipelineVariants<TileBinKey, ComputePipelineDescription>,
     refine: PipelineVariants<TileRefineKey, ComputePipelineDescription>,
-    accumulate: PipelineVariants<TileAccumulateKey, ComputePipelineDescription>,
+    pub accumulate: AccumulateVariants,
 }
 
 /// Bind group layouts of the tiled passes.
@@ -48,7 +44,6 @@ pub(crate) struct TiledLayouts {
     pub gather: wgpu::BindGroupLayout,
     pub bin: wgpu::BindGroupLayout,
     pub refine: wgpu::BindGroupLayout,
-    pub accumulate: wgpu::BindGroupLayout,
 }
 
 /// Pipeline keys of a system's tiled passes.
@@ -101,7 +96,6 @@ impl TiledPipelines {
         Ok(Self {
             cooperative: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
             limits: device.limits(),
-            placeholders: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
             emit: variants!(emit, &[Some(&own.emit)]),
             depth_sort: variants!(depth_sort, &with(&own.depth_sort)),
             project: variants!(tile_project, &with(&own.project)),
@@ -109,7 +103,7 @@ impl TiledPipelines {
             gather: variants!(tile_gather, &[Some(&own.gather)]),
             bin: variants!(tile_bin, &[Some(&own.bin)]),
             refine: variants!(tile_refine, &with(&own.refine)),
-            accumulate: variants!(tile_accumulate, &with(&own.accumulate)),
+            accumulate: AccumulateVariants::new(device, layouts, cache, shader("tile_accumulate")?),
             layouts: own,
         })
     }
@@ -185,7 +179,7 @@ impl TiledPipelines {
             gather: self.gather.get(device, TileGatherKey { sorted: sorts }),
             bin: std::array::from_fn(|_| bin.next()),
             refine: keys.refine().map(|key| self.refine.get(device, key)),
-            accumulate: self.accumulate.get(device, keys.accumulate),
+            accumulate: self.accumulate.pipeline(device, keys.accumulate),
         }
     }
 }
@@ -208,11 +202,6 @@ impl TiledLayouts {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
-        let target = |format| wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::WriteOnly,
-            format,
-            view_dimension: wgpu::TextureViewDimension::D2,
-        };
         let layout = |label, types: &[wgpu::BindingType]| {
             let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
                 binding,
@@ -223,7 +212,6 @@ impl TiledLayouts {
             let entries: Vec<_> = (0..).zip(types).map(entry).collect();
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
-        let [float, byte, weights, six_way] = tiled_formats().map(target);
         Self {
             emit: layout("haze emit inputs", &[uniform_of(size_of::<EmitterUniform>()), written]),
             depth_sort: layout("haze depth_sort inputs", &[uniform, read, written, written, written]),
@@ -232,10 +220,6 @@ impl TiledLayouts {
             gather: layout("haze tile_gather inputs", &[uniform, read, read, read, written, written, written]),
             bin: layout("haze tile_bin inputs", &[uniform, read, read, written, written, written, written]),
             refine: layout("haze tile_refine inputs", &[uniform, read, read, read, depth, written]),
-            accumulate: layout(
-                "haze tile_accumulate inputs",
-                &[uniform, read, read, read, read, read, depth, float, byte, weights, six_way],
-            ),
         }
     }
 }

@@ -23,8 +23,6 @@ use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::TileRefine;
 use crate::renderer::sprite_instances::Sprites;
-use crate::renderer::targets::ExtraAttachment;
-use crate::settings::AccumulationFormat;
 
 /// Minimum number of entries of all lists together.
 const MIN_ENTRIES: u32 = 1 << 16;
@@ -59,8 +57,7 @@ pub(crate) struct TiledInputs<'a> {
     pub sprites: &'a Sprites,
     /// Size of the part in use, texels.
     pub size: UVec2,
-    pub format: AccumulationFormat,
-    pub extra_attachment: ExtraAttachment,
+    /// Textures of the accumulation target, in the order of their roles.
     pub attachments: &'a [wgpu::TextureView],
     /// Depth that sprites are compared with.
     pub depth: &'a wgpu::TextureView,
@@ -77,7 +74,7 @@ impl TiledSystem {
         groups: &Groups,
         inputs: &TiledInputs<'_>,
     ) -> TiledPasses {
-        let TiledInputs { sprites, size, format, extra_attachment, attachments, depth, workload } = *inputs;
+        let TiledInputs { sprites, size, attachments, depth, workload } = *inputs;
         let max_words = max_storage_words(&tiled.limits);
         let cooperative = keys.accumulate.cooperative;
         let BinLayout { side: bin_side, columns, rows, runs } =
@@ -118,7 +115,7 @@ impl TiledSystem {
             let inputs = buffers.bind_refine(gpu, tiled, depth);
             TileRefine { pipeline, inputs, bins }
         });
-        let accumulate = buffers.bind_accumulate(gpu, tiled, (format, extra_attachment), attachments, depth);
+        let accumulate = buffers.bind_accumulate(gpu, tiled, keys.accumulate.formats(), attachments, depth);
         TiledPasses {
             groups: groups.clone(),
             project: TileProject { pipeline: pipelines.project, inputs: project, particles: sprites.count },

@@ -10,9 +10,10 @@ use haze::frame::MAX_LIGHTS;
 use haze::image::Image;
 use haze::settings::Settings;
 use haze::sprite::{Sprite, SpriteLayout};
+use haze::view_setup::AttachmentRole;
 use haze::view_setup::SpriteTrim;
 use haze::{Light, LightKind, MaterialAssets};
-use haze_reference::accumulated::AccumulatedTarget;
+use haze_reference::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use haze_reference::visible_system::{VisibleSystem, visible_systems};
 use haze_reference::{Frame, System};
 
@@ -28,6 +29,9 @@ pub static COLOURS: LazyLock<Image<Vec4>> = LazyLock::new(|| {
     let texels = (0..SIZE.x * SIZE.y).map(|i| ramp.texel(UVec2::new(i % SIZE.x, i / SIZE.x)).extend(1.0)).collect();
     Image { size: SIZE, texels }
 });
+
+/// Textures of every role, all of them the test ramp.
+static TEXTURES: LazyLock<AccumulatedTextures> = LazyLock::new(|| AttachmentRole::ALL.map(|_| Some(COLOURS.clone())));
 
 /// Red channel of the test ramp: the scene's depth buffer, and the reduced depth over the depth limit.
 pub static DEPTHS: LazyLock<Image<f32>> =
@@ -104,12 +108,5 @@ pub fn visible_system(settings: &Settings) -> VisibleSystem<'_> {
 
 /// Returns the finished target of a system. Every image of it is the test ramp.
 pub fn accumulated_target<'a>(visible: &'a VisibleSystem<'a>, reduced_depth: &'a Image<f32>) -> AccumulatedTarget<'a> {
-    AccumulatedTarget {
-        visible,
-        baked: &[],
-        reduced_depth,
-        accumulation: &COLOURS,
-        extra_attachment: Some(&COLOURS),
-        lit: None,
-    }
+    AccumulatedTarget { visible, baked: &[], reduced_depth, textures: &TEXTURES, lit: None }
 }

@@ -228,9 +228,10 @@ fn surfaces() -> Vec<Formula> {
         Formula {
             name: "surface_from_accumulation",
             file: "lib/lit_smoke.wgsl",
-            wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY = x(9) > 0.7; WEIGHT_SUM = x(9) < 0.3; \
-                   NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, WEIGHT_SUM); \
-                   let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8))); \
+            wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY_SLOT = u32(x(9) > 0.7); WEIGHTS_SLOT = u32(x(9) < 0.3); \
+                   NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, x(9) < 0.3); \
+                   let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), \
+                   Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5))); \
                    y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative);",
             reference: |x| {
                 let settings = changed(|s| {
@@ -243,7 +244,8 @@ fn surfaces() -> Vec<Formula> {
                         (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
                     }
                 });
-                let surface = with_target(&settings, |_| {}, |target| target.surface(v4(&x[1..]), v4(&x[5..])));
+                let surface =
+                    with_target(&settings, |_| {}, |target| target.surface(&[v4(&x[1..]), v4(&x[5..]), v4(&x[5..])]));
                 let SixWay { positive, negative } = surface.six_way;
                 [surface.normal, positive, negative].map(|v| v.to_array()).concat()
             },
@@ -253,7 +255,7 @@ fn surfaces() -> Vec<Formula> {
             ),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("weights = extra_attachment.r;", "weights = accumulated.a * 2.0;"),
+                ("weights = attachments.weights;", "weights = accumulated.a * 2.0;"),
                 ("max(accumulated.rgb, vec3f(0.0)) * scale", "accumulated.rgb * scale"),
                 (
                     "normal_from_six_way(surface.six_way.positive, surface.six_way.negative)",
@@ -264,7 +266,7 @@ fn surfaces() -> Vec<Formula> {
         Formula {
             name: "diffuse",
             file: "lib/lit_smoke.wgsl",
-            wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY = x(8) > 0.8; system.diffuse_intensity = 0.6; \
+            wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
                    for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
                    let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5))); \
                    y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",

@@ -2,57 +2,56 @@
 
 use glam::Vec4;
 
+use crate::accumulated::AccumulatedTextures;
 use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
 use crate::sprite::SpriteFragment;
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::normal::accumulation_from_normal;
 use haze::settings::{AccumulationFormat, BlendOrder};
-use haze::view_setup::TexelGrid;
+use haze::view_setup::{AttachmentRole, AttachmentSet, TexelGrid};
 
 impl VisibleSystem<'_> {
-    /// Returns the accumulation target. `overdraw`: counts layers instead, in steps of 1/255.
-    pub fn accumulate(&self, reduced_depth: &Image<f32>, overdraw: bool) -> Image<Vec4> {
-        let accumulate = &self.settings.accumulate;
-        self.blend(reduced_depth, |fragment, weight, texel| {
-            let SpriteFragment { normal, six_way, amount } = fragment;
-            let blended = if overdraw {
-                texel + Vec4::splat(1.0 / 255.0)
-            } else {
-                let source = if self.settings.is_six_way() {
-                    (six_way.positive * (amount * weight)).extend(amount)
-                } else {
-                    accumulation_from_normal(accumulate.encoding, normal, amount, weight)
-                };
-                match self.settings.order() {
-                    BlendOrder::Sorted => premultiplied_over(source, texel),
-                    BlendOrder::Weighted => weighted_sum(source, texel),
-                }
-            };
-            quantise(accumulate.format, blended)
+    /// Textures of the accumulation target, by role.
+    pub fn accumulate(&self, reduced_depth: &Image<f32>) -> AccumulatedTextures {
+        let set = AttachmentSet::of(self.settings);
+        AttachmentRole::ALL.map(|role| {
+            let blended = |fragment, weight, texel| self.blended(role, fragment, weight, texel);
+            set.contains(role).then(|| self.blend(reduced_depth, blended))
         })
     }
 
-    /// Second target: the sum of the normals' weights in x; or, for six-way maps, light from left, bottom and back, and
-    /// the sum of weights.
-    pub fn extra_attachment(&self, reduced_depth: &Image<f32>) -> Option<Image<Vec4>> {
+    /// Counted layers in the first texture, and no others.
+    pub fn overdraw(&self, reduced_depth: &Image<f32>) -> AccumulatedTextures {
+        let format = self.settings.accumulate.format;
+        let counted = |_, _, texel| quantise(format, texel + Vec4::splat(1.0 / 255.0));
+        AttachmentRole::ALL.map(|role| {
+            let is_counted = AttachmentSet::NORMAL_AND_AMOUNT.contains(role);
+            is_counted.then(|| self.blend(reduced_depth, counted))
+        })
+    }
+
+    /// Texel of the texture with this role after one more fragment. `weight`: weight of its normal.
+    fn blended(&self, role: AttachmentRole, fragment: SpriteFragment, weight: f32, texel: Vec4) -> Vec4 {
         let accumulate = &self.settings.accumulate;
-        if self.settings.is_six_way() {
-            let light = |fragment: SpriteFragment, weight: f32, texel: Vec4| {
-                let weight = fragment.amount * weight;
-                let source = (fragment.six_way.negative * weight).extend(weight);
-                let blended = match self.settings.order() {
-                    BlendOrder::Sorted => premultiplied_over(source, texel),
-                    BlendOrder::Weighted => source + texel,
-                };
-                quantise(accumulate.format, blended)
-            };
-            return Some(self.blend(reduced_depth, light));
-        }
-        let sum = |fragment: SpriteFragment, weight: f32, texel| {
-            quantise(AccumulationFormat::Rgba16Float, weighted_sum(Vec4::X * (fragment.amount * weight), texel))
+        let SpriteFragment { normal, six_way, amount } = fragment;
+        let weighted = amount * weight;
+        let (format, source) = match role {
+            AttachmentRole::NormalAndAmount if self.settings.is_six_way() => {
+                (accumulate.format, (six_way.positive * weighted).extend(amount))
+            }
+            AttachmentRole::NormalAndAmount => {
+                (accumulate.format, accumulation_from_normal(accumulate.encoding, normal, amount, weight))
+            }
+            AttachmentRole::SixWay => (accumulate.format, (six_way.negative * weighted).extend(weighted)),
+            AttachmentRole::Weights => (AccumulationFormat::Rgba16Float, Vec4::splat(weighted)),
         };
-        accumulate.sums_weights().then(|| self.blend(reduced_depth, sum))
+        let blended = match (self.settings.order(), role) {
+            (BlendOrder::Sorted, _) => premultiplied_over(source, texel),
+            (BlendOrder::Weighted, AttachmentRole::NormalAndAmount) => weighted_sum(source, texel),
+            (BlendOrder::Weighted, _) => source + texel,
+        };
+        quantise(format, blended)
     }
 
     /// Blends `f(fragment, weight, texel)` of every fragment into a target.

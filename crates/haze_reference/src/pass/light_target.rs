@@ -11,7 +11,7 @@ use haze::settings::AccumulationFormat;
 impl AccumulatedTarget<'_> {
     /// Lit target: light times amount, and amount.
     pub fn light_target(&self) -> Image<Vec4> {
-        let mut lit = Image::new(self.accumulation.size, Vec4::ZERO);
+        let mut lit = Image::new(self.visible.setup.rect.size, Vec4::ZERO);
         lit.for_each(|at, texel| *texel = self.lit_texel(at.as_ivec2()));
         lit
     }
@@ -19,16 +19,13 @@ impl AccumulatedTarget<'_> {
     /// Texel of the lit target. Positions outside are clamped to the nearest texel inside.
     pub fn lit_texel(&self, at: IVec2) -> Vec4 {
         let (visible, system) = (self.visible, &self.visible.system);
-        let at = at.clamp(IVec2::ZERO, self.accumulation.size.as_ivec2() - 1);
-        let accumulated = self.accumulation.load(at);
+        let at = at.clamp(IVec2::ZERO, visible.setup.rect.size.as_ivec2() - 1);
+        let accumulated = self.first_texture().map_or(Vec4::ZERO, |texture| texture.load(at));
         let amount = accumulated.w;
         if amount <= 0.0 {
             return Vec4::ZERO;
         }
-        let surface = self.surface(
-            accumulated,
-            self.extra_attachment.map_or(Vec4::ZERO, |extra_attachment| extra_attachment.load(at)),
-        );
+        let surface = self.surface(&self.attachments(accumulated, |texture| texture.load(at)));
         let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale;
         let position = visible.view_position(pixel, -system.centre.z);
         let light = bounded_light(self.diffuse(&surface, amount, position) + visible.soft_scatter(amount));

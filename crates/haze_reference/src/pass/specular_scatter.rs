@@ -64,7 +64,7 @@ impl AccumulatedTarget<'_> {
         if distance_squared >= 1.0 {
             return None;
         }
-        let amount = self.sample_target(self.accumulation, pixel).w;
+        let amount = self.sample_accumulated(pixel).w;
         if amount <= 0.0 {
             return None;
         }

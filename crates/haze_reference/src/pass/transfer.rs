@@ -2,7 +2,7 @@
 
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::accumulated::AccumulatedTarget;
+use crate::accumulated::{AccumulatedTarget, Attachments};
 use crate::blend_unit::premultiplied_over;
 use haze::assets::image::Image;
 use haze::formula::colour::{bounded_light, overdraw_colour};
@@ -14,6 +14,7 @@ use haze::formula::saturate;
 use haze::formula::six_way::{SixWay, normal_from_six_way};
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{CoverageMode, DebugView, DiffuseMode};
+use haze::view_setup::AttachmentRole;
 
 /// Surface that light falls on.
 pub struct Surface {
@@ -85,7 +86,7 @@ impl AccumulatedTarget<'_> {
             return Some(Vec3::splat(grey).extend(1.0));
         }
         let is_lit = self.visible.lights_per_texel(debug_view);
-        let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_target(self.accumulation, pixel) };
+        let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_accumulated(pixel) };
         let amount = accumulated.w;
         match debug_view {
             DebugView::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
@@ -124,28 +125,27 @@ impl AccumulatedTarget<'_> {
     }
 
     fn surface_at(&self, accumulated: Vec4, pixel: Vec2) -> Surface {
-        self.surface(
-            accumulated,
-            self.extra_attachment.map_or(Vec4::ZERO, |extra_attachment| self.sample_target(extra_attachment, pixel)),
-        )
+        self.surface(&self.attachments(accumulated, |texture| self.sample_target(texture, pixel)))
     }
 
     /// `surface_from_accumulation()` in lit_smoke.wgsl.
-    pub fn surface(&self, accumulated: Vec4, extra_attachment: Vec4) -> Surface {
-        let accumulate = &self.visible.settings.accumulate;
-        if self.visible.settings.is_six_way() {
-            let scale = 1.0 / extra_attachment.w.max(1.0e-6);
-            let [positive, negative] = [accumulated, extra_attachment].map(|light| light.xyz().max(Vec3::ZERO) * scale);
+    pub fn surface(&self, attachments: &Attachments) -> Surface {
+        let settings = self.visible.settings;
+        let accumulate = &settings.accumulate;
+        let [accumulated, six_way, weights] = *attachments;
+        if AttachmentRole::SixWay.is_used(settings) {
+            let scale = 1.0 / six_way.w.max(1.0e-6);
+            let [positive, negative] = [accumulated, six_way].map(|light| light.xyz().max(Vec3::ZERO) * scale);
             return Surface { normal: normal_from_six_way(positive, negative), six_way: SixWay { positive, negative } };
         }
-        let weights = if accumulate.sums_weights() { extra_attachment.x } else { accumulated.w };
+        let weights = if AttachmentRole::Weights.is_used(settings) { weights.x } else { accumulated.w };
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
         Surface { normal, six_way: SixWay::default() }
     }
 
     /// Amount and surface at a pixel.
     pub fn amount_and_surface(&self, pixel: Vec2) -> (f32, Surface) {
-        let accumulated = self.sample_target(self.accumulation, pixel);
+        let accumulated = self.sample_accumulated(pixel);
         (accumulated.w, self.surface_at(accumulated, pixel))
     }
 

@@ -1,0 +1,154 @@
+//! Variants of tile_accumulate by the formats of its targets. WGSL and bind group layouts declare the format of a storage
+//! texture, so each combination of formats has a module, a layout and pipelines of its own, created on first use.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::UVec2;
+
+use crate::error::Error;
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineVariants, Shader};
+use crate::renderer::layouts::Layouts;
+use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
+use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, storage_target};
+use crate::view_setup::MAX_TARGET_ATTACHMENTS;
+
+/// Variants of tile_accumulate.
+#[derive(Debug)]
+pub(crate) struct AccumulateVariants {
+    /// Shader in which all targets have the placeholders' format.
+    shader: Shader,
+    /// Layouts of groups 0 to 2.
+    groups: [wgpu::BindGroupLayout; 3],
+    cache: Option<wgpu::PipelineCache>,
+    /// Textures of one texel, bound in place of textures that a system does not have. One per slot, because no texture
+    /// may be bound for writing twice.
+    pub placeholders: [wgpu::TextureView; MAX_TARGET_ATTACHMENTS],
+    variants: Mutex<HashMap<TiledFormats, Arc<AccumulateVariant>>>,
+}
+
+/// The variant for one combination of formats.
+#[derive(Debug)]
+pub(crate) struct AccumulateVariant {
+    /// Group 3.
+    pub layout: wgpu::BindGroupLayout,
+    pipelines: PipelineVariants<TileAccumulateKey, ComputePipelineDescription>,
+}
+
+impl AccumulateVariants {
+    /// `cache`: the host's pipeline cache, if the backend supports one.
+    pub fn new(device: &wgpu::Device, layouts: &Layouts, cache: Option<&wgpu::PipelineCache>, shader: Shader) -> Self {
+        let placeholder = || storage_target(device, "haze unwritten", PLACEHOLDER_FORMAT, UVec2::ONE);
+        Self {
+            shader,
+            groups: [layouts.frame.clone(), layouts.system.clone(), layouts.material.clone()],
+            cache: cache.cloned(),
+            placeholders: std::array::from_fn(|_| placeholder()),
+            variants: Mutex::default(),
+        }
+    }
+
+    /// Returns the variant for these formats; creates it on first use. The lock is not held during creation, so other
+    /// threads do not wait.
+    pub fn get(&self, device: &wgpu::Device, formats: TiledFormats) -> Arc<AccumulateVariant> {
+        let found = self.lock().get(&formats).cloned();
+        found.unwrap_or_else(|| {
+            let created = Arc::new(self.create(device, formats));
+            self.lock().entry(formats).or_insert(created).clone()
+        })
+    }
+
+    /// Compiles the pipeline for `key`, or returns the shader error.
+    pub fn check(&self, device: &wgpu::Device, key: TileAccumulateKey) -> Result<(), Error> {
+        self.get(device, key.formats()).pipelines.check(device, key)
+    }
+
+    /// Returns the pipeline for `key`; compiles it on first use.
+    pub fn pipeline(&self, device: &wgpu::Device, key: TileAccumulateKey) -> wgpu::ComputePipeline {
+        self.get(device, key.formats()).pipelines.get(device, key)
+    }
+
+    /// Returns the number of pipelines compiled so far.
+    pub fn len(&self) -> usize {
+        self.lock().values().map(|variant| variant.pipelines.len()).sum()
+    }
+
+    fn create(&self, device: &wgpu::Device, formats: TiledFormats) -> AccumulateVariant {
+        let layout = layout(device, formats);
+        let mut shader = self.shader.clone();
+        if formats != [PLACEHOLDER_FORMAT; MAX_TARGET_ATTACHMENTS] {
+            shader = shader.with_text(device, "tile_accumulate", |text| {
+                (0..).zip(formats).fold(text.to_owned(), |text, (slot, format)| {
+                    text.replace(&target_declaration(slot, PLACEHOLDER_FORMAT), &target_declaration(slot, format))
+                })
+            });
+        }
+        let [frame, system, material] = self.groups.each_ref().map(Some);
+        let groups = [frame, system, material, Some(&layout)];
+        let pipelines = PipelineVariants::new(
+            device,
+            "tile_accumulate",
+            shader,
+            tile_accumulate::describe,
+            &groups,
+            self.cache.as_ref(),
+        );
+        AccumulateVariant { layout, pipelines }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<TiledFormats, Arc<AccumulateVariant>>> {
+        self.variants.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Returns the declaration of a target in `shaders/tile_accumulate.wgsl`.
+fn target_declaration(slot: usize, format: wgpu::TextureFormat) -> String {
+    // WGSL's names of formats are wgpu's in lower case.
+    let format = format!("{format:?}").to_lowercase();
+    format!("var texture_{slot}: texture_storage_2d<{format}, write>;")
+}
+
+fn layout(device: &wgpu::Device, formats: TiledFormats) -> wgpu::BindGroupLayout {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: wgpu::BufferSize::new(size_of::<TilesUniform>() as u64),
+    };
+    let depth = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let read = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+    let targets = formats.map(|format| wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    });
+    let types = [uniform, read, read, read, read, read, depth].into_iter().chain(targets);
+    let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    };
+    let entries: Vec<_> = (0..).zip(types).map(entry).collect();
+    let label = Some("haze tile_accumulate inputs");
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shader_declares_each_target_in_the_placeholders_format() {
+        let text = include_str!("../../../shaders/tile_accumulate.wgsl");
+        for slot in 0..MAX_TARGET_ATTACHMENTS {
+            assert_eq!(text.matches(&target_declaration(slot, PLACEHOLDER_FORMAT)).count(), 1, "{slot}");
+        }
+        assert_eq!(text.matches("texture_storage_2d<").count(), MAX_TARGET_ATTACHMENTS);
+    }
+}
