@@ -170,7 +170,7 @@ fn lists() -> Vec<Formula> {
         Formula {
             name: "bin_list",
             file: "tile_bin.wgsl",
-            wgsl: "tiles.columns = 5u; tiles.rows = 3u; tiles.capacity = word(6); counters.shown = 77u; \
+            wgsl: "tiles.columns = 5u; tiles.rows = 3u; tiles.capacity = word(6); counters.visible = 77u; \
                    atomicStore(&counters.entries, word(0)); let l = bin_list(word(2), word(4)); y_word(0, l.x); \
                    y_word(2, l.y); y_word(4, atomicLoad(&counters.entries));",
             reference: |x| {
@@ -193,13 +193,13 @@ fn lists() -> Vec<Formula> {
             file: "tile_accumulate.wgsl",
             wgsl: "lists = array<u32, 16>(3u, 1u, 4u, 1u, 5u, 9u, 2u, 6u, 0x55555555u, 0x0f0f0f0fu, 0x12345678u, 8u, 9u, \
                    7u, 9u, 3u); \
-                   numbers = array<u32, 16>(9u, 8u, 7u, 6u, 5u, 4u, 3u, 2u, 1u, 0u, 19u, 18u, 17u, 16u, 15u, 14u); \
+                   indices = array<u32, 16>(9u, 8u, 7u, 6u, 5u, 4u, 3u, 2u, 1u, 0u, 19u, 18u, 17u, 16u, 15u, 14u); \
                    let list = vec2u(select(u32(x(0)), NO_LIST, x(0) > 3.0), 5u); \
                    y(0, f32(sprite_index(list, u32(x(1)))));",
             reference: |x| vec![tiles::sprite_index(&LISTS, &NUMBERS, list(x), x[1] as u32) as f32],
             cases: random(60, &[(0.0, 6.0), (0.0, 4.9)]),
             tolerance: 0.0,
-            mutants: &[("lists[list.x + at]", "lists[at]"), ("return numbers[at];", "return at;")],
+            mutants: &[("lists[list.x + at]", "lists[at]"), ("return indices[at];", "return at;")],
         },
         Formula {
             name: "bits_of",
