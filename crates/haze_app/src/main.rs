@@ -5,6 +5,7 @@ mod bench;
 mod command_line;
 mod commands;
 mod contact_sheet;
+mod debug_view_sheet;
 mod file_kind;
 mod file_watcher;
 mod findings;

@@ -2,9 +2,8 @@
 
 use clap::Args;
 use haze::Error;
-use haze::settings::DebugView;
-use haze_demo::shot::Shot;
 
+use crate::debug_view_sheet::{COLUMNS, stages};
 use crate::image_export::{ExportProgress, render_sheet};
 use crate::options::ShotArguments;
 
@@ -15,21 +14,6 @@ pub struct Arguments {
     shot: ShotArguments,
 }
 
-/// Stages in the order of the frame, three per row.
-pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
-    (DebugView::ReducedDepth, "Reduced depth"),
-    (DebugView::Normals, "Accumulated normals"),
-    (DebugView::Amount, "Accumulated amount"),
-    (DebugView::Overdraw, "Overdraw"),
-    (DebugView::Diffuse, "Diffuse"),
-    (DebugView::SoftScatter, "Soft scatter and ambient"),
-    (DebugView::SpecularScatter, "Specular scatter"),
-    (DebugView::Combined, "Combined lighting"),
-    (DebugView::Final, "Final"),
-];
-
-pub const COLUMNS: u32 = 3;
-
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut shot = arguments.shot.load(&[])?;
     // The sheet then costs about as much as one image.
@@ -37,9 +21,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let backend = arguments.shot.run.backend()?;
     let sheet = render_sheet(&backend, &stages(&shot), COLUMNS, &arguments.shot.output, &ExportProgress::terminal())?;
     arguments.shot.write(sheet.picture, &shot, &backend)
-}
-
-/// Returns one shot per stage, with its label.
-pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
-    STAGES.map(|(stage, label)| (label.into(), Shot { debug_view: stage, ..shot.clone() })).into()
 }

@@ -11,7 +11,7 @@ use haze_author::finding::Finding;
 use haze_author::ramp::lint::lint_ramp;
 use haze_author::ramp::response::{DiffuseRamps, Puff};
 
-use super::{load_ramp_image, refuse_gradient};
+use super::ramp_io::{load_ramp_image, refuse_gradient};
 use crate::file_kind::explain_wrong_kind;
 use crate::findings::report_findings;
 use crate::medium_options::{PathTraceArguments, default_sprite, medium_by_name, medium_names, sprite_recipe};

@@ -9,7 +9,7 @@ use haze::{Error, builtin};
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
 
-use super::{check_recipe_output, write_recipe};
+use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::bake_job::image_path;
 use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
 use crate::output::{FileChecks, print_line};

@@ -7,7 +7,7 @@ use haze::Error;
 use haze_author::ramp::fit_stops::DEFAULT_MAX_ERROR;
 use haze_author::ramp::import_gradient::import_gradient;
 
-use super::{check_recipe_output, write_recipe};
+use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::output::{FileChecks, print_line};
 use crate::progress::with_progress;
 

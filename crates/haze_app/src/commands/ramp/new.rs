@@ -12,7 +12,7 @@ use haze_author::ramp::template::{TEMPLATES, Template};
 use image::Rgb;
 
 use super::ramp_image::ramp_image;
-use super::{check_recipe_output, write_recipe};
+use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::options::choices;
 use crate::output::{FileChecks, print_line};
 use crate::text_drawing::{draw_text, text_width};

@@ -12,7 +12,7 @@ use haze::{Error, FieldError, MaterialAssets, builtin};
 use haze_demo::shot::Shot;
 
 use super::ramp_image::ramp_image;
-use super::{is_recipe, load_ramp_image};
+use super::ramp_io::{is_recipe, load_ramp_image};
 use crate::bake_job::image_path;
 use crate::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
 use crate::options::{ShotArguments, choices};

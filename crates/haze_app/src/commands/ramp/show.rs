@@ -13,8 +13,8 @@ use haze::ramp::Ramp;
 use haze_author::ramp::RampRecipe;
 use image::{Rgb, RgbImage, imageops};
 
-use super::load_ramp_image;
 use super::ramp_image::{fraction, ramp_image, srgb_code_at};
+use super::ramp_io::load_ramp_image;
 use crate::contact_sheet::BACKGROUND;
 use crate::output::{FileChecks, one_line, print_line, write_text};
 use crate::plot::{Curve, LEFT, RIGHT, plot};

@@ -14,7 +14,7 @@ use haze_demo::shot::Shot;
 use image::RgbImage;
 
 use super::value_spread::spread_values;
-use crate::commands::shade_tree;
+use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
 use crate::options::Backend;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
@@ -255,7 +255,7 @@ fn make(
             render_job::write_gif(backend, shot, &frames, &path, watch)?;
             Ok(ExportResult::Written(path))
         }
-        ExportKind::DebugView => sheet("shade_tree", shade_tree::stages(shot)),
+        ExportKind::DebugView => sheet("shade_tree", debug_view_sheet::stages(shot)),
         ExportKind::Seeds => sheet("seeds", seeds(shot)),
         ExportKind::Values(path) => {
             let cells = variations(shot, path);

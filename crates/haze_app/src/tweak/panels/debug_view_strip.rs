@@ -5,7 +5,7 @@ use glam::UVec2;
 use haze::settings::DebugView;
 use haze_demo::shot::Shot;
 
-use crate::commands::shade_tree::STAGES;
+use crate::debug_view_sheet::STAGES;
 use crate::tweak::session::Session;
 use crate::tweak::viewport_renderer::ViewportRenderer;
 

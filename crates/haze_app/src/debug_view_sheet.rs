@@ -1,0 +1,25 @@
+//! Labelled sheet of every debug view, as OTEE's slide "Shade tree" shows the stages.
+
+use haze::settings::DebugView;
+use haze_demo::shot::Shot;
+
+/// Stages in the order of the frame, three per row.
+pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
+    (DebugView::ReducedDepth, "Reduced depth"),
+    (DebugView::Normals, "Accumulated normals"),
+    (DebugView::Amount, "Accumulated amount"),
+    (DebugView::Overdraw, "Overdraw"),
+    (DebugView::Diffuse, "Diffuse"),
+    (DebugView::SoftScatter, "Soft scatter and ambient"),
+    (DebugView::SpecularScatter, "Specular scatter"),
+    (DebugView::Combined, "Combined lighting"),
+    (DebugView::Final, "Final"),
+];
+
+/// Images per row of the sheet.
+pub const COLUMNS: u32 = 3;
+
+/// Returns one shot per stage, with its label.
+pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
+    STAGES.map(|(stage, label)| (label.into(), Shot { debug_view: stage, ..shot.clone() })).into()
+}
