@@ -18,11 +18,11 @@ use crate::settings::{RampFilter, Settings};
 pub struct MaterialAssets {
     /// Flipbook of normal maps.
     pub sprite: Sprite,
-    /// Depth and motion of the sprite, one per frame: see [`sprite::detail`](crate::assets::sprite::detail). Required
+    /// Depth and motion of the sprite, one per frame: see `haze_author::sprite::detail`. Required
     /// by depth sprites and `sprite.motion`.
     pub detail: Option<Sprite>,
     /// Six-way light maps of the sprite, for [`Lighting::SixWay`](crate::settings::Lighting::SixWay): twice as many
-    /// frames as the sprite, of the same size. See [`sprite::six_way`](crate::assets::sprite::six_way).
+    /// frames as the sprite, of the same size. See `haze_author::sprite::six_way`.
     pub six_way: Option<Sprite>,
     /// Density noise of volumetric sprites.
     pub noise: NoiseVolume,

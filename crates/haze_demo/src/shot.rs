@@ -40,7 +40,7 @@ impl Shot {
     /// Loads a preset, built in or from a file, with its images and particle files.
     ///
     /// # Errors
-    /// As [`Preset::load`], [`Preset::load_materials`] and [`Preset::load_particle_files`].
+    /// As [`Preset::load`], [`Preset::load_materials`] and [`particle_files::load_particle_files`].
     pub fn load(name_or_path: impl AsRef<Path>, size: UVec2) -> Result<Self, Error> {
         let path = name_or_path.as_ref();
         Self::new(Preset::load(path)?, path, size)
@@ -49,7 +49,7 @@ impl Shot {
     /// Loads the files that a preset names, relative to the folder of `path`.
     ///
     /// # Errors
-    /// As [`Preset::load_materials`] and [`Preset::load_particle_files`].
+    /// As [`Preset::load_materials`] and [`particle_files::load_particle_files`].
     pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
         Self::from_folders(preset, path, &AssetFolders::beside(path), size)
     }
