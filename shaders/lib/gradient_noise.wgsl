@@ -8,7 +8,7 @@ struct Noise {
     gradient: vec3f,
 }
 
-// Gradient at a lattice point: two random vectors, of which the first is weighted by cos and the second by sin.
+// Gradient at a lattice point: two random vectors, the first weighted by cos, the second by sin.
 fn lattice_gradient(at: vec3i, phase: vec2f, seed: u32) -> vec3f {
     let hash = pcg3d(vec3u(at) + vec3u(seed, seed ^ 0x9e3779b9u, 0u));
     let first = vec3f(hash >> vec3u(16u)) * (2.0 / 65535.0) - 1.0;

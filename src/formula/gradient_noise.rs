@@ -52,7 +52,7 @@ fn lattice_noise(position: Vec3, lattice_gradient: impl Fn(IVec3) -> Vec3) -> No
     Noise { value, gradient }
 }
 
-/// Gradient at a lattice point: two random vectors, of which the first is weighted by cos and the second by sin.
+/// Gradient at a lattice point: two random vectors, the first weighted by cos, the second by sin.
 pub fn lattice_gradient(at: IVec3, phase: Vec2, seed: u32) -> Vec3 {
     let [first, second] = lattice_gradients(at, seed);
     first * phase.x + second * phase.y

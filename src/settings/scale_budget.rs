@@ -30,7 +30,7 @@ const MEDIAN: usize = 5;
 /// Number of measurements to skip after a change of scale, because they may belong to frames in flight.
 const STALE_MEASUREMENTS: u32 = 8;
 
-/// Number of measurements in a block, of which the mean is taken: one second.
+/// Number of measurements that one mean is taken over: one second.
 const BLOCK: u32 = 64;
 
 /// Number of blocks between attempts at a finer scale, at first and at most: two seconds and 17.

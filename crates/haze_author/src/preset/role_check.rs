@@ -40,7 +40,7 @@ fn check_diffuse_ramp(ramp: &Ramp) -> Option<String> {
     check_rows(ramp).or_else(|| is_specular.then(specular))
 }
 
-/// Checks a ramp of which one row is looked up.
+/// Checks a ramp that is looked up in one row.
 fn check_single_row_ramp(ramp: &Ramp) -> Option<String> {
     let rows = ramp.size().y;
     let differ = || format!("its {rows} rows differ, and only the bottom one is looked up; expected a ramp of one row");
