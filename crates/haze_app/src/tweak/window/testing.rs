@@ -8,6 +8,7 @@ use eframe::egui_wgpu;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, HarnessBuilder};
 use haze::Error;
+use haze::wgpu::Backends;
 use haze_demo::offscreen_renderer::OffscreenContext;
 use image::RgbaImage;
 
@@ -40,10 +41,20 @@ pub fn open(start: Start, size: Vec2, theme: egui::Theme) -> Harness<'static, Wi
     settled(builder, |window| ViewportRenderer::with_context(window, context.clone()), start)
 }
 
+/// Setup without OpenGL: egui lists the adapters of all backends for each window, and wgpu panics when two threads drop an
+/// OpenGL adapter of one instance at the same time.
+fn wgpu_setup() -> egui_wgpu::WgpuSetup {
+    let mut setup = egui_kittest::wgpu::default_wgpu_setup();
+    if let egui_wgpu::WgpuSetup::CreateNew(setup) = &mut setup {
+        setup.instance_descriptor.backends = Backends::from_env().unwrap_or(Backends::PRIMARY);
+    }
+    setup
+}
+
 /// Device and pipelines that all tests of the process share, so that no pipeline is compiled twice.
 fn shared_device() -> &'static (egui_wgpu::WgpuSetup, OffscreenContext) {
     static SHARED: LazyLock<(egui_wgpu::WgpuSetup, OffscreenContext)> = LazyLock::new(|| {
-        let setup = egui_kittest::wgpu::default_wgpu_setup();
+        let setup = wgpu_setup();
         let instance = pollster::block_on(setup.new_instance());
         let options = egui_wgpu::RendererOptions::PREDICTABLE;
         let configuration = egui_wgpu::WgpuConfiguration { wgpu_setup: setup, ..Default::default() };
@@ -68,7 +79,7 @@ fn settled(
 
 /// Like [`window`], on a device with timestamp queries if the adapter has them.
 pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
-    let mut setup = egui_kittest::wgpu::default_wgpu_setup();
+    let mut setup = wgpu_setup();
     if let egui_wgpu::WgpuSetup::CreateNew(setup) = &mut setup {
         setup.device_descriptor = std::sync::Arc::new(device);
     }
