@@ -26,7 +26,7 @@ const OVERDRAW_STEP: f32 = 1.0 / 255.0;
 
 @vertex
 fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex {
-    var out = sprite_vertex(particle, index, system.target_from_ndc, 1.0 / system.scale);
+    var out = sprite_vertex(particle, index, system.target_from_ndc, 1.0 / f32(system.scale));
     // The x of a hidden sprite keeps it outside the clip volume.
     if !HOST_DEPTH {
         // Depth in the units of the reduced target.

@@ -25,7 +25,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     let surface = surface_from_accumulation(accumulated, load_attachments(vec2i(texel)));
     // The centre of the texel represents all of its pixels.
-    let pixel = (texel + system.target_origin + 0.5) * system.scale;
+    let pixel = (texel + system.target_origin + 0.5) * f32(system.scale);
     let light = diffuse(surface, amount, shading_position(pixel)) + soft_scatter(amount);
     return vec4f(bounded_light(light), 1.0) * amount;
 }

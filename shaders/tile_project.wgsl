@@ -30,7 +30,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     }
     let at = tiles.first + 2u * index;
     let particle = Particle(particles[at], particles[at + 1u]);
-    let placed = project_sprite(particle, 1.0 / system.scale);
+    let placed = project_sprite(particle, 1.0 / f32(system.scale));
     let centre = placed.centre_radius.xyz;
     let radius = placed.centre_radius.w;
     var sprite: TileSprite;
@@ -45,7 +45,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     var low: vec2f;
     var high: vec2f;
     if is_sphere() {
-        let texels_per_pixel = 1.0 / system.scale;
+        let texels_per_pixel = 1.0 / f32(system.scale);
         low = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(-1.0, 1.0), texels_per_pixel));
         high = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(1.0, -1.0), texels_per_pixel));
     } else {
@@ -53,7 +53,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         let plane = mix(max(-centre.z, view.near), 1.0, view.orthographic);
         let middle = texel_of_ray(centre.xy / plane);
         // Size of a texel in view space, metres; the y of texels points down.
-        let metres = view.ray_scale * vec2f(2.0, -2.0) * (plane * system.scale) / view.size;
+        let metres = view.ray_scale * vec2f(2.0, -2.0) * (plane * f32(system.scale)) / view.size;
         let cosine = placed.rotation.x;
         let sine = placed.rotation.y;
         // v points down.

@@ -60,7 +60,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if HOST_DEPTH {
             depth = scene_view_depth(pixel);
         } else {
-            let texel = pixel / system.scale - system.target_origin;
+            let texel = pixel / f32(system.scale) - system.target_origin;
             depth = textureLoad(reduced_depth, vec2i(texel), 0).r * system.depth_limit;
         }
         let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));

@@ -21,11 +21,11 @@ fn clamped_texel(texel: vec2i) -> vec2i {
 // Samples a texture of the accumulation target at a pixel of the view. It is zero outside the part of the view that the
 // target covers.
 fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
-    let texel = pixel / system.scale - system.target_origin;
+    let texel = pixel / f32(system.scale) - system.target_origin;
     if any(texel < vec2f(0.0)) || any(texel >= system.target_size) {
         return vec4f(0.0);
     }
-    if system.scale == 1.0 {
+    if system.scale == 1u {
         return textureLoad(target_texture, vec2i(texel), 0);
     }
     let corner = texel - 0.5;

@@ -22,7 +22,7 @@ struct System {
     target_origin: vec2f,
     target_size: vec2f,
     // Pixels per reduced texel.
-    scale: f32,
+    scale: u32,
     // Depths beyond this are equivalent for the system: the far side of the box plus the length of the fade.
     depth_limit: f32,
     sprite_size: f32,

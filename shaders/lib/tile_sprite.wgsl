@@ -85,7 +85,7 @@ fn bytes_below(count: u32) -> u32 {
 
 // Returns the ray (as in view_position) through a position in the target, texels.
 fn ray_through_texel(texel: vec2f) -> vec2f {
-    let pixel = (texel + system.target_origin) * system.scale;
+    let pixel = (texel + system.target_origin) * f32(system.scale);
     return ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
 }
 
@@ -96,7 +96,7 @@ fn texel_of_ray(ray: vec2f) -> vec2f {
 
 // Returns the position in the target, texels, of the view's NDC.
 fn texel_of_ndc(ndc: vec2f) -> vec2f {
-    return pixel_from_ndc(ndc, view.size) / system.scale - system.target_origin;
+    return pixel_from_ndc(ndc, view.size) / f32(system.scale) - system.target_origin;
 }
 
 // Returns the uv in a sprite's square at a texel.

@@ -73,7 +73,7 @@ uniform! {
         target_from_ndc: Vec4,
         target_origin: Vec2,
         target_size: Vec2,
-        scale: f32,
+        scale: u32,
         depth_limit: f32,
         sprite_size: f32,
         frame_count: f32,

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::auto::PathModel;
 use super::gpu::Gpu;
 use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
+use super::gpu::pipeline::PipelineStore;
 use super::layouts::Layouts;
 use super::material_upload::{SharedTextures, create_material};
 use super::pipelines::Pipelines;
@@ -60,7 +61,8 @@ impl Context {
     /// `get_data` to save them.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let layouts = Layouts::new(device);
-        let Ok(pipelines) = Pipelines::new(device, &layouts, pipeline_cache, |name| embedded_shader(device, name));
+        let store = PipelineStore::new(device, pipeline_cache);
+        let Ok(pipelines) = Pipelines::new(&store, &layouts, |name| embedded_shader(device, name));
         Self::assemble(device, queue, layouts, pipelines)
     }
 
@@ -77,12 +79,13 @@ impl Context {
         sources: &Sources,
     ) -> Result<Self, Error> {
         let layouts = Layouts::new(device);
-        let pipelines = Pipelines::new(device, &layouts, pipeline_cache, |name| checked_shader(device, name, sources))?;
+        let store = PipelineStore::new(device, pipeline_cache);
+        let pipelines = Pipelines::new(&store, &layouts, |name| checked_shader(device, name, sources))?;
         let context = Self::assemble(device, queue, layouts, pipelines);
         let shared = context.shared();
         plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()
-            .try_for_each(|plan| shared.pipelines.compile(device, plan))?;
+            .try_for_each(|plan| shared.pipelines.compile(plan))?;
         Ok(context)
     }
 
@@ -120,7 +123,7 @@ impl Context {
     /// Returns the number of pipelines compiled so far. It stays constant once everything that a program draws has been
     /// drawn or warmed up.
     pub fn pipeline_count(&self) -> usize {
-        self.0.pipelines.pipeline_count()
+        self.0.pipelines.store.pipeline_count()
     }
 
     /// Returns true if the device supports the path `tiled`.

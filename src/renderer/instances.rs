@@ -5,7 +5,7 @@ use super::gpu::idle_counter::IdleCounter;
 use super::sprite_instances::Sprites;
 use crate::frame::{Particle, Particles};
 use crate::settings::{BlendOrder, Settings};
-use crate::view_setup::{SortScratch, ViewGeometry, write_in_drawing_order};
+use crate::view_setup::{DrawingOrder, ViewGeometry};
 
 /// Processor that sorts particles for compute shaders. If the CPU also draws (software adapters), sorting on the CPU
 /// directly is faster.
@@ -19,7 +19,6 @@ pub(crate) enum SortedBy {
 pub(crate) struct Instances {
     buffer: Option<wgpu::Buffer>,
     idle: IdleCounter,
-    sort: SortScratch,
     sorted: Vec<Particle>,
     /// Particles of an emitter, evaluated on the CPU.
     evaluated: Vec<Particle>,
@@ -27,11 +26,12 @@ pub(crate) struct Instances {
 
 impl Instances {
     /// Uploads a slice or an emitter's particles, sorted unless compute shaders sort them. Uses a host's buffer as is.
-    /// Returns `None` if there is nothing to draw.
+    /// `order`: keys of a slice; scratch memory otherwise. Returns `None` if there is nothing to draw.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
         view: &ViewGeometry,
+        order: &mut DrawingOrder,
         particles: Particles<'_>,
         settings: &Settings,
         tiled: Option<SortedBy>,
@@ -47,11 +47,12 @@ impl Instances {
             Particles::Slice(particles) => particles,
             Particles::Emitter(emission) => {
                 emission.evaluate(&mut self.evaluated);
+                order.read(view, &self.evaluated);
                 &self.evaluated
             }
         };
         let is_sorted = settings.order() == BlendOrder::Sorted && tiled != Some(SortedBy::Gpu);
-        write_in_drawing_order(view, particles, is_sorted, &mut self.sort, &mut self.sorted);
+        order.write(particles, is_sorted, &mut self.sorted);
         let needed = size_of_val(self.sorted.as_slice()) as u64;
         let held = self.bytes();
         let should_release = self.idle.tick(needed.next_power_of_two() * 4 <= held);
@@ -60,7 +61,7 @@ impl Instances {
         let fits = self.buffer.as_ref().is_some_and(|buffer| buffer.usage().contains(usage) && needed <= held);
         if !fits || should_release {
             self.buffer = None;
-            self.sort.shrink();
+            order.shrink();
             self.sorted.shrink_to_fit();
         }
         if needed == 0 {

@@ -5,6 +5,7 @@ mod context;
 mod counts;
 mod descriptor;
 mod frame_bindings;
+mod frame_context;
 mod gpu;
 mod instances;
 mod layouts;
@@ -16,6 +17,7 @@ mod pipelines;
 mod plan;
 pub mod shader;
 mod sprite_instances;
+mod system_particles;
 mod system_passes;
 mod system_state;
 mod system_targets;
@@ -27,8 +29,8 @@ mod warm_up;
 use crate::assets::material_assets::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, Material};
-use crate::settings::{DebugView, Settings};
-use crate::view_setup::ViewGeometry;
+use crate::settings::DebugView;
+use crate::view_setup::{ResolvedSettings, ViewGeometry};
 
 pub use auto::{PathChoice, PathCosts, PathModel, PathModelSource, PathReason, PathWorkload};
 pub use context::Context;
@@ -43,13 +45,14 @@ pub use targets::TargetViews;
 pub use warm_up::WarmUp;
 
 use frame_bindings::FrameBindings;
+use frame_context::FrameContext;
 use gpu::Gpu;
 use gpu::host_pass::HostPass;
 use gpu::record::set_viewport_and_scissor;
 use gpu::submission::SubmissionTracker;
 use plan::{PipelineInputs, plan};
 use system_passes::SystemPasses;
-use system_state::{FrameContext, SystemState};
+use system_state::SystemState;
 use validate_frame::{host_size, validate};
 
 /// Draws particle systems into a host's frame.
@@ -140,12 +143,12 @@ impl Renderer {
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
             // The sprite's frame count is not known yet: compiles for one frame and for several.
-            let sprite = settings.sprite.for_frames(1.0);
-            for settings in [*settings, Settings { sprite, ..*settings }] {
+            for frame_count in [1.0, 2.0] {
+                let resolved = ResolvedSettings::new(settings, view.size, frame_count, shared.six_way);
                 for &path in settings.path.candidates() {
+                    let settings = resolved.with_path(path);
                     for back_faces in [false, true] {
-                        let settings = Settings { path, ..settings };
-                        shared.pipelines.compile(&shared.device, &plan(&inputs, &settings, back_faces))?;
+                        shared.pipelines.compile(&plan(&inputs, &settings, back_faces))?;
                     }
                 }
             }
@@ -311,7 +314,6 @@ impl Renderer {
             scene_depth,
             reversed: view.depth.reversed,
             mirrored: view.mirrored,
-            size: view.size,
             debug_views,
         }
     }

@@ -19,7 +19,7 @@ use crate::frame::SceneDepth;
 use crate::settings::{
     BlendOrder, DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, RenderPath, Settings, Technique,
 };
-use crate::view_setup::AttachmentSet;
+use crate::view_setup::{AttachmentSet, ResolvedSettings};
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,8 +57,6 @@ pub(crate) struct PipelineInputs<'a> {
     pub reversed: bool,
     /// True if the view mirrors.
     pub mirrored: bool,
-    /// Size of the view, pixels.
-    pub size: UVec2,
     /// Debug views that may be shown.
     pub debug_views: &'a [DebugView],
 }
@@ -103,7 +101,7 @@ pub(crate) struct DeferredPlan<'a> {
 
 /// Plans the passes of a system. `back_faces`: true if the near plane cuts its bounding box, or its sprites show
 /// through the scene.
-pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &Settings, back_faces: bool) -> Plan<'a> {
+pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &ResolvedSettings, back_faces: bool) -> Plan<'a> {
     let reads_linear = reads_linear_target(inputs.scene_depth, inputs.read_only_depth, settings);
     if !settings.is_forward() {
         return Plan::Deferred(deferred(inputs, settings, back_faces, reads_linear));
@@ -136,7 +134,6 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
         scene_depth: SceneDepthKind::Buffer(depth_format),
         reversed: false,
         mirrored: false,
-        size: UVec2::ONE,
         debug_views: &[DebugView::Final],
     };
     let mut deferred = Settings::default();
@@ -145,12 +142,13 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
     lit.accumulate.lighting_resolution = LightingResolution::Target;
     let forward = Settings { path: RenderPath::Forward, ..Settings::default() };
     let tiled = Settings { path: RenderPath::Tiled, ..Settings::default() };
-    [deferred, lit, forward, tiled].map(|settings| plan(&inputs, &settings, false))
+    [deferred, lit, forward, tiled]
+        .map(|settings| plan(&inputs, &ResolvedSettings::new(&settings, UVec2::ONE, 2.0, true), false))
 }
 
 fn deferred<'a>(
     inputs: &PipelineInputs<'a>,
-    settings: &Settings,
+    settings: &ResolvedSettings,
     back_faces: bool,
     reads_linear: bool,
 ) -> DeferredPlan<'a> {
@@ -161,7 +159,7 @@ fn deferred<'a>(
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
     let lights_target =
-        debug_views.iter().any(|debug_view| debug_view.shows_lit_smoke()) && accumulate.lights_per_texel(inputs.size);
+        debug_views.iter().any(|debug_view| debug_view.shows_lit_smoke()) && settings.lights_per_texel();
     let lighting = LightingKey {
         encoding: accumulate.encoding,
         decode: accumulate.decode,

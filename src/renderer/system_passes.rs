@@ -106,7 +106,7 @@ pub(crate) struct TiledContext<'a> {
 
 impl PassBuilder<'_> {
     pub fn forward(self, plan: &ForwardPlan) -> SystemPasses {
-        let pipeline = self.pipelines.forward(self.gpu.device, plan.key);
+        let pipeline = self.pipelines.forward.get(plan.key);
         SystemPasses::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
     }
 
@@ -122,12 +122,11 @@ impl PassBuilder<'_> {
         host_depth: Option<&wgpu::TextureView>,
     ) -> SystemPasses {
         let Self { gpu, pipelines, groups, sprites } = self;
-        let device = gpu.device;
         let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
         let size = setup.rect.size;
         let downsample = |key: Option<DepthDownsampleKey>, target: &Option<wgpu::TextureView>| {
             Some(Downsample {
-                pipeline: pipelines.depth_downsample(device, key?),
+                pipeline: pipelines.depth_downsample.get(key?),
                 target: target.clone()?,
                 size,
                 frame: groups.frame.clone(),
@@ -135,7 +134,7 @@ impl PassBuilder<'_> {
             })
         };
         let accumulate = |key: AccumulateKey, targets: &Arc<[wgpu::TextureView]>| Accumulate {
-            pipeline: pipelines.accumulate(device, key),
+            pipeline: pipelines.accumulate.get(key),
             targets: targets.clone(),
             tested_depth: match key.depth_test {
                 DepthTest::InShader => None,
@@ -153,7 +152,7 @@ impl PassBuilder<'_> {
             depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
             depth_copy: downsample(plan.depth_copy, &accumulation.depth_copy),
             diffuse_bake: plan.diffuse_bake.map(|key| DiffuseBake {
-                pipeline: pipelines.diffuse_bake(device, key),
+                pipeline: pipelines.diffuse_bake.get(key),
                 faces: baked_diffuse.faces.clone(),
                 groups: groups.clone(),
             }),
@@ -172,15 +171,15 @@ impl PassBuilder<'_> {
             },
             overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
             light_target: plan.light_target.zip(accumulation.lit.as_ref()).map(|(key, target)| LightTarget {
-                pipeline: pipelines.light_target(device, key),
+                pipeline: pipelines.light_target.get(key),
                 target: target.clone(),
                 size,
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
             }),
-            transfer: transfer_pass(device, pipelines, plan, &groups, inputs),
+            transfer: transfer_pass(pipelines, plan, &groups, inputs),
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
-                pipeline: pipelines.specular_scatter(device, key),
+                pipeline: pipelines.specular_scatter.get(key),
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
                 lights,
@@ -190,16 +189,10 @@ impl PassBuilder<'_> {
     }
 }
 
-fn transfer_pass(
-    device: &wgpu::Device,
-    pipelines: &Pipelines,
-    plan: &DeferredPlan<'_>,
-    groups: &Groups,
-    inputs: &TargetInputs,
-) -> Transfer {
+fn transfer_pass(pipelines: &Pipelines, plan: &DeferredPlan<'_>, groups: &Groups, inputs: &TargetInputs) -> Transfer {
     let mut by_debug_view = [const { None }; DebugView::ALL.len()];
     for key in plan.transfers() {
-        by_debug_view[key.debug_view as usize] = Some(pipelines.transfer(device, key));
+        by_debug_view[key.debug_view as usize] = Some(pipelines.transfer.get(key));
     }
     Transfer {
         pipelines: by_debug_view,

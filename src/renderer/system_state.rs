@@ -5,39 +5,25 @@ use glam::{UVec2, Vec2, Vec3};
 use super::auto::{PathChoice, PathChooser, PathWorkload, estimate_workload};
 use super::context::Shared;
 use super::counts::{FrameCounts, Overdraw};
-use super::frame_bindings::FrameBindings;
-use super::gpu::Gpu;
+use super::frame_context::FrameContext;
 use super::gpu::idle_counter::IdleCounter;
 use super::gpu::record::uniform_buffer;
-use super::instances::{Instances, SortedBy};
 use super::layouts::LIGHTS_SIZE;
-use super::memory_use::{MemoryUse, TiledMemory};
+use super::memory_use::MemoryUse;
 use super::pass::Groups;
-use super::plan::{PipelineInputs, Plan, plan};
-use super::sprite_instances::Sprites;
+use super::plan::{Plan, plan};
+use super::system_particles::SystemParticles;
 use super::system_passes::{ParticlePass, PassBuilder, SystemPasses, TiledContext};
 use super::system_targets::SystemTargets;
 use super::targets::TargetViews;
-use super::tiled::{EmittedParticles, SortedParticles, TiledSystem};
+use super::tiled::TiledSystem;
 use super::validate_frame::tiled_unavailable_reason;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use crate::frame::{Bounds, Frame, Particle, Particles, System, particle_bounds};
-use crate::settings::{Lighting, RenderPath, Settings, Technique};
+use crate::frame::System;
+use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
-    SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, ViewGeometry, light_uniforms, system_setup,
+    ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, light_uniforms, system_setup,
 };
-
-/// A frame, with the resources that every system needs.
-pub(crate) struct FrameContext<'a> {
-    pub gpu: Gpu<'a>,
-    pub shared: &'a Shared,
-    pub frame: &'a Frame<'a>,
-    pub view: &'a ViewGeometry,
-    /// Size of the host's targets, pixels.
-    pub host_size: UVec2,
-    pub inputs: &'a PipelineInputs<'a>,
-    pub bindings: &'a FrameBindings,
-}
 
 /// Buffers and targets of one system, and its passes of the current frame.
 #[derive(Debug)]
@@ -48,20 +34,14 @@ pub(crate) struct SystemState {
     lights: wgpu::Buffer,
     bindings: wgpu::BindGroup,
     light_uniforms: Vec<LightUniform>,
-    instances: Instances,
+    particles: SystemParticles,
     targets: SystemTargets,
     tiles: TiledSystem,
-    emitted: EmittedParticles,
-    depth_sorted: SortedParticles,
-    /// Sample of an emitter's particles, for estimates.
-    sample: Vec<Particle>,
     path_chooser: PathChooser,
     /// Counts frames without deferred drawing, after which the targets are released.
     frames_without_targets: IdleCounter,
     /// Counts frames without the path `tiled`, after which its buffers are released.
     frames_untiled: IdleCounter,
-    /// Counts frames in which no host's particles were sorted, after which the sort's buffers are released.
-    frames_unsorted: IdleCounter,
     /// Counts frames without the system, after which this state is dropped.
     frames_absent: IdleCounter,
     /// `None` if the system is out of sight.
@@ -100,16 +80,12 @@ impl SystemState {
             lights,
             bindings,
             light_uniforms: Vec::new(),
-            instances: Instances::default(),
+            particles: SystemParticles::default(),
             targets: SystemTargets::default(),
             tiles: TiledSystem::default(),
-            emitted: EmittedParticles::default(),
-            depth_sorted: SortedParticles::default(),
-            sample: Vec::new(),
             path_chooser: PathChooser::default(),
             frames_without_targets: IdleCounter::default(),
             frames_untiled: IdleCounter::default(),
-            frames_unsorted: IdleCounter::default(),
             frames_absent: IdleCounter::default(),
             prepared: None,
         }
@@ -136,9 +112,8 @@ impl SystemState {
     }
 
     pub fn memory_use(&self) -> MemoryUse {
-        let emitted = TiledMemory { emitted: self.emitted.bytes(), ..TiledMemory::default() };
-        let tiled = emitted + self.tiles.memory() + self.depth_sorted.memory();
-        let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes() + tiled.total();
+        let tiled = self.tiles.memory() + self.particles.tiled_memory();
+        let buffers = self.uniform.size() + self.lights.size() + self.particles.instance_bytes() + tiled.total();
         MemoryUse { targets: self.targets.bytes(), buffers, tiled }
     }
 
@@ -162,10 +137,7 @@ impl SystemState {
         let Some(PreparedSystem { setup, technique, trim, sampled, passes, .. }) = &self.prepared else {
             return Overdraw::default();
         };
-        let (particles, each) = match *sampled {
-            Some(each) => (self.sample.as_slice(), f64::from(each)),
-            None => (self.instances.particles(), 1.0),
-        };
+        let (particles, each) = self.particles.drawn(*sampled);
         if particles.is_empty() {
             return Overdraw::default();
         }
@@ -177,7 +149,7 @@ impl SystemState {
         };
         let projector = SpriteProjector { view, system: &setup.uniform, technique: *technique, trim };
         let side = (setup.pixels.as_dvec2() / f64::from(grid.scale)).ceil();
-        let fragments = f64::from(sprites.loops) * each * projector.fragments(&grid, particles);
+        let fragments = f64::from(sprites.loops) * f64::from(each) * projector.fragments(&grid, particles);
         Overdraw { fragments, texels: side.x * side.y }
     }
 
@@ -193,7 +165,7 @@ impl SystemState {
             baked_diffuse: &baked_diffuse.faces,
             origin: setup.rect.origin,
             size: setup.rect.size,
-            scale: setup.uniform.scale as u32,
+            scale: setup.rect.scale,
             depth_limit: setup.uniform.depth_limit,
             lit_depth: setup.lit_depth,
         })
@@ -216,49 +188,48 @@ impl SystemState {
             self.targets = SystemTargets::default();
         }
         let is_tiled = matches!(self.passes(), Some(SystemPasses::Deferred(passes)) if passes.accumulate.is_tiled());
-        if self.frames_untiled.tick(!is_tiled) {
-            (self.tiles, self.emitted) = (TiledSystem::default(), EmittedParticles::default());
+        let is_released = self.frames_untiled.tick(!is_tiled);
+        if is_released {
+            self.tiles = TiledSystem::default();
         }
-        if self.frames_unsorted.tick(!matches!(self.particle_pass(), Some(ParticlePass::DepthSort(..)))) {
-            self.depth_sorted = SortedParticles::default();
-        }
+        let particle_pass = self.prepared.as_ref().and_then(|prepared| prepared.particle_pass.as_ref());
+        self.particles.release_unused(is_released, particle_pass);
     }
 
     fn prepare(&mut self, context: &FrameContext<'_>, system: &System<'_>) -> Option<PreparedSystem> {
         let FrameContext { gpu, shared, frame, view, .. } = context;
-        let settings = system.settings;
-        let bounds = bounds_of_system(system);
+        let material = &system.material.info;
+        let settings = ResolvedSettings::new(system.settings, view.size, material.frame_count, shared.six_way);
+        let bounds = self.particles.measure(view, system, &settings);
         light_uniforms(view, frame.lights, &bounds, &mut self.light_uniforms);
-        let known = known_particles(system.particles, &mut self.sample);
+        let known = self.particles.known(system.particles);
         let (particles, particles_per_sample) = known.unwrap_or((&[], 1));
         let in_world = SystemInput {
             bounds: &bounds,
             depth: system.depth,
+            extent: self.particles.measures.extent(),
             particles,
             particles_per_sample,
-            settings,
-            material: &system.material.info,
+            settings: &settings,
+            material,
             lights: &self.light_uniforms,
             up: frame.up.normalize_or(Vec3::Y),
             time: frame.time,
         };
         let setup = system_setup(view, context.host_size, &in_world)?;
+        let trim = SpriteTrim::new(&settings, material);
         let workload = matches!(settings.path, RenderPath::Auto | RenderPath::Tiled).then(|| {
             let view = view.uniform(false);
-            let trim = SpriteTrim::new(settings, &system.material.info);
             let projector =
                 SpriteProjector { view: &view, system: &setup.uniform, technique: settings.technique, trim: &trim };
-            estimate_workload(&projector, &setup.grid(), system.particles.count(), known, settings)
+            estimate_workload(&projector, &setup.grid(), system.particles.count(), known, &settings)
         });
         let choice = choose(&mut self.path_chooser, shared, system, workload.as_ref());
-        let lighting = if shared.six_way { settings.lighting } else { Lighting::Normals };
-        let settings = &Settings { path: choice.map_or(settings.path, |choice| choice.path), lighting, ..*settings };
+        let settings = choice.map_or(settings, |choice| settings.with_path(choice.path));
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&setup.uniform));
         gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.light_uniforms));
 
-        let trim = SpriteTrim::new(settings, &system.material.info);
-        let sprite = settings.sprite.for_frames(system.material.info.frame_count);
-        let plan = plan(context.inputs, &Settings { sprite, ..*settings }, setup.back_faces);
+        let plan = plan(context.inputs, &settings, setup.back_faces);
         let depth = context.bindings.get(plan.reads_linear_target())?;
         let groups = Groups {
             frame: depth.frame.clone(),
@@ -266,48 +237,20 @@ impl SystemState {
             material: system.material.bind_group.clone(),
             lighting: system.material.lighting.clone(),
         };
-        let (sprites, particle_pass) = self.particles(context, system.particles, settings, &groups)?;
+        let (sprites, particle_pass) = self.particles.upload(context, system.particles, &settings, &groups)?;
         let sampled = matches!(particle_pass, Some(ParticlePass::Emit(_))).then_some(particles_per_sample);
         let builder = PassBuilder { gpu: *gpu, pipelines: &shared.pipelines, groups, sprites };
         let passes = match &plan {
             Plan::Skip => return None,
             Plan::Forward(plan) => builder.forward(plan),
             Plan::Deferred(plan) => {
-                let scale = settings.accumulate.effective_scale(view.size);
-                let limit = UVec2::new(view.size.x.div_ceil(scale), view.size.y.div_ceil(scale));
-                let targets = self.targets.ensure(shared, settings, plan, setup.rect.size, limit);
+                let limit = UVec2::new(view.size.x.div_ceil(settings.scale), view.size.y.div_ceil(settings.scale));
+                let targets = self.targets.ensure(shared, &settings, plan, setup.rect.size, limit);
                 let tiles = TiledContext { system: &mut self.tiles, workload: workload.as_ref() };
                 builder.deferred(plan, tiles, targets, &setup, depth, frame.scene_depth.buffer())
             }
         };
         Some(PreparedSystem { setup, technique: settings.technique, trim, choice, sampled, particle_pass, passes })
-    }
-
-    /// Uploads the particles, or prepares the pass that produces them. Returns `None` if there is nothing to draw.
-    fn particles(
-        &mut self,
-        context: &FrameContext<'_>,
-        particles: Particles<'_>,
-        settings: &Settings,
-        groups: &Groups,
-    ) -> Option<(Sprites, Option<ParticlePass>)> {
-        let FrameContext { gpu, shared, view, .. } = context;
-        let is_tiled = settings.path == RenderPath::Tiled;
-        if let (Particles::Emitter(emission), Some(tiled), true) = (particles, &shared.pipelines.tiled, is_tiled) {
-            self.instances = Instances::default();
-            let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.sprite.debug_loop)?;
-            return Some((sprites, Some(ParticlePass::Emit(emit))));
-        }
-        let sorted_by = shared.tiles().filter(|_| is_tiled);
-        let sorted_by = sorted_by.map(|cooperative| if cooperative { SortedBy::Gpu } else { SortedBy::Cpu });
-        let sprites = self.instances.write(gpu, view, particles, settings, sorted_by)?;
-        match &shared.pipelines.tiled {
-            Some(tiled) if !is_tiled && particles.need_sorting(settings) => {
-                let (sprites, sort) = self.depth_sorted.write(gpu, tiled, &sprites);
-                Some((sprites, Some(ParticlePass::DepthSort(sort, groups.clone()))))
-            }
-            _ => Some((sprites, None)),
-        }
     }
 }
 
@@ -326,27 +269,4 @@ fn choose(
         return Some(PathChoice { path: RenderPath::Raster, reason });
     }
     Some(path_chooser.choose(&shared.path_model(), workload))
-}
-
-/// Returns the particles that the CPU knows, and the number of particles that each represents. `None` for a host's
-/// buffer.
-fn known_particles<'a>(particles: Particles<'a>, sample: &'a mut Vec<Particle>) -> Option<(&'a [Particle], u32)> {
-    match particles {
-        Particles::Slice(particles) => Some((particles, 1)),
-        Particles::Buffer { .. } => None,
-        Particles::Emitter(emission) => {
-            emission.sample(sample);
-            Some((sample, emission.step))
-        }
-    }
-}
-
-fn bounds_of_system(system: &System<'_>) -> Bounds {
-    match (system.bounds, system.particles) {
-        (Some(bounds), _) => bounds,
-        (None, Particles::Slice(particles)) => particle_bounds(particles, system.settings.sprite_extent()),
-        (None, Particles::Emitter(emission)) => emission.bounds(system.settings.sprite_extent()),
-        // `validate` refuses a buffer without bounds.
-        (None, Particles::Buffer { .. }) => Bounds::EMPTY,
-    }
 }

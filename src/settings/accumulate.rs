@@ -174,11 +174,6 @@ impl Accumulate {
         self.order.sums_weights(self.encoding)
     }
 
-    /// True if the smoke is lit once per texel in a picture of this size, and a texel is larger than a pixel.
-    pub fn lights_per_texel(&self, picture: UVec2) -> bool {
-        self.lighting_resolution == LightingResolution::Target && self.effective_scale(picture) > 1
-    }
-
     /// Divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.
     pub fn effective_scale(&self, picture: UVec2) -> u32 {
         self.scale.max(picture.max_element().div_ceil(self.max_side.max(1)))

@@ -2,9 +2,11 @@
 //! renderers read.
 
 mod attachment_role;
+mod drawing_order;
 mod optical_depth;
-mod particle_sort;
+mod particle_measures;
 mod projected_bounds;
+mod resolved_settings;
 mod smoke_extent;
 mod sprite_projector;
 mod system_setup;
@@ -12,8 +14,11 @@ mod view_geometry;
 mod view_lights;
 
 pub use attachment_role::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
+pub use drawing_order::DrawingOrder;
 pub use optical_depth::optical_depth;
-pub use particle_sort::{SortScratch, write_in_drawing_order};
+pub use particle_measures::ParticleMeasures;
+pub use resolved_settings::ResolvedSettings;
+pub use smoke_extent::SmokeExtent;
 pub use sprite_projector::{ProjectedSprite, SpriteProjector, SpriteTrim, TexelGrid};
 pub use system_setup::{SystemInput, SystemSetup, system_setup};
 pub use view_geometry::ViewGeometry;

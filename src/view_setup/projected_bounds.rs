@@ -69,6 +69,8 @@ pub struct TargetRect {
     /// First texel, on the grid whose texel (i, j) covers the pixels i·scale .. (i+1)·scale.
     pub origin: IVec2,
     pub size: UVec2,
+    /// Pixels of the picture per texel, along each side.
+    pub scale: u32,
 }
 
 /// Returns the texels that an upsampler can read for the pixels of `bounds`.
@@ -79,7 +81,7 @@ pub(super) fn target_rect(bounds: &ProjectedBounds, scale: u32, picture: UVec2) 
     let min = (bounds.min / scale).saturating_sub(border);
     let max = UVec2::new(bounds.max.x.div_ceil(scale), bounds.max.y.div_ceil(scale)) + border;
     let max = max.min(grid);
-    TargetRect { origin: min.as_ivec2(), size: max - min }
+    TargetRect { origin: min.as_ivec2(), size: max - min, scale }
 }
 
 #[cfg(test)]

@@ -28,55 +28,79 @@ pub struct SmokeExtent {
 /// Amount below which a sprite counts as nearly transparent.
 const NEARLY_TRANSPARENT: f32 = 0.05;
 
+/// Sums over the visible particles, from which their extent follows.
+#[derive(Debug, Default)]
+pub(super) struct ExtentSums {
+    // f64, because the squares of up to a million sprites are summed.
+    weights: f64,
+    positions: DVec3,
+    squares: f64,
+    /// Largest view depth of the back of a sprite, metres.
+    back: f32,
+    /// View depth of the back of each nearly transparent sprite, and its share of [`NEARLY_TRANSPARENT`].
+    faint_backs: Vec<(f32, f32)>,
+}
+
+impl ExtentSums {
+    /// Starts over; keeps the memory.
+    pub fn clear(&mut self) {
+        self.faint_backs.clear();
+        let faint_backs = std::mem::take(&mut self.faint_backs);
+        *self = Self { faint_backs, ..Self::default() };
+    }
+
+    /// Adds a visible particle, weighted by amount and area. `size` multiplies its radius.
+    pub fn include(&mut self, view: &ViewGeometry, particle: &Particle, size: f32) {
+        let position = view.view_position(particle.position);
+        let back = -position.z + particle.radius * size;
+        let share = particle.shown_amount() / NEARLY_TRANSPARENT;
+        if share < 1.0 {
+            self.faint_backs.push((back, share));
+        } else {
+            self.back = self.back.max(back);
+        }
+        let position = position.as_dvec3();
+        let radius = f64::from(particle.radius * size);
+        // The weight of a sprite fades out while it passes the near plane.
+        let in_front = ((-position.z - f64::from(view.depth.near)) / radius).clamp(0.0, 1.0);
+        let weight = f64::from(particle.shown_amount()) * in_front * radius * radius;
+        self.weights += weight;
+        self.positions += position * weight;
+        // A sprite represents a puff as thick as it is wide.
+        self.squares += (position.z * position.z + radius * radius / 3.0) * weight;
+    }
+
+    /// Returns the extent of the included particles; `None` if none of them is in front of the viewer.
+    pub fn extent(&self) -> Option<SmokeExtent> {
+        // False for NaN, which comes from sprites of size 0.
+        (self.weights > 0.0).then(|| {
+            let centre = self.positions / self.weights;
+            // The variance of a slab is its squared half thickness divided by 3.
+            let half = (3.0 * (self.squares / self.weights - centre.z * centre.z)).max(0.0).sqrt();
+            let (near, far) = ((-centre.z - half) as f32, (-centre.z + half) as f32);
+            let z = centre.z as f32;
+            let faint = self.faint_backs.iter().map(|&(back, share)| (back + z) * share);
+            let farthest = faint.fold((self.back + z).max(0.0), f32::max) - z;
+            SmokeExtent { centre: centre.as_vec3(), near, far, farthest }
+        })
+    }
+}
+
 impl SmokeExtent {
-    /// Measures the particles in memory, or uses the bounding box if there are none. `depth`: view depth of the centre
+    /// Extent of measured particles, or that of the bounding box if there are none. `depth`: view depth of the centre
     /// that the host chose, metres.
-    pub fn new(
+    pub(super) fn new(
         view: &ViewGeometry,
-        particles: &[Particle],
-        size: f32,
+        measured: Option<Self>,
         bounds: &Bounds,
         projected: &ProjectedBounds,
         depth: Option<f32>,
     ) -> Self {
-        let measured = Self::of_particles(view, particles, size);
         let mut extent = measured.unwrap_or_else(|| Self::of_bounds(view, bounds, projected));
         if let Some(depth) = depth {
             extent.centre.z = -(depth + view.depth_offset).max(view.depth.near);
         }
         extent
-    }
-
-    /// Measures particles, weighted by amount and area. `size` multiplies radii. Returns `None` if no particle is in
-    /// front of the viewer.
-    fn of_particles(view: &ViewGeometry, particles: &[Particle], size: f32) -> Option<Self> {
-        // f64, because the squares of up to a million sprites are summed.
-        let (mut weights, mut sum, mut squares) = (0.0_f64, DVec3::ZERO, 0.0_f64);
-        for particle in particles.iter().filter(|particle| particle.is_visible()) {
-            let position = view.view_position(particle.position).as_dvec3();
-            let radius = f64::from(particle.radius * size);
-            // The weight of a sprite fades out while it passes the near plane.
-            let in_front = ((-position.z - f64::from(view.depth.near)) / radius).clamp(0.0, 1.0);
-            let weight = f64::from(particle.shown_amount()) * in_front * radius * radius;
-            weights += weight;
-            sum += position * weight;
-            // A sprite represents a puff as thick as it is wide.
-            squares += (position.z * position.z + radius * radius / 3.0) * weight;
-        }
-        // False for NaN, which comes from sprites of size 0.
-        (weights > 0.0).then(|| {
-            let centre = sum / weights;
-            // The variance of a slab is its squared half thickness divided by 3.
-            let half = (3.0 * (squares / weights - centre.z * centre.z)).max(0.0).sqrt();
-            let (near, far) = ((-centre.z - half) as f32, (-centre.z + half) as f32);
-            let behind = |particle: &Particle| {
-                let back = -view.view_position(particle.position).z + particle.radius * size;
-                (back + centre.z as f32) * (particle.shown_amount() / NEARLY_TRANSPARENT).min(1.0)
-            };
-            let visible = particles.iter().filter(|particle| particle.is_visible());
-            let farthest = visible.map(behind).fold(0.0, f32::max) - centre.z as f32;
-            Self { centre: centre.as_vec3(), near, far, farthest }
-        })
     }
 
     /// Returns the centre of the part of the box that is in front of the viewer.
@@ -100,7 +124,10 @@ mod tests {
         let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));
         let view = ViewGeometry::new(&view).unwrap();
         let bounds = particle_bounds(particles, 1.5);
-        SmokeExtent::new(&view, particles, 1.0, &bounds, &project_bounds(&bounds, &view).unwrap(), depth)
+        let mut sums = ExtentSums::default();
+        sums.clear();
+        particles.iter().filter(|particle| particle.is_visible()).for_each(|puff| sums.include(&view, puff, 1.0));
+        SmokeExtent::new(&view, sums.extent(), &bounds, &project_bounds(&bounds, &view).unwrap(), depth)
     }
 
     fn puff(depth: f32, radius: f32, amount: f32) -> Particle {

@@ -4,6 +4,7 @@ use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 
 use super::optical_depth::optical_depths;
 use super::projected_bounds::{TargetRect, project_bounds, target_rect};
+use super::resolved_settings::ResolvedSettings;
 use super::smoke_extent::SmokeExtent;
 use super::sprite_projector::TexelGrid;
 use super::view_geometry::ViewGeometry;
@@ -21,11 +22,13 @@ pub struct SystemInput<'a> {
     pub bounds: &'a Bounds,
     /// View depth that the host chose for lighting, metres.
     pub depth: Option<f32>,
+    /// Extent of the particles, if they are known and one of them is in front of the viewer.
+    pub extent: Option<SmokeExtent>,
     /// Empty if the particles are on the GPU.
     pub particles: &'a [Particle],
     /// Number of particles that each of them represents.
     pub particles_per_sample: u32,
-    pub settings: &'a Settings,
+    pub settings: &'a ResolvedSettings,
     pub material: &'a MaterialInfo,
     /// Lights that reach the system, view space.
     pub lights: &'a [LightUniform],
@@ -54,24 +57,25 @@ pub struct SystemSetup {
 impl SystemSetup {
     /// Returns the texel grid of the system's target.
     pub fn grid(&self) -> TexelGrid {
-        TexelGrid { origin: self.rect.origin.as_vec2(), scale: self.uniform.scale, size: self.rect.size }
+        TexelGrid { origin: self.rect.origin.as_vec2(), scale: self.rect.scale as f32, size: self.rect.size }
     }
 }
 
 /// Places a system in the view; `None` if it is out of sight. `targets`: size of the host's targets, pixels; the view
 /// may be a part of them.
 pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
-    let SystemInput { bounds, depth, particles, particles_per_sample, settings, material, lights, up, time } = *system;
+    let SystemInput { bounds, depth, extent, particles, particles_per_sample, .. } = *system;
+    let SystemInput { settings, material, lights, up, time, .. } = *system;
     let projected = project_bounds(bounds, view)?;
-    let extent = SmokeExtent::new(view, particles, settings.sprite.size, bounds, &projected, depth);
+    let extent = SmokeExtent::new(view, extent, bounds, &projected, depth);
     // A sample does not include the farthest particle.
     let farthest = if particles_per_sample == 1 { extent.farthest } else { projected.far };
     let accumulate = &settings.accumulate;
-    let scale = accumulate.effective_scale(view.size);
+    let scale = settings.scale;
     let rect = match accumulate.depth_source {
         DepthSource::Reduced => target_rect(&projected, scale, view.size),
         // All attachments of a pass must have one size.
-        DepthSource::Host => TargetRect { origin: -view.origin.as_ivec2(), size: targets },
+        DepthSource::Host => TargetRect { origin: -view.origin.as_ivec2(), size: targets, scale },
     };
 
     let uniform = SystemUniform {
@@ -86,10 +90,10 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         scatter_amount: settings.soft_scatter.scatter_amount,
         ambient_colour: settings.soft_scatter.ambient_colour,
         scatter_smooth: settings.soft_scatter.scatter_smooth,
-        target_from_ndc: target_from_ndc(&rect, scale, view.size),
+        target_from_ndc: target_from_ndc(&rect, view.size),
         target_origin: rect.origin.as_vec2(),
         target_size: rect.size.as_vec2(),
-        scale: scale as f32,
+        scale,
         depth_limit: (projected.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         smoke_depth_limit: (farthest.min(projected.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         padding: [0.0; 3],
@@ -179,8 +183,8 @@ fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f32) -
 /// A pixel p is at texel p / scale − origin of the target. In x, with p = (ndc/2 + 1/2)·W and target NDC = 2·t/w − 1:
 /// scale = W / (s·w), offset = (W/s − 2·origin) / w − 1. In y, which points up in NDC and down in texels, the offset
 /// has the opposite sign.
-fn target_from_ndc(rect: &TargetRect, scale: u32, picture: UVec2) -> Vec4 {
-    let texels = picture.as_vec2() / scale as f32;
+fn target_from_ndc(rect: &TargetRect, picture: UVec2) -> Vec4 {
+    let texels = picture.as_vec2() / rect.scale as f32;
     let size = rect.size.as_vec2();
     let offset = (texels - 2.0 * rect.origin.as_vec2()) / size - Vec2::ONE;
     Vec4::new(texels.x / size.x, texels.y / size.y, offset.x, -offset.y)

@@ -63,11 +63,11 @@ impl AccumulatedTarget<'_> {
 
     fn sample_texels(&self, texel_at: impl Fn(IVec2) -> Vec4, pixel: Vec2) -> Vec4 {
         let system = &self.visible.system;
-        let texel = pixel / system.scale - system.target_origin;
+        let texel = pixel / system.scale as f32 - system.target_origin;
         if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
             return Vec4::ZERO;
         }
-        if system.scale < 1.5 {
+        if system.scale == 1 {
             return texel_at(texel.as_ivec2());
         }
         let upsample = self.visible.settings.accumulate.upsample;

@@ -12,11 +12,11 @@ use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use haze::frame::validate_input::{
     validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up,
 };
-use haze::frame::{Bounds, Particle, View, particle_bounds};
-use haze::settings::{BlendOrder, DebugView, Settings};
+use haze::frame::{Bounds, Particle, View};
+use haze::settings::{BlendOrder, DebugView};
 use haze::view_setup::{
-    SortScratch, SpriteTrim, SystemInput, SystemSetup, ViewGeometry, light_uniforms, system_setup,
-    write_in_drawing_order,
+    ParticleMeasures, ResolvedSettings, SpriteTrim, SystemInput, SystemSetup, ViewGeometry, light_uniforms,
+    system_setup,
 };
 
 /// Visible system, with the input of its passes.
@@ -40,7 +40,7 @@ pub struct VisibleSystem<'a> {
     /// Depth buffer of the scene, 0..1.
     pub scene_depth: &'a Image<f32>,
     /// Settings of the system.
-    pub settings: &'a Settings,
+    pub settings: ResolvedSettings,
     /// Images of the system.
     pub material: &'a MaterialAssets,
 }
@@ -48,16 +48,19 @@ pub struct VisibleSystem<'a> {
 impl<'a> VisibleSystem<'a> {
     /// Returns `None` if the system is not visible.
     pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
-        let settings = system.settings;
-        let bounds = system.bounds.unwrap_or_else(|| particle_bounds(system.particles, settings.sprite_extent()));
+        let settings = ResolvedSettings::new(system.settings, frame.view.size, material.frame_count, true);
+        let mut measures = ParticleMeasures::default();
+        measures.measure(view, system.particles, &settings);
+        let bounds = system.bounds.unwrap_or(measures.bounds);
         let mut lights = Vec::new();
         light_uniforms(view, frame.lights, &bounds, &mut lights);
         let in_world = SystemInput {
             particles_per_sample: 1,
             bounds: &bounds,
             depth: system.depth,
+            extent: measures.extent(),
             particles: system.particles,
-            settings,
+            settings: &settings,
             material,
             lights: &lights,
             up: frame.up.normalize_or(Vec3::Y),
@@ -65,13 +68,7 @@ impl<'a> VisibleSystem<'a> {
         };
         let setup = system_setup(view, frame.view.size, &in_world)?;
         let mut particles = Vec::new();
-        write_in_drawing_order(
-            view,
-            system.particles,
-            settings.order() == BlendOrder::Sorted,
-            &mut SortScratch::default(),
-            &mut particles,
-        );
+        measures.order.write(system.particles, settings.order() == BlendOrder::Sorted, &mut particles);
         Some(Self {
             view: view.uniform(false),
             world_from_view: view.view_from_world.inverse(),
@@ -80,7 +77,7 @@ impl<'a> VisibleSystem<'a> {
             bounds,
             lights,
             particles,
-            trim: SpriteTrim::new(settings, material),
+            trim: SpriteTrim::new(&settings, material),
             scene_depth: frame.scene_depth,
             settings,
             material: system.material,
@@ -89,7 +86,7 @@ impl<'a> VisibleSystem<'a> {
 
     /// True if this debug view shows the light of the target's texels.
     pub fn lights_per_texel(&self, debug_view: DebugView) -> bool {
-        debug_view.shows_lit_smoke() && self.settings.accumulate.lights_per_texel(self.view.size.as_uvec2())
+        debug_view.shows_lit_smoke() && self.settings.lights_per_texel()
     }
 
     /// View depth of the scene at a pixel, metres.

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::error_scopes::with_error_scopes;
 use crate::error::{Error, one_line};
@@ -28,6 +29,26 @@ impl Shader {
     }
 }
 
+/// Resources that the pipelines of all passes share.
+#[derive(Clone, Debug)]
+pub(crate) struct PipelineStore {
+    pub device: wgpu::Device,
+    /// Cache of the host, if the backend supports one.
+    pub cache: Option<wgpu::PipelineCache>,
+    count: Arc<AtomicUsize>,
+}
+
+impl PipelineStore {
+    pub fn new(device: &wgpu::Device, cache: Option<&wgpu::PipelineCache>) -> Self {
+        Self { device: device.clone(), cache: cache.cloned(), count: Arc::default() }
+    }
+
+    /// Returns the number of pipelines compiled so far.
+    pub fn pipeline_count(&self) -> usize {
+        self.count.load(Ordering::Relaxed)
+    }
+}
+
 /// Shader of a pass, and its pipelines by key. A pipeline is compiled on first use, from any thread.
 #[derive(Debug)]
 pub(crate) struct PipelineVariants<K, P: PipelineDescription = RenderPipelineDescription> {
@@ -44,14 +65,14 @@ pub(crate) struct Common {
     module: wgpu::ShaderModule,
     path: PathBuf,
     layout: wgpu::PipelineLayout,
-    cache: Option<wgpu::PipelineCache>,
+    store: PipelineStore,
 }
 
 /// Variant-specific parts of a pipeline; together with the properties that its pass shares, they create it.
 pub(crate) trait PipelineDescription {
     type Pipeline: Clone + std::fmt::Debug;
 
-    fn create(&self, device: &wgpu::Device, common: &Common) -> Self::Pipeline;
+    fn create(&self, common: &Common) -> Self::Pipeline;
 }
 
 /// The parts of a render pipeline that differ from variant to variant.
@@ -75,36 +96,35 @@ pub(crate) struct ComputePipelineDescription {
 impl<K: Copy + Eq + Hash, P: PipelineDescription> PipelineVariants<K, P> {
     /// `name`: name of the pass, used as label.
     pub fn new(
-        device: &wgpu::Device,
+        store: &PipelineStore,
         name: &'static str,
         shader: Shader,
         describe: fn(K) -> P,
         groups: &[Option<&wgpu::BindGroupLayout>],
-        cache: Option<&wgpu::PipelineCache>,
     ) -> Self {
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        let layout = store.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(name),
             bind_group_layouts: groups,
             immediate_size: 0,
         });
         let Shader { module, path, text: _ } = shader;
-        let common = Common { name, module, path, layout, cache: cache.cloned() };
+        let common = Common { name, module, path, layout, store: store.clone() };
         Self { common, describe, pipelines: Mutex::default() }
     }
 
     /// Returns the pipeline for `key`; compiles it on first use. The lock is not held during compilation, so other
     /// threads do not wait.
-    pub fn get(&self, device: &wgpu::Device, key: K) -> P::Pipeline {
+    pub fn get(&self, key: K) -> P::Pipeline {
         let found = self.lock().get(&key).cloned();
-        found.unwrap_or_else(|| self.keep(key, self.compile(device, key)))
+        found.unwrap_or_else(|| self.keep(key, self.compile(key)))
     }
 
     /// Compiles the pipeline for `key`, or returns the shader error.
-    pub fn check(&self, device: &wgpu::Device, key: K) -> Result<(), Error> {
+    pub fn check(&self, key: K) -> Result<(), Error> {
         if self.lock().contains_key(&key) {
             return Ok(());
         }
-        let compiled = with_error_scopes(device, || self.compile(device, key)).map_err(|reason| {
+        let compiled = with_error_scopes(&self.common.store.device, || self.compile(key)).map_err(|reason| {
             let stages = [("VERTEX", "vertex"), ("FRAGMENT", "fragment"), ("COMPUTE", "compute")];
             let plain = |text: String, (stage, name): (&str, _)| text.replace(&format!("ShaderStages({stage})"), name);
             let reason = one_line(stages.into_iter().fold(reason, plain));
@@ -116,29 +136,29 @@ impl<K: Copy + Eq + Hash, P: PipelineDescription> PipelineVariants<K, P> {
 
     /// Stores a compiled pipeline, unless another thread stored one first; returns the stored one.
     fn keep(&self, key: K, compiled: P::Pipeline) -> P::Pipeline {
-        self.lock().entry(key).or_insert(compiled).clone()
-    }
-
-    /// Returns the number of pipelines compiled so far.
-    pub fn len(&self) -> usize {
-        self.lock().len()
+        let count = &self.common.store.count;
+        let stored = |compiled| {
+            count.fetch_add(1, Ordering::Relaxed);
+            compiled
+        };
+        self.lock().entry(key).or_insert_with(|| stored(compiled)).clone()
     }
 
     fn lock(&self) -> MutexGuard<'_, HashMap<K, P::Pipeline>> {
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn compile(&self, device: &wgpu::Device, key: K) -> P::Pipeline {
-        (self.describe)(key).create(device, &self.common)
+    fn compile(&self, key: K) -> P::Pipeline {
+        (self.describe)(key).create(&self.common)
     }
 }
 
 impl PipelineDescription for RenderPipelineDescription {
     type Pipeline = wgpu::RenderPipeline;
 
-    fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::RenderPipeline {
+    fn create(&self, common: &Common) -> wgpu::RenderPipeline {
         let options = wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() };
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        common.store.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(common.name),
             layout: Some(&common.layout),
             vertex: wgpu::VertexState {
@@ -157,7 +177,7 @@ impl PipelineDescription for RenderPipelineDescription {
                 targets: &self.targets,
             }),
             multiview_mask: None,
-            cache: common.cache.as_ref(),
+            cache: common.store.cache.as_ref(),
         })
     }
 }
@@ -165,17 +185,26 @@ impl PipelineDescription for RenderPipelineDescription {
 impl PipelineDescription for ComputePipelineDescription {
     type Pipeline = wgpu::ComputePipeline;
 
-    fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::ComputePipeline {
-        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+    fn create(&self, common: &Common) -> wgpu::ComputePipeline {
+        common.store.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(common.name),
             layout: Some(&common.layout),
             module: &common.module,
             entry_point: Some(self.entry_point),
             compilation_options: wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() },
-            cache: common.cache.as_ref(),
+            cache: common.store.cache.as_ref(),
         })
     }
 }
+
+/// Makes the [`PipelineVariants`] of a pass's module, which is named like its shader.
+macro_rules! pipeline_variants {
+    ($store:expr, $shader:expr, $pass:ident, $groups:expr) => {{
+        let name = stringify!($pass);
+        PipelineVariants::new($store, name, $shader(name)?, $pass::describe, $groups)
+    }};
+}
+pub(crate) use pipeline_variants;
 
 /// A WGSL override constant: its name and its value.
 pub(crate) type Constant = (&'static str, f64);

@@ -13,13 +13,16 @@ fn inputs() -> PipelineInputs<'static> {
         scene_depth: SceneDepthKind::Both(Depth24Plus),
         reversed: false,
         mirrored: false,
-        size: UVec2::new(1280, 720),
         debug_views: &[DebugView::Final],
     }
 }
 
+fn resolved(settings: &Settings) -> ResolvedSettings {
+    ResolvedSettings::new(settings, UVec2::new(1280, 720), 2.0, true)
+}
+
 fn deferred<'a>(inputs: &PipelineInputs<'a>, settings: &Settings) -> DeferredPlan<'a> {
-    match plan(inputs, settings, false) {
+    match plan(inputs, &resolved(settings), false) {
         Plan::Deferred(plan) => plan,
         other => panic!("{other:?}"),
     }
@@ -86,7 +89,7 @@ fn each_stage_plans_only_the_passes_that_it_shows() {
         // Forward sprites are lit as they are drawn: there are no intermediate stages to show.
         settings.path = RenderPath::Forward;
         let shows_lit_smoke = matches!(debug_view, DebugView::Final | DebugView::Combined);
-        assert_eq!(plan(&inputs, &settings, false) != Plan::Skip, shows_lit_smoke, "{debug_view:?}");
+        assert_eq!(plan(&inputs, &resolved(&settings), false) != Plan::Skip, shows_lit_smoke, "{debug_view:?}");
     }
 }
 
@@ -138,7 +141,8 @@ fn one_of_each_covers_every_pass() {
 
 #[test]
 fn transfer_key_follows_mirroring_reversed_depth_and_missing_depth_attachment() {
-    let transfer = |inputs: &PipelineInputs, back_faces| match plan(inputs, &Settings::default(), back_faces) {
+    let transfer = |inputs: &PipelineInputs, back_faces| match plan(inputs, &resolved(&Settings::default()), back_faces)
+    {
         Plan::Deferred(plan) => plan.transfer,
         other => panic!("{other:?}"),
     };

@@ -8,7 +8,7 @@ use glam::UVec2;
 
 use crate::error::Error;
 use crate::formula::uniforms::TilesUniform;
-use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineVariants, Shader};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineStore, PipelineVariants, Shader};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
 use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, storage_target};
@@ -21,7 +21,7 @@ pub(crate) struct AccumulateVariants {
     shader: Shader,
     /// Layouts of groups 0 to 2.
     groups: [wgpu::BindGroupLayout; 3],
-    cache: Option<wgpu::PipelineCache>,
+    store: PipelineStore,
     /// Textures of one texel, bound in place of textures that a system does not have. One per slot, because no texture
     /// may be bound for writing twice.
     pub placeholders: [wgpu::TextureView; MAX_TARGET_ATTACHMENTS],
@@ -37,13 +37,12 @@ pub(crate) struct AccumulateVariant {
 }
 
 impl AccumulateVariants {
-    /// `cache`: the host's pipeline cache, if the backend supports one.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, cache: Option<&wgpu::PipelineCache>, shader: Shader) -> Self {
-        let placeholder = || storage_target(device, "haze unwritten", PLACEHOLDER_FORMAT, UVec2::ONE);
+    pub fn new(store: &PipelineStore, layouts: &Layouts, shader: Shader) -> Self {
+        let placeholder = || storage_target(&store.device, "haze unwritten", PLACEHOLDER_FORMAT, UVec2::ONE);
         Self {
             shader,
             groups: [layouts.frame.clone(), layouts.system.clone(), layouts.material.clone()],
-            cache: cache.cloned(),
+            store: store.clone(),
             placeholders: std::array::from_fn(|_| placeholder()),
             variants: Mutex::default(),
         }
@@ -51,30 +50,26 @@ impl AccumulateVariants {
 
     /// Returns the variant for these formats; creates it on first use. The lock is not held during creation, so other
     /// threads do not wait.
-    pub fn get(&self, device: &wgpu::Device, formats: TiledFormats) -> Arc<AccumulateVariant> {
+    pub fn get(&self, formats: TiledFormats) -> Arc<AccumulateVariant> {
         let found = self.lock().get(&formats).cloned();
         found.unwrap_or_else(|| {
-            let created = Arc::new(self.create(device, formats));
+            let created = Arc::new(self.create(formats));
             self.lock().entry(formats).or_insert(created).clone()
         })
     }
 
     /// Compiles the pipeline for `key`, or returns the shader error.
-    pub fn check(&self, device: &wgpu::Device, key: TileAccumulateKey) -> Result<(), Error> {
-        self.get(device, key.formats()).pipelines.check(device, key)
+    pub fn check(&self, key: TileAccumulateKey) -> Result<(), Error> {
+        self.get(key.formats()).pipelines.check(key)
     }
 
     /// Returns the pipeline for `key`; compiles it on first use.
-    pub fn pipeline(&self, device: &wgpu::Device, key: TileAccumulateKey) -> wgpu::ComputePipeline {
-        self.get(device, key.formats()).pipelines.get(device, key)
+    pub fn pipeline(&self, key: TileAccumulateKey) -> wgpu::ComputePipeline {
+        self.get(key.formats()).pipelines.get(key)
     }
 
-    /// Returns the number of pipelines compiled so far.
-    pub fn len(&self) -> usize {
-        self.lock().values().map(|variant| variant.pipelines.len()).sum()
-    }
-
-    fn create(&self, device: &wgpu::Device, formats: TiledFormats) -> AccumulateVariant {
+    fn create(&self, formats: TiledFormats) -> AccumulateVariant {
+        let device = &self.store.device;
         let layout = layout(device, formats);
         let mut shader = self.shader.clone();
         if formats != [PLACEHOLDER_FORMAT; MAX_TARGET_ATTACHMENTS] {
@@ -86,14 +81,8 @@ impl AccumulateVariants {
         }
         let [frame, system, material] = self.groups.each_ref().map(Some);
         let groups = [frame, system, material, Some(&layout)];
-        let pipelines = PipelineVariants::new(
-            device,
-            "tile_accumulate",
-            shader,
-            tile_accumulate::describe,
-            &groups,
-            self.cache.as_ref(),
-        );
+        let pipelines =
+            PipelineVariants::new(&self.store, "tile_accumulate", shader, tile_accumulate::describe, &groups);
         AccumulateVariant { layout, pipelines }
     }
 

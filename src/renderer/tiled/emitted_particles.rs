@@ -47,7 +47,7 @@ impl EmittedParticles {
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&emission.uniform));
         let buffer = buffers.particles.clone();
         let sprites = Sprites { buffer, offset: 0, count, loops, is_sorted: false, by_view_depth: false };
-        Some((sprites, Emit { pipeline: tiled.emit(gpu.device), inputs: buffers.inputs.clone(), births: count }))
+        Some((sprites, Emit { pipeline: tiled.emit.get(()), inputs: buffers.inputs.clone(), births: count }))
     }
 
     /// Returns the bytes of GPU memory held.

@@ -49,13 +49,9 @@ impl SortedParticles {
         let buffer = buffers.particles.clone();
         let sorted = Sprites { buffer, offset: 0, is_sorted: true, by_view_depth: true, ..*sprites };
         let sort = DepthSort {
-            depth_keys: tiled.depth_sort(gpu.device, DepthSortKey::DepthKeys),
-            sort: Sort {
-                pipelines: tiled.sort(gpu.device, count),
-                ping_pong: buffers.sort.ping_pong.clone(),
-                keys: count,
-            },
-            gather_particles: tiled.depth_sort(gpu.device, DepthSortKey::GatherParticles),
+            depth_keys: tiled.depth_sort.get(DepthSortKey::DepthKeys),
+            sort: Sort { pipelines: tiled.sort(count), ping_pong: buffers.sort.ping_pong.clone(), keys: count },
+            gather_particles: tiled.depth_sort.get(DepthSortKey::GatherParticles),
             inputs: buffers.bind(gpu.device, tiled, range),
             particles: count,
         };

@@ -192,7 +192,7 @@ impl TileBuffers {
                 let buffers = [&*uniform, sprites, rects, sort.indices(), lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
-                let group = bind(gpu.device, &tiled.accumulate.get(gpu.device, formats).layout, resources);
+                let group = bind(gpu.device, &tiled.accumulate.get(formats).layout, resources);
                 self.accumulate = Some((views.map(wgpu::TextureView::clone).to_vec(), group.clone()));
                 group
             }

@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::accumulate_variants::AccumulateVariants;
 use crate::error::Error;
 use crate::formula::uniforms::{EmitterUniform, TilesUniform};
-use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineVariants, Shader};
+use crate::renderer::gpu::pipeline::{
+    ComputePipelineDescription, PipelineStore, PipelineVariants, Shader, pipeline_variants,
+};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
@@ -24,8 +26,9 @@ pub(crate) struct TiledPipelines {
     cooperative: AtomicBool,
     /// Queried once, because every query copies all limits.
     pub limits: wgpu::Limits,
-    emit: PipelineVariants<(), ComputePipelineDescription>,
-    depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
+    /// Evaluates emitters.
+    pub emit: PipelineVariants<(), ComputePipelineDescription>,
+    pub depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
     gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
@@ -77,33 +80,26 @@ pub(crate) struct SystemPipelines {
 }
 
 impl TiledPipelines {
-    /// Creates layouts and shader modules. `shader` returns the shader of a pass by name; `cache` is the host's
-    /// pipeline cache, if the backend supports one.
+    /// Creates layouts and shader modules. `shader` returns the shader of a pass by name.
     pub fn new<E>(
-        device: &wgpu::Device,
+        store: &PipelineStore,
         layouts: &Layouts,
-        cache: Option<&wgpu::PipelineCache>,
         shader: impl Fn(&'static str) -> Result<Shader, E>,
     ) -> Result<Self, E> {
+        let device = &store.device;
         let own = TiledLayouts::new(device);
         let with = |inputs| [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material), Some(inputs)];
-        macro_rules! variants {
-            ($pass:ident, $groups:expr) => {{
-                let name = stringify!($pass);
-                PipelineVariants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
-            }};
-        }
         Ok(Self {
             cooperative: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
             limits: device.limits(),
-            emit: variants!(emit, &[Some(&own.emit)]),
-            depth_sort: variants!(depth_sort, &with(&own.depth_sort)),
-            project: variants!(tile_project, &with(&own.project)),
-            sort: variants!(sort, &[Some(&own.sort)]),
-            gather: variants!(tile_gather, &[Some(&own.gather)]),
-            bin: variants!(tile_bin, &[Some(&own.bin)]),
-            refine: variants!(tile_refine, &with(&own.refine)),
-            accumulate: AccumulateVariants::new(device, layouts, cache, shader("tile_accumulate")?),
+            emit: pipeline_variants!(store, shader, emit, &[Some(&own.emit)]),
+            depth_sort: pipeline_variants!(store, shader, depth_sort, &with(&own.depth_sort)),
+            project: pipeline_variants!(store, shader, tile_project, &with(&own.project)),
+            sort: pipeline_variants!(store, shader, sort, &[Some(&own.sort)]),
+            gather: pipeline_variants!(store, shader, tile_gather, &[Some(&own.gather)]),
+            bin: pipeline_variants!(store, shader, tile_bin, &[Some(&own.bin)]),
+            refine: pipeline_variants!(store, shader, tile_refine, &with(&own.refine)),
+            accumulate: AccumulateVariants::new(store, layouts, shader("tile_accumulate")?),
             layouts: own,
         })
     }
@@ -117,69 +113,48 @@ impl TiledPipelines {
         self.cooperative.store(cooperative, Ordering::Relaxed);
     }
 
-    /// Returns the number of pipelines compiled so far.
-    pub fn pipeline_count(&self) -> usize {
-        self.emit.len()
-            + self.depth_sort.len()
-            + self.project.len()
-            + self.sort.len()
-            + self.gather.len()
-            + self.bin.len()
-            + self.refine.len()
-            + self.accumulate.len()
-    }
-
     /// Compiles the pipelines for these keys, or returns the shader error.
-    pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
-        self.emit.check(device, ())?;
-        self.project.check(device, keys.project)?;
-        self.compile_sort(device)?;
+    pub fn compile(&self, keys: TiledKeys) -> Result<(), Error> {
+        self.emit.check(())?;
+        self.project.check(keys.project)?;
+        self.compile_sort()?;
         for either in [true, false] {
-            self.gather.check(device, TileGatherKey { sorted: either })?;
-            tile_bin::keys(keys.accumulate.cooperative, either).try_for_each(|key| self.bin.check(device, key))?;
+            self.gather.check(TileGatherKey { sorted: either })?;
+            tile_bin::keys(keys.accumulate.cooperative, either).try_for_each(|key| self.bin.check(key))?;
         }
-        keys.refine().into_iter().try_for_each(|key| self.refine.check(device, key))?;
-        self.accumulate.check(device, keys.accumulate)
+        keys.refine().into_iter().try_for_each(|key| self.refine.check(key))?;
+        self.accumulate.check(keys.accumulate)
     }
 
     /// Compiles the pipelines that sort a host's particles back to front.
-    pub fn compile_depth_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
-        self.depth_sort.check(device, DepthSortKey::DepthKeys)?;
-        self.depth_sort.check(device, DepthSortKey::GatherParticles)?;
-        self.compile_sort(device)
+    pub fn compile_depth_sort(&self) -> Result<(), Error> {
+        self.depth_sort.check(DepthSortKey::DepthKeys)?;
+        self.depth_sort.check(DepthSortKey::GatherParticles)?;
+        self.compile_sort()
     }
 
-    fn compile_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
-        sort::all_keys(self.cooperative()).try_for_each(|key| self.sort.check(device, key))
-    }
-
-    /// Returns the pipeline that evaluates emitters.
-    pub fn emit(&self, device: &wgpu::Device) -> wgpu::ComputePipeline {
-        self.emit.get(device, ())
-    }
-
-    pub fn depth_sort(&self, device: &wgpu::Device, key: DepthSortKey) -> wgpu::ComputePipeline {
-        self.depth_sort.get(device, key)
+    fn compile_sort(&self) -> Result<(), Error> {
+        sort::all_keys(self.cooperative()).try_for_each(|key| self.sort.check(key))
     }
 
     /// Returns the pipelines that sort `count` keys.
-    pub fn sort(&self, device: &wgpu::Device, count: u32) -> SortPipelines {
-        let mut keys = sort::keys(self.cooperative(), count).map(|key| (key, self.sort.get(device, key)));
+    pub fn sort(&self, count: u32) -> SortPipelines {
+        let mut keys = sort::keys(self.cooperative(), count).map(|key| (key, self.sort.get(key)));
         std::array::from_fn(|_| keys.next())
     }
 
     /// Returns the pipelines of a system with `count` sprites. `sorts`: true if the sprites are unsorted and their
     /// order matters.
-    pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> SystemPipelines {
+    pub fn pipelines(&self, keys: TiledKeys, sorts: bool, count: u32) -> SystemPipelines {
         let bin_keys = tile_bin::keys(keys.accumulate.cooperative, count <= tile_bin::MAX_SPRITES_SINGLE_DISPATCH);
-        let mut bin = bin_keys.map(|key| (key, self.bin.get(device, key)));
+        let mut bin = bin_keys.map(|key| (key, self.bin.get(key)));
         SystemPipelines {
-            project: self.project.get(device, keys.project),
-            sort: sorts.then(|| self.sort(device, count)),
-            gather: self.gather.get(device, TileGatherKey { sorted: sorts }),
+            project: self.project.get(keys.project),
+            sort: sorts.then(|| self.sort(count)),
+            gather: self.gather.get(TileGatherKey { sorted: sorts }),
             bin: std::array::from_fn(|_| bin.next()),
-            refine: keys.refine().map(|key| self.refine.get(device, key)),
-            accumulate: self.accumulate.pipeline(device, keys.accumulate),
+            refine: keys.refine().map(|key| self.refine.get(key)),
+            accumulate: self.accumulate.pipeline(keys.accumulate),
         }
     }
 }

@@ -109,7 +109,7 @@ impl TiledSystem {
             padding: [0; 2],
         };
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
-        let pipelines = tiled.pipelines(gpu.device, keys, sorts, sprites.count);
+        let pipelines = tiled.pipelines(keys, sorts, sprites.count);
         let project = buffers.bind_project(gpu, tiled, particles);
         let refine = pipelines.refine.map(|pipeline| {
             let inputs = buffers.bind_refine(gpu, tiled, depth);

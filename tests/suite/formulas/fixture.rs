@@ -10,8 +10,7 @@ use haze::frame::MAX_LIGHTS;
 use haze::image::Image;
 use haze::settings::Settings;
 use haze::sprite::{Sprite, SpriteLayout};
-use haze::view_setup::AttachmentRole;
-use haze::view_setup::SpriteTrim;
+use haze::view_setup::{AttachmentRole, ResolvedSettings, SpriteTrim};
 use haze::{Light, LightKind, MaterialAssets};
 use haze_reference::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use haze_reference::visible_system::{VisibleSystem, visible_systems};
@@ -101,7 +100,7 @@ pub fn visible_system(settings: &Settings) -> VisibleSystem<'_> {
         particles: Vec::new(),
         trim: SpriteTrim::new(settings, &INFO),
         scene_depth: &DEPTHS,
-        settings,
+        settings: ResolvedSettings::new(settings, SIZE, system.frame_count, true),
         material: &MATERIAL,
     }
 }

@@ -83,11 +83,11 @@ fn textures() -> Vec<Formula> {
         Formula {
             name: "sample_target",
             file: "lib/accumulated.wgsl",
-            wgsl: "UPSAMPLE = u32(x(0)); system.scale = select(2.0, 1.0, x(3) < 0.2); system.depth_limit = 8.0; \
+            wgsl: "UPSAMPLE = u32(x(0)); system.scale = select(2u, 1u, x(3) < 0.2); system.depth_limit = 8.0; \
                    system.smoke_depth_limit = 6.0; y4(0, sample_target(test_ramp, vec2f(x(1), x(2))));",
             reference: |x| {
                 let settings = changed(|s| s.accumulate.upsample = Upsample::ALL[x[0] as usize]);
-                let scale = if x[3] < 0.2 { 1.0 } else { 2.0 };
+                let scale = if x[3] < 0.2 { 1 } else { 2 };
                 let change = |visible: &mut VisibleSystem<'_>| {
                     (visible.system.scale, visible.system.depth_limit) = (scale, 8.0);
                     visible.system.smoke_depth_limit = 6.0;

@@ -127,11 +127,11 @@ fn places() -> Vec<Formula> {
         Formula {
             name: "ray_through_texel",
             file: "lib/tile_sprite.wgsl",
-            wgsl: "system.scale = x(2); system.target_origin = vec2f(x(3), x(4)); view.ray_offset = vec2f(0.1, -0.2); \
+            wgsl: "system.scale = u32(x(2)); system.target_origin = vec2f(x(3), x(4)); view.ray_offset = vec2f(0.1, -0.2); \
                    y2(0, ray_through_texel(vec2f(x(0), x(1))));",
             reference: |x| {
                 let view = visible_system(&DEFAULTS).view;
-                let ray = ndc_from_pixel((v2(x) + v2(&x[3..])) * x[2], view.size) * view.ray_scale;
+                let ray = ndc_from_pixel((v2(x) + v2(&x[3..])) * x[2].floor(), view.size) * view.ray_scale;
                 (ray + Vec2::new(0.1, -0.2)).to_array().to_vec()
             },
             cases: random(60, &[TEXEL, TEXEL, (1.0, 4.0), (-3.0, 3.0), (-3.0, 3.0)]),
@@ -144,12 +144,12 @@ fn places() -> Vec<Formula> {
         Formula {
             name: "texel_of_ray",
             file: "lib/tile_sprite.wgsl",
-            wgsl: "system.scale = x(2); system.target_origin = vec2f(x(3), x(4)); view.ray_offset = vec2f(0.1, -0.2); \
+            wgsl: "system.scale = u32(x(2)); system.target_origin = vec2f(x(3), x(4)); view.ray_offset = vec2f(0.1, -0.2); \
                    y2(0, texel_of_ray(vec2f(x(0), x(1))));",
             reference: |x| {
                 let view = visible_system(&DEFAULTS).view;
                 let ndc = (v2(x) - Vec2::new(0.1, -0.2)) / view.ray_scale;
-                (pixel_from_ndc(ndc, view.size) / x[2] - v2(&x[3..])).to_array().to_vec()
+                (pixel_from_ndc(ndc, view.size) / x[2].floor() - v2(&x[3..])).to_array().to_vec()
             },
             cases: random(60, &[SIDE, SIDE, (1.0, 4.0), (-3.0, 3.0), (-3.0, 3.0)]),
             tolerance: ARITHMETIC * 10.0,
@@ -158,17 +158,17 @@ fn places() -> Vec<Formula> {
         Formula {
             name: "texel_of_ndc",
             file: "lib/tile_sprite.wgsl",
-            wgsl: "system.scale = x(2); system.target_origin = vec2f(x(3), x(4)); \
+            wgsl: "system.scale = u32(x(2)); system.target_origin = vec2f(x(3), x(4)); \
                    y2(0, texel_of_ndc(vec2f(x(0), x(1))));",
             reference: |x| {
                 let size = visible_system(&DEFAULTS).view.size;
-                (pixel_from_ndc(v2(x), size) / x[2] - v2(&x[3..])).to_array().to_vec()
+                (pixel_from_ndc(v2(x), size) / x[2].floor() - v2(&x[3..])).to_array().to_vec()
             },
             cases: random(60, &[SIDE, SIDE, (1.0, 4.0), (-3.0, 3.0), (-3.0, 3.0)]),
             tolerance: ARITHMETIC,
             mutants: &[
-                ("/ system.scale - system.target_origin", "/ system.scale"),
-                ("view.size) / system.scale -", "view.size) -"),
+                ("/ f32(system.scale) - system.target_origin", "/ f32(system.scale)"),
+                ("view.size) / f32(system.scale) -", "view.size) -"),
             ],
         },
     ]

@@ -14,7 +14,7 @@ use haze::view_setup::{AttachmentRole, AttachmentSet, TexelGrid};
 impl VisibleSystem<'_> {
     /// Textures of the accumulation target, by role.
     pub fn accumulate(&self, reduced_depth: &Image<f32>) -> AccumulatedTextures {
-        let set = AttachmentSet::of(self.settings);
+        let set = AttachmentSet::of(&self.settings);
         AttachmentRole::ALL.map(|role| {
             let blended = |fragment, weight, texel| self.blended(role, fragment, weight, texel);
             set.contains(role).then(|| self.blend(reduced_depth, blended))
@@ -60,7 +60,7 @@ impl VisibleSystem<'_> {
         let origin = self.setup.rect.origin.as_vec2();
         let scene = |at| reduced_depth.load(at);
         target.for_bands(|first_row, band| {
-            let grid = TexelGrid { origin, scale: self.system.scale, size: self.setup.rect.size };
+            let grid = TexelGrid { origin, scale: self.setup.rect.scale as f32, size: self.setup.rect.size };
             self.for_fragments(&grid, first_row, band, scene, |_, sprite, fragment, texel: &mut Vec4| {
                 *texel = f(fragment, sprite.weight, *texel);
             });

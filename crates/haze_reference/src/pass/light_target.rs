@@ -26,7 +26,7 @@ impl AccumulatedTarget<'_> {
             return Vec4::ZERO;
         }
         let surface = self.surface(&self.attachments(accumulated, |texture| texture.load(at)));
-        let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale;
+        let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale as f32;
         let position = visible.view_position(pixel, -system.centre.z);
         let light = bounded_light(self.diffuse(&surface, amount, position) + visible.soft_scatter(amount));
         quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)

@@ -81,7 +81,7 @@ impl AccumulatedTarget<'_> {
     pub fn transfer_fragment(&self, debug_view: DebugView, pixel: Vec2) -> Option<Vec4> {
         let system = &self.visible.system;
         if debug_view == DebugView::ReducedDepth {
-            let depth = self.reduced_depth.load((pixel / system.scale - system.target_origin).as_ivec2());
+            let depth = self.reduced_depth.load((pixel / system.scale as f32 - system.target_origin).as_ivec2());
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
@@ -133,12 +133,12 @@ impl AccumulatedTarget<'_> {
         let settings = self.visible.settings;
         let accumulate = &settings.accumulate;
         let [accumulated, six_way, weights] = *attachments;
-        if AttachmentRole::SixWay.is_used(settings) {
+        if AttachmentRole::SixWay.is_used(&settings) {
             let scale = 1.0 / six_way.w.max(1.0e-6);
             let [positive, negative] = [accumulated, six_way].map(|light| light.xyz().max(Vec3::ZERO) * scale);
             return Surface { normal: normal_from_six_way(positive, negative), six_way: SixWay { positive, negative } };
         }
-        let weights = if AttachmentRole::Weights.is_used(settings) { weights.x } else { accumulated.w };
+        let weights = if AttachmentRole::Weights.is_used(&settings) { weights.x } else { accumulated.w };
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
         Surface { normal, six_way: SixWay::default() }
     }

@@ -1,24 +1,18 @@
 //! Visible sprites in drawing order. Sorted normals are blended over each other and depend on the order; the amount
 //! does not. (OTEE "Accumulating")
 
+use glam::Vec4;
+
 use super::view_geometry::ViewGeometry;
 use crate::frame::Particle;
 
-/// Scratch memory, kept between frames.
+/// Keys of the visible particles.
 #[derive(Debug, Default)]
-pub struct SortScratch {
+pub struct DrawingOrder {
     /// Sort key in the upper 32 bits, index in the lower 32 bits.
     keys: Vec<u64>,
     /// Output of a round of the sort.
     sorted: Vec<u64>,
-}
-
-impl SortScratch {
-    /// Releases memory that the last sort did not need.
-    pub fn shrink(&mut self) {
-        self.keys.shrink_to_fit();
-        self.sorted.shrink_to_fit();
-    }
 }
 
 /// Bits of the key that one round of the sort uses.
@@ -27,7 +21,43 @@ const DIGITS: usize = 3;
 /// Minimum number of keys for the radix sort; for fewer, its tables cost more than they save.
 const MIN_RADIX_KEYS: usize = 512;
 
-impl SortScratch {
+impl DrawingOrder {
+    /// Reads the keys of particles.
+    pub fn read(&mut self, view: &ViewGeometry, particles: &[Particle]) {
+        self.clear();
+        let depth_row = depth_row(view);
+        for (index, particle) in (0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()) {
+            self.push(depth_row, index, particle);
+        }
+    }
+
+    /// Removes all keys; keeps the memory.
+    pub(super) fn clear(&mut self) {
+        self.keys.clear();
+    }
+
+    /// Adds a visible particle. `depth_row`: see [`depth_row`].
+    pub(super) fn push(&mut self, depth_row: Vec4, index: u64, particle: &Particle) {
+        let z = depth_row.truncate().dot(particle.position) + depth_row.w;
+        self.keys.push((u64::from(ordered_bits(z)) << 32) | index);
+    }
+
+    /// Writes the visible particles to `out`: farthest first if `is_sorted`, otherwise in the given order. `particles`
+    /// are those whose keys were read. Equal depths keep their order, so that the image is reproducible.
+    pub fn write(&mut self, particles: &[Particle], is_sorted: bool, out: &mut Vec<Particle>) {
+        if is_sorted {
+            self.sort();
+        }
+        out.clear();
+        out.extend(self.keys.iter().map(|&key| particles[(key & 0xffff_ffff) as usize]));
+    }
+
+    /// Releases memory that the last sort did not need.
+    pub fn shrink(&mut self) {
+        self.keys.shrink_to_fit();
+        self.sorted.shrink_to_fit();
+    }
+
     /// Sorts by key, and by index for equal keys: a radix sort from the lowest digit up, each round stable.
     fn sort(&mut self) {
         let Self { keys, sorted } = self;
@@ -61,36 +91,9 @@ impl SortScratch {
     }
 }
 
-/// Writes the visible particles to `out`: farthest first if `is_sorted`, otherwise in the given order.
-pub fn write_in_drawing_order(
-    view: &ViewGeometry,
-    particles: &[Particle],
-    is_sorted: bool,
-    scratch: &mut SortScratch,
-    out: &mut Vec<Particle>,
-) {
-    if is_sorted {
-        back_to_front(view, particles, scratch, out);
-        return;
-    }
-    out.clear();
-    out.extend(particles.iter().filter(|particle| particle.is_visible()));
-}
-
-/// Writes the visible particles back to front. Equal depths keep their order, so that the image is reproducible.
-fn back_to_front(view: &ViewGeometry, particles: &[Particle], scratch: &mut SortScratch, sorted: &mut Vec<Particle>) {
-    // Third row of view_from_world: gives view z, which increases towards the viewer.
-    let row = view.view_from_world.row(2);
-    scratch.keys.clear();
-    scratch.keys.extend((0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()).map(
-        |(index, particle)| {
-            let z = row.truncate().dot(particle.position) + row.w;
-            (u64::from(ordered_bits(z)) << 32) | index
-        },
-    ));
-    scratch.sort();
-    sorted.clear();
-    sorted.extend(scratch.keys.iter().map(|&key| particles[(key & 0xffff_ffff) as usize]));
+/// Returns the third row of `view_from_world`, which gives view z; it increases towards the viewer.
+pub(super) fn depth_row(view: &ViewGeometry) -> Vec4 {
+    view.view_from_world.row(2)
 }
 
 /// Maps a number to bits that sort in the same order. (Herf, "Radix tricks", 2001)
@@ -119,8 +122,9 @@ mod tests {
             at(-3.0, 4.0),
             Particle { amount: 0.0, ..at(-1.0, 5.0) },
         ];
-        let mut sorted = Vec::new();
-        back_to_front(&view, &particles, &mut SortScratch::default(), &mut sorted);
+        let (mut order, mut sorted) = (DrawingOrder::default(), Vec::new());
+        order.read(&view, &particles);
+        order.write(&particles, true, &mut sorted);
         let frames: Vec<_> = sorted.iter().map(|particle| particle.frame).collect();
         assert_eq!(frames, [3.0, 0.0, 4.0, 2.0]);
     }
@@ -131,11 +135,11 @@ mod tests {
         for spread in [1.0, 1.0e-3, 0.0] {
             let depth = |index: u32| spread * f32::tan((index % 2000) as f32 * 2.4) - 3.0;
             let key = |index: u32| (u64::from(ordered_bits(depth(index))) << 32) | u64::from(index);
-            let mut scratch = SortScratch { keys: (0..4000).map(key).collect(), ..SortScratch::default() };
-            let mut expected = scratch.keys.clone();
+            let mut order = DrawingOrder { keys: (0..4000).map(key).collect(), ..DrawingOrder::default() };
+            let mut expected = order.keys.clone();
             expected.sort_unstable();
-            scratch.sort();
-            assert_eq!(scratch.keys, expected);
+            order.sort();
+            assert_eq!(order.keys, expected);
         }
     }
 }

@@ -1,0 +1,112 @@
+//! Particles of one system: measured on the CPU, uploaded, evaluated or sorted.
+
+use super::frame_context::FrameContext;
+use super::gpu::idle_counter::IdleCounter;
+use super::instances::{Instances, SortedBy};
+use super::memory_use::TiledMemory;
+use super::pass::Groups;
+use super::sprite_instances::Sprites;
+use super::system_passes::ParticlePass;
+use super::tiled::{EmittedParticles, SortedParticles};
+use crate::frame::{Bounds, Particle, Particles, System};
+use crate::settings::{RenderPath, Settings};
+use crate::view_setup::{ParticleMeasures, ViewGeometry};
+
+/// Particles of one system, and the buffers that hold them.
+#[derive(Debug, Default)]
+pub(crate) struct SystemParticles {
+    /// Measures of a slice, or of an emitter's sample.
+    pub measures: ParticleMeasures,
+    /// Sample of an emitter's particles, for measures and estimates.
+    sample: Vec<Particle>,
+    instances: Instances,
+    emitted: EmittedParticles,
+    depth_sorted: SortedParticles,
+    /// Counts frames in which no host's particles were sorted, after which the sort's buffers are released.
+    frames_unsorted: IdleCounter,
+}
+
+impl SystemParticles {
+    /// Measures a slice or an emitter's sample. Returns the box that contains every sprite.
+    pub fn measure(&mut self, view: &ViewGeometry, system: &System<'_>, settings: &Settings) -> Bounds {
+        if let Particles::Emitter(emission) = system.particles {
+            emission.sample(&mut self.sample);
+        }
+        let known = match system.particles {
+            Particles::Slice(particles) => particles,
+            Particles::Emitter(_) => &self.sample,
+            Particles::Buffer { .. } => &[],
+        };
+        self.measures.measure(view, known, settings);
+        match (system.bounds, system.particles) {
+            (Some(bounds), _) => bounds,
+            (None, Particles::Emitter(emission)) => emission.bounds(settings.sprite_extent()),
+            // `validate` refuses a buffer without bounds.
+            (None, Particles::Slice(_) | Particles::Buffer { .. }) => self.measures.bounds,
+        }
+    }
+
+    /// Returns the particles that the CPU knows, and the number of particles that each represents. `None` for a host's
+    /// buffer.
+    pub fn known<'a>(&'a self, particles: Particles<'a>) -> Option<(&'a [Particle], u32)> {
+        match particles {
+            Particles::Slice(particles) => Some((particles, 1)),
+            Particles::Buffer { .. } => None,
+            Particles::Emitter(emission) => Some((&self.sample, emission.step)),
+        }
+    }
+
+    /// Returns the drawn particles that the CPU knows, and the number of particles that each represents. `sampled`:
+    /// that number if the GPU evaluates the emitter.
+    pub fn drawn(&self, sampled: Option<u32>) -> (&[Particle], u32) {
+        sampled.map_or_else(|| (self.instances.particles(), 1), |each| (self.sample.as_slice(), each))
+    }
+
+    /// Uploads the particles, or prepares the pass that produces them. Returns `None` if there is nothing to draw.
+    pub fn upload(
+        &mut self,
+        context: &FrameContext<'_>,
+        particles: Particles<'_>,
+        settings: &Settings,
+        groups: &Groups,
+    ) -> Option<(Sprites, Option<ParticlePass>)> {
+        let FrameContext { gpu, shared, view, .. } = context;
+        let is_tiled = settings.path == RenderPath::Tiled;
+        if let (Particles::Emitter(emission), Some(tiled), true) = (particles, &shared.pipelines.tiled, is_tiled) {
+            self.instances = Instances::default();
+            let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.sprite.debug_loop)?;
+            return Some((sprites, Some(ParticlePass::Emit(emit))));
+        }
+        let sorted_by = shared.tiles().filter(|_| is_tiled);
+        let sorted_by = sorted_by.map(|cooperative| if cooperative { SortedBy::Gpu } else { SortedBy::Cpu });
+        let sprites = self.instances.write(gpu, view, &mut self.measures.order, particles, settings, sorted_by)?;
+        match &shared.pipelines.tiled {
+            Some(tiled) if !is_tiled && particles.need_sorting(settings) => {
+                let (sprites, sort) = self.depth_sorted.write(gpu, tiled, &sprites);
+                Some((sprites, Some(ParticlePass::DepthSort(sort, groups.clone()))))
+            }
+            _ => Some((sprites, None)),
+        }
+    }
+
+    /// Releases buffers that have not been needed for 120 frames. `is_untiled`: true if that is so for the path
+    /// `tiled`.
+    pub fn release_unused(&mut self, is_untiled: bool, pass: Option<&ParticlePass>) {
+        if is_untiled {
+            self.emitted = EmittedParticles::default();
+        }
+        if self.frames_unsorted.tick(!matches!(pass, Some(ParticlePass::DepthSort(..)))) {
+            self.depth_sorted = SortedParticles::default();
+        }
+    }
+
+    /// Returns the bytes of GPU memory of uploaded particles.
+    pub fn instance_bytes(&self) -> u64 {
+        self.instances.bytes()
+    }
+
+    /// Returns the GPU memory of particles that compute shaders produce.
+    pub fn tiled_memory(&self) -> TiledMemory {
+        TiledMemory { emitted: self.emitted.bytes(), ..TiledMemory::default() } + self.depth_sorted.memory()
+    }
+}

@@ -1,0 +1,42 @@
+//! One iteration over a system's particles per frame: bounding box, extent of the smoke, and drawing order.
+
+use super::drawing_order::{DrawingOrder, depth_row};
+use super::smoke_extent::{ExtentSums, SmokeExtent};
+use super::view_geometry::ViewGeometry;
+use crate::frame::{Bounds, Particle};
+use crate::settings::Settings;
+
+/// Measures of a system's visible particles. Keeps its memory between frames.
+#[derive(Debug)]
+pub struct ParticleMeasures {
+    /// Box that contains every sprite, world space.
+    pub bounds: Bounds,
+    pub order: DrawingOrder,
+    sums: ExtentSums,
+}
+
+impl Default for ParticleMeasures {
+    fn default() -> Self {
+        Self { bounds: Bounds::EMPTY, order: DrawingOrder::default(), sums: ExtentSums::default() }
+    }
+}
+
+impl ParticleMeasures {
+    /// Measures particles; replaces all earlier measures.
+    pub fn measure(&mut self, view: &ViewGeometry, particles: &[Particle], settings: &Settings) {
+        let (reach, size, depth_row) = (settings.sprite_extent(), settings.sprite.size, depth_row(view));
+        self.bounds = Bounds::EMPTY;
+        self.order.clear();
+        self.sums.clear();
+        for (index, particle) in (0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()) {
+            self.bounds.include(particle.position, particle.radius * reach);
+            self.order.push(depth_row, index, particle);
+            self.sums.include(view, particle, size);
+        }
+    }
+
+    /// Returns the extent of the smoke; `None` if no particle is in front of the viewer.
+    pub fn extent(&self) -> Option<SmokeExtent> {
+        self.sums.extent()
+    }
+}
