@@ -8,7 +8,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use glam::UVec2;
 use haze::emitter::Emitter;
 use haze::settings::BlendOrder;
-use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, wgpu};
+use haze::{Context, Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, wgpu};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_demo::headless::Headless;
@@ -37,7 +37,7 @@ fn evaluate(criterion: &mut Criterion) {
 /// CPU time of `prepare` in a steady frame. The difference between `sorted` and `weighted` is the sort.
 fn prepare(criterion: &mut Criterion) {
     let gpu = Headless::new().unwrap();
-    let (device, queue) = (&gpu.device, &gpu.queue);
+    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue, None));
     let size = UVec2::new(640, 360);
     let depth = gpu.target("depth", size, wgpu::TextureFormat::Depth32Float).create_view(&Default::default());
     let view = Shot::load("column", size).unwrap().preset.camera.view(size);
@@ -48,13 +48,13 @@ fn prepare(criterion: &mut Criterion) {
             settings.accumulate.order = order;
             // Small sprites keep the GPU work short, so that it does not delay the next `prepare`.
             settings.sprite.size = 0.02;
-            let mut renderer = Renderer::new(device, queue, &Descriptor::default()).unwrap();
+            let mut renderer = Renderer::new(&context, &Descriptor::default()).unwrap();
             let pictures = haze::preset::MaterialNames::default().load(Path::new("")).unwrap();
-            let material = renderer.create_material(device, queue, &pictures).unwrap();
+            let material = context.create_material(&pictures).unwrap();
             let (emitter, time) = emitter(count);
             let mut particles = Vec::new();
             emitter.evaluate(time, &mut particles);
-            let systems = [System::new(Particles::Slice(&particles), &settings, &material)];
+            let systems = [System::new(0, Particles::Slice(&particles), &settings, &material)];
             let lights = [Light::default()];
             let frame = Frame { lights: &lights, systems: &systems, ..Frame::new(view, SceneDepth::Buffer(&depth)) };
             group.throughput(Throughput::Elements(count.into()));
@@ -64,7 +64,7 @@ fn prepare(criterion: &mut Criterion) {
                     for _ in 0..rounds {
                         let mut encoder = device.create_command_encoder(&Default::default());
                         let started = std::time::Instant::now();
-                        renderer.prepare(device, queue, &mut encoder, &frame).unwrap();
+                        renderer.prepare(&mut encoder, &frame).unwrap();
                         taken += started.elapsed();
                         gpu.submit(encoder).unwrap();
                     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::camera::rh;
 use glam::{UVec2, Vec3, vec3};
 use haze::preset::MaterialNames;
-use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, View, wgpu};
+use haze::{Context, Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, View, wgpu};
 
 const SIZE: UVec2 = UVec2::new(640, 360);
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -39,8 +39,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // haze setup, done once.
     let descriptor = Descriptor { color_format: COLOUR, depth_format: Some(DEPTH), ..Descriptor::default() };
-    let mut smoke = Renderer::new(&device, &queue, &descriptor)?;
-    let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?)?;
+    let context = Context::new(&device, &queue, None);
+    let mut smoke = Renderer::new(&context, &descriptor)?;
+    let material = context.create_material(&MaterialNames::default().load(Path::new(""))?)?;
 
     // haze work of one frame.
     let mut particles = Vec::new();
@@ -48,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (settings, orange) = (Settings::default(), vec3(1.0, 0.7, 0.4));
     let frame = Frame {
         lights: &[Light { position: vec3(-3.0, 3.0, 3.0), colour: orange, intensity: 12.0, ..Light::default() }],
-        systems: &[System::new(Particles::Slice(&particles), &settings, &material)],
+        systems: &[System::new(0, Particles::Slice(&particles), &settings, &material)],
         time: 8.0,
         ..Frame::new(view, SceneDepth::Buffer(&depth_view))
     };
@@ -61,7 +62,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &depth_view,
         Some((wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 }, wall)),
     ));
-    smoke.prepare(&device, &queue, &mut encoder, &frame)?;
+    smoke.prepare(&mut encoder, &frame)?;
     smoke.render(&mut host_pass(&mut encoder, &colour_view, &depth_view, None));
 
     // The host submits, reads back and saves. Rows of 640 pixels are a multiple of 256 bytes, so they need no padding.

@@ -9,7 +9,8 @@ use glam::{UVec2, Vec3, vec3};
 use haze::emitter::Emitter;
 use haze::preset::MaterialNames;
 use haze::{
-    Descriptor, Frame, Light, Material, Particle, Particles, Renderer, SceneDepth, Settings, System, View, wgpu,
+    Context, Descriptor, Frame, Light, Material, Particle, Particles, Renderer, SceneDepth, Settings, System, View,
+    wgpu,
 };
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
@@ -105,8 +106,9 @@ impl Host {
 
         let descriptor =
             Descriptor { color_format: configuration.format, depth_format: Some(DEPTH), ..Descriptor::default() };
-        let smoke = Renderer::new(&device, &queue, &descriptor)?;
-        let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?)?;
+        let context = Context::new(&device, &queue, None);
+        let smoke = Renderer::new(&context, &descriptor)?;
+        let material = context.create_material(&MaterialNames::default().load(Path::new(""))?)?;
         let depth = depth_target(&device, &configuration);
         let (start, settings) = (Instant::now(), Settings::default());
         Ok(Self {
@@ -165,7 +167,7 @@ impl Host {
                 lamp(vec3(-3.0, 3.0, 3.0), vec3(1.0, 0.7, 0.4), 12.0),
                 lamp(vec3(2.0, 2.0, -2.5), vec3(0.4, 0.6, 1.0), 3.0),
             ],
-            systems: &[System::new(Particles::Slice(&self.particles), &self.settings, &self.material)],
+            systems: &[System::new(0, Particles::Slice(&self.particles), &self.settings, &self.material)],
             time,
             ..Frame::new(view, SceneDepth::Buffer(&self.depth))
         };
@@ -174,7 +176,7 @@ impl Host {
         let clear = wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 };
         // The host draws its opaque scene in this pass; this example has none.
         drop(begin(&mut encoder, &colour, &self.depth, Some(clear)));
-        self.smoke.prepare(&self.device, &self.queue, &mut encoder, &frame)?;
+        self.smoke.prepare(&mut encoder, &frame)?;
         self.smoke.render(&mut begin(&mut encoder, &colour, &self.depth, None));
         self.queue.submit([encoder.finish()]);
         self.window.pre_present_notify();

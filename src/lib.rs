@@ -26,12 +26,13 @@
 //! # fn host() -> (wgpu::Device, wgpu::Queue, wgpu::CommandEncoder, wgpu::TextureView, haze::View) { unimplemented!() }
 //! # fn pass_with_read_only_depth(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { unimplemented!() }
 //! # let (device, queue, mut encoder, scene_depth, view) = host();
-//! use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System};
+//! use haze::{Context, Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System};
 //!
 //! // Once.
-//! let mut smoke = Renderer::new(&device, &queue, &Descriptor::default())?;
+//! let context = Context::new(&device, &queue, None);
+//! let mut smoke = Renderer::new(&context, &Descriptor::default())?;
 //! let assets = haze::preset::MaterialNames::default().load("".as_ref())?;
-//! let material = smoke.create_material(&device, &queue, &assets)?;
+//! let material = context.create_material(&assets)?;
 //! let settings = Settings::default();
 //!
 //! // Every frame, after the opaque scene.
@@ -39,10 +40,10 @@
 //! haze::emitter::Emitter::default().evaluate(2.0, &mut particles);
 //! let frame = Frame {
 //!     lights: &[Light { position: glam::vec3(-3.0, 3.0, 2.0), intensity: 20.0, ..Light::default() }],
-//!     systems: &[System::new(Particles::Slice(&particles), &settings, &material)],
+//!     systems: &[System::new(0, Particles::Slice(&particles), &settings, &material)],
 //!     ..Frame::new(view, SceneDepth::Buffer(&scene_depth))
 //! };
-//! smoke.prepare(&device, &queue, &mut encoder, &frame)?;
+//! smoke.prepare(&mut encoder, &frame)?;
 //! smoke.render(&mut pass_with_read_only_depth(&mut encoder));
 //! # Ok::<(), haze::Error>(())
 //! ```

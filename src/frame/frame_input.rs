@@ -99,9 +99,9 @@ pub struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    /// System with a measured box. If a frame has more than one system, give each a `key`.
-    pub const fn new(particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
-        Self { key: 0, particles, bounds: None, depth: None, settings, material }
+    /// System with a measured box. `key`: any number that the frame's other systems do not have.
+    pub const fn new(key: u64, particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
+        Self { key, particles, bounds: None, depth: None, settings, material }
     }
 }
 

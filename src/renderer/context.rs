@@ -7,6 +7,7 @@ use super::auto::PathModel;
 use super::gpu::Gpu;
 use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
 use super::gpu::pipeline::PipelineStore;
+use super::gpu::timing::Timing;
 use super::layouts::Layouts;
 use super::material_upload::{SharedTextures, create_material};
 use super::pipelines::Pipelines;
@@ -14,23 +15,26 @@ use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
 use super::tiled::TiledPipelines;
 use crate::assets::material_assets::MaterialAssets;
-use crate::error::{Error, FieldError};
+use crate::error::Error;
 use crate::frame::Material;
 
-/// Resources that all renderers of one device share: shader modules, bind group layouts, samplers and pipelines. A
-/// clone refers to the same context. A context can be used from any thread.
+/// Resources that all renderers of one device share: device, queue, shader modules, bind group layouts, samplers and
+/// pipelines. A clone refers to the same context. A context can be used from any thread.
 ///
-/// A program with one view needs no explicit context: [`Renderer::new`](crate::Renderer::new) creates one. For split
-/// screens, stereo, shadow or reflection views, create one renderer per view and give each the same context: creating a
-/// renderer is then cheap, and no pipeline is compiled twice.
+/// Create one context per device, and one [`Renderer`](crate::Renderer) per view: split screens, stereo, shadow and
+/// reflection views share pipelines and materials, and creating a renderer is cheap.
 #[derive(Clone, Debug)]
 pub struct Context(Arc<Shared>);
 
 #[derive(Debug)]
 pub(crate) struct Shared {
-    /// Unique in the process. wgpu compares devices by an ID that two instances may both assign.
+    /// Unique in the process.
     pub number: u64,
+    /// Number of the first context that was created on the device; [`Context::with_shaders`] keeps it. wgpu compares
+    /// devices by an ID that two instances may both assign.
+    pub device_number: u64,
     pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
     pub layouts: Layouts,
     textures: SharedTextures,
     pub pipelines: Pipelines,
@@ -47,6 +51,10 @@ impl Shared {
         self.pipelines.tiled.as_ref().map(TiledPipelines::cooperative)
     }
 
+    pub fn gpu(&self) -> Gpu<'_> {
+        Gpu { device: &self.device, queue: &self.queue }
+    }
+
     pub fn path_model(&self) -> PathModel {
         *self.path_model.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -56,6 +64,9 @@ impl Context {
     /// Compiles the shader modules. Pipelines are compiled by the first `prepare` that needs them, or in advance by
     /// [`Renderer::warm_up`](crate::Renderer::warm_up).
     ///
+    /// `queue` must be the queue of `device`. Encoders, passes, textures and buffers that the host passes to haze must
+    /// belong to this device; wgpu has no means to check that, and reports or panics on its own.
+    ///
     /// `pipeline_cache`: a cache that the host created from saved data, on backends that support it (today Vulkan, with
     /// `Features::PIPELINE_CACHE`). Pipelines are looked up in it and added to it. The host reads its contents with
     /// `get_data` to save them.
@@ -63,25 +74,22 @@ impl Context {
         let layouts = Layouts::new(device);
         let store = PipelineStore::new(device, pipeline_cache);
         let Ok(pipelines) = Pipelines::new(&store, &layouts, |name| embedded_shader(device, name));
-        Self::assemble(device, queue, layouts, pipelines)
+        Self::assemble(queue, layouts, pipelines, None)
     }
 
-    /// Creates a context with custom shaders, for shader development. Compiles and validates all shader modules and one
-    /// pipeline of every pass before it creates the context. [`Renderer::warm_up`](crate::Renderer::warm_up) reports
-    /// errors that occur only with other settings. After an error, keep using the previous context and its renderers.
+    /// Creates a context of the same device with custom shaders, for shader development. Compiles and validates all
+    /// shader modules and one pipeline of every pass before it creates the context.
+    /// [`Renderer::warm_up`](crate::Renderer::warm_up) reports errors that occur only with other settings. After an
+    /// error, keep using this context and its renderers. Materials belong to one context and have to be created again.
     ///
     /// # Errors
     /// [`Error::Shader`]: the first error, with its line and column in the file that contains it.
-    pub fn with_shaders(
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        pipeline_cache: Option<&wgpu::PipelineCache>,
-        sources: &Sources,
-    ) -> Result<Self, Error> {
+    pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
+        let Shared { device, queue, device_number, pipelines, .. } = self.shared();
         let layouts = Layouts::new(device);
-        let store = PipelineStore::new(device, pipeline_cache);
+        let store = PipelineStore::new(device, pipelines.store.cache.as_ref());
         let pipelines = Pipelines::new(&store, &layouts, |name| checked_shader(device, name, sources))?;
-        let context = Self::assemble(device, queue, layouts, pipelines);
+        let context = Self::assemble(queue, layouts, pipelines, Some(*device_number));
         let shared = context.shared();
         plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()
@@ -89,35 +97,50 @@ impl Context {
         Ok(context)
     }
 
-    fn assemble(device: &wgpu::Device, queue: &wgpu::Queue, layouts: Layouts, pipelines: Pipelines) -> Self {
+    /// `device_number`: that of an earlier context of the device.
+    fn assemble(queue: &wgpu::Queue, layouts: Layouts, pipelines: Pipelines, device_number: Option<u64>) -> Self {
         static CONTEXTS: AtomicU64 = AtomicU64::new(0);
+        let number = CONTEXTS.fetch_add(1, Ordering::Relaxed);
+        let device = pipelines.store.device.clone();
         Self(Arc::new(Shared {
-            number: CONTEXTS.fetch_add(1, Ordering::Relaxed),
-            device: device.clone(),
-            textures: SharedTextures::new(&Gpu { device, queue }),
-            read_only_depth: read_only_depth_is_supported(device),
-            six_way: six_way_is_supported(device),
+            number,
+            device_number: device_number.unwrap_or(number),
+            textures: SharedTextures::new(&Gpu { device: &device, queue }),
+            read_only_depth: read_only_depth_is_supported(&device),
+            six_way: six_way_is_supported(&device),
             path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
+            device,
+            queue: queue.clone(),
             layouts,
             pipelines,
         }))
+    }
+
+    /// Returns the device.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.0.device
+    }
+
+    /// Returns the queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.0.queue
     }
 
     /// Uploads ramps and sprite images. Create each material once and keep it; all renderers of this context can use
     /// it.
     ///
     /// # Errors
-    /// [`Error::Field`] names an image that is too large for the device, six-way maps whose size differs from the
-    /// sprite's, or `device` if it is not this context's device.
-    pub fn create_material(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        assets: &MaterialAssets,
-    ) -> Result<Material, Error> {
-        self.validate_device(device)?;
+    /// [`Error::Field`] names an image that is too large for the device, or six-way maps whose size differs from the
+    /// sprite's.
+    pub fn create_material(&self, assets: &MaterialAssets) -> Result<Material, Error> {
         let Shared { layouts, textures, number, .. } = &*self.0;
-        Ok(create_material(&Gpu { device, queue }, layouts, textures, *number, assets)?)
+        Ok(create_material(&self.0.gpu(), layouts, textures, *number, assets)?)
+    }
+
+    /// Creates timestamp queries, which measure the passes of this device's renderers. `None` if the device lacks
+    /// `Features::TIMESTAMP_QUERY`.
+    pub fn create_timing(&self) -> Option<Timing> {
+        Timing::new(&self.0.gpu(), self.0.device_number)
     }
 
     /// Returns the number of pipelines compiled so far. It stays constant once everything that a program draws has been
@@ -159,13 +182,5 @@ impl Context {
 
     pub(crate) fn shared(&self) -> &Shared {
         &self.0
-    }
-
-    /// Refuses any device other than this context's.
-    pub(crate) fn validate_device(&self, device: &wgpu::Device) -> Result<(), FieldError> {
-        if self.0.device == *device {
-            return Ok(());
-        }
-        Err(FieldError::new("device", "a device other than the context's", "the device that created the context"))
     }
 }

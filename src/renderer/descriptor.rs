@@ -1,15 +1,11 @@
 //! Description of a renderer and of the host's render pass.
 
-use super::context::Context;
 use super::gpu::host_pass::{HostPass, MAX_ATTACHMENTS};
 use crate::error::FieldError;
 
-/// Describes a renderer: the host's render pass, and the context that it shares with other renderers. All fields are
-/// fixed for the lifetime of a [`Renderer`](crate::Renderer).
+/// Describes the host's render pass. All fields are fixed for the lifetime of a [`Renderer`](crate::Renderer).
 #[derive(Clone, Copy, Debug)]
 pub struct Descriptor<'a> {
-    /// Context shared with the renderers of other views; `None` creates a context for this renderer alone.
-    pub context: Option<&'a Context>,
     /// Format of the first colour attachment. It must be blendable. Use `Rgba16Float` for HDR.
     pub color_format: wgpu::TextureFormat,
     /// Formats of the pass's further colour attachments (velocity, object IDs …), in order, at most 7; `None` for an
@@ -39,7 +35,6 @@ pub struct Descriptor<'a> {
 impl Default for Descriptor<'_> {
     fn default() -> Self {
         Self {
-            context: None,
             color_format: wgpu::TextureFormat::Rgba16Float,
             further_color_formats: &[],
             depth_format: Some(wgpu::TextureFormat::Depth32Float),

@@ -26,9 +26,8 @@ mod tiled;
 mod validate_frame;
 mod warm_up;
 
-use crate::assets::material_assets::MaterialAssets;
 use crate::error::{Error, FieldError};
-use crate::frame::{Frame, Material};
+use crate::frame::Frame;
 use crate::settings::DebugView;
 use crate::view_setup::{ResolvedSettings, ViewGeometry};
 
@@ -46,7 +45,6 @@ pub use warm_up::WarmUp;
 
 use frame_bindings::FrameBindings;
 use frame_context::FrameContext;
-use gpu::Gpu;
 use gpu::host_pass::HostPass;
 use gpu::record::set_viewport_and_scissor;
 use gpu::submission::SubmissionTracker;
@@ -86,17 +84,14 @@ struct VisibleSystem {
 }
 
 impl Renderer {
-    /// Creates a renderer for a view. Without a context in the descriptor, it creates one of its own and compiles the
-    /// shaders; with a context, creation is cheap. Pipelines are compiled by the first [`prepare`](Self::prepare) that
-    /// needs them, or by [`warm_up`](Self::warm_up).
+    /// Creates a renderer for a view. Pipelines are compiled by the first [`prepare`](Self::prepare) that needs them, or
+    /// by [`warm_up`](Self::warm_up).
     ///
     /// # Errors
-    /// [`Error::Field`] names the property that the device does not support: a format, the sample count, or a context
-    /// that was created on another device.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, descriptor: &Descriptor<'_>) -> Result<Self, Error> {
+    /// [`Error::Field`] names the property that the device does not support: a format, or the sample count.
+    pub fn new(context: &Context, descriptor: &Descriptor<'_>) -> Result<Self, Error> {
+        let device = &context.shared().device;
         let host = descriptor.host_pass(device)?;
-        let context = descriptor.context.cloned().unwrap_or_else(|| Context::new(device, queue, None));
-        context.validate_device(device)?;
         Ok(Self {
             host,
             exact_filtering: descriptor.exact_filtering,
@@ -107,26 +102,13 @@ impl Renderer {
             states: Vec::new(),
             order: Vec::new(),
             view: None,
-            context,
+            context: context.clone(),
         })
     }
 
     /// Returns the context, for renderers of further views.
     pub fn context(&self) -> &Context {
         &self.context
-    }
-
-    /// Uploads ramps and sprite images: see [`Context::create_material`].
-    ///
-    /// # Errors
-    /// Those of [`Context::create_material`].
-    pub fn create_material(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        assets: &MaterialAssets,
-    ) -> Result<Material, Error> {
-        self.context.create_material(device, queue, assets)
     }
 
     /// Compiles every pipeline that the described frames need, so that the first such frame compiles none. To compile
@@ -165,19 +147,12 @@ impl Renderer {
     /// [`Error::Field`] names the view, light, setting or system that is not valid. It names `prepare` if the commands
     /// of the previous call were neither submitted nor dropped. After an error, [`render`](Self::render) draws nothing
     /// until a `prepare` succeeds.
-    pub fn prepare(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        encoder: &mut wgpu::CommandEncoder,
-        frame: &Frame<'_>,
-    ) -> Result<(), Error> {
+    pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &Frame<'_>) -> Result<(), Error> {
         self.order.clear();
-        self.context.validate_device(device)?;
         self.validate_submitted()?;
-        let gpu = Gpu { device, queue };
         let context = self.context.clone();
         let shared = context.shared();
+        let gpu = shared.gpu();
         let view = ViewGeometry::new(&frame.view)?;
         validate(shared, &self.host, frame)?;
         let inputs = self.pipeline_inputs(&view, frame.scene_depth.kind(), frame.debug_views);
@@ -291,8 +266,8 @@ impl Renderer {
     /// # Errors
     /// [`Error::Field`] if the `Timing` was created on another device.
     pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
-        if timing.is_some_and(|timing| !timing.is_of(&self.context.shared().device)) {
-            let expected = "a Timing created on the device of the renderer's context";
+        if timing.is_some_and(|timing| timing.device_number() != self.context.shared().device_number) {
+            let expected = "a Timing of the renderer's context, or of one with other shaders";
             return Err(FieldError::new("timing", "a Timing of another device", expected).into());
         }
         self.timing = timing.cloned();

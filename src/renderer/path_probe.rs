@@ -43,15 +43,13 @@ impl Context {
     /// Those of [`Renderer::prepare`] and of `submit`.
     pub fn measure_paths(
         &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
         mut submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
     ) -> Result<PathModel, Error> {
         if self.shared().tiles().is_none() {
             return Ok(self.path_model());
         }
-        let class = PathModel::of_class(device.adapter_info().device_type);
-        let mut scene = ProbeScene::new(self, device, queue)?;
+        let class = PathModel::of_class(self.device().adapter_info().device_type);
+        let mut scene = ProbeScene::new(self)?;
         let seconds = scene.seconds(&mut submit)?;
         let workload = scene.workload();
         let times = |costs: PathCosts, seconds: f64| {
@@ -69,9 +67,7 @@ impl Context {
 const PATHS: [RenderPath; 2] = [RenderPath::Raster, RenderPath::Tiled];
 
 /// Renderer and test scene of the measurement.
-struct ProbeScene<'a> {
-    device: &'a wgpu::Device,
-    queue: &'a wgpu::Queue,
+struct ProbeScene {
     renderer: Renderer,
     material: Material,
     depth: wgpu::TextureView,
@@ -79,12 +75,11 @@ struct ProbeScene<'a> {
     particles: Vec<Particle>,
 }
 
-impl<'a> ProbeScene<'a> {
-    fn new(context: &Context, device: &'a wgpu::Device, queue: &'a wgpu::Queue) -> Result<Self, Error> {
-        let descriptor = Descriptor { context: Some(context), ..Descriptor::default() };
-        let renderer = Renderer::new(device, queue, &descriptor)?;
-        let material = renderer.create_material(device, queue, &MaterialNames::default().load(FilePath::new(""))?)?;
-        let depth = device.create_texture(&wgpu::TextureDescriptor {
+impl ProbeScene {
+    fn new(context: &Context) -> Result<Self, Error> {
+        let renderer = Renderer::new(context, &Descriptor::default())?;
+        let material = context.create_material(&MaterialNames::default().load(FilePath::new(""))?)?;
+        let depth = context.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("haze probe depth"),
             size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
             mip_level_count: 1,
@@ -102,8 +97,6 @@ impl<'a> ProbeScene<'a> {
             ..Particle::default()
         };
         Ok(Self {
-            device,
-            queue,
             renderer,
             material,
             depth: depth.create_view(&wgpu::TextureViewDescriptor::default()),
@@ -180,11 +173,12 @@ impl<'a> ProbeScene<'a> {
         settings.accumulate.scale = 1;
         // Without early stops of the traversal, the time does not depend on the sprites' opacity.
         settings.accumulate.layers = Layers::All;
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder =
+            self.renderer.context().device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         drop(begin_pass(&mut encoder, "haze probe", &[], Some(written_depth(&self.depth)), None));
-        let systems = [System::new(Particles::Slice(&self.particles), &settings, &self.material)];
+        let systems = [System::new(0, Particles::Slice(&self.particles), &settings, &self.material)];
         let frame = Frame { systems: &systems, ..Frame::new(self.view, SceneDepth::Buffer(&self.depth)) };
-        self.renderer.prepare(self.device, self.queue, &mut encoder, &frame)?;
+        self.renderer.prepare(&mut encoder, &frame)?;
         let started = Instant::now();
         submit(encoder)?;
         Ok(started.elapsed())

@@ -149,7 +149,7 @@ fn shaded(gpu: &Headless, scene: &TestScene) -> (u64, Overdraw) {
         count: 1,
     });
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu, &mut encoder, scene, Particles::Slice(&scene.particles)).unwrap();
+    host.prepare(&mut encoder, scene, Particles::Slice(&scene.particles)).unwrap();
     {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("host"),

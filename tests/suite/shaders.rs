@@ -41,7 +41,7 @@ impl ShaderFolder {
 
     fn context(&self) -> Result<Context, Error> {
         let gpu = gpu();
-        Context::with_shaders(&gpu.device, &gpu.queue, None, &Sources::from_folder(self.0.path())?)
+        Context::new(&gpu.device, &gpu.queue, None).with_shaders(&Sources::from_folder(self.0.path())?)
     }
 
     fn picture(&self) -> Image<Vec4> {

@@ -95,7 +95,6 @@ impl Host {
         let kind = &scene.host;
         let additional_attachments: Vec<_> = kind.additional_attachments.iter().copied().map(Some).collect();
         let descriptor = Descriptor {
-            context,
             color_format: kind.color_format,
             further_color_formats: &additional_attachments,
             depth_format: scene.attach_depth.then_some(kind.depth_format),
@@ -103,8 +102,9 @@ impl Host {
             gamma_target: kind.gamma_target,
             exact_filtering: kind.exact_filtering,
         };
-        let renderer = Renderer::new(&gpu.device, &gpu.queue, &descriptor)?;
-        let material = renderer.create_material(&gpu.device, &gpu.queue, &scene.material)?;
+        let context = context.cloned().unwrap_or_else(|| Context::new(&gpu.device, &gpu.queue, None));
+        let renderer = Renderer::new(&context, &descriptor)?;
+        let material = context.create_material(&scene.material)?;
         let size = kind.target_size.unwrap_or(scene.view.size);
         let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let colour = gpu.target("host colour", size, kind.color_format);
@@ -150,7 +150,7 @@ impl Host {
 
     pub fn draw_particles(&mut self, gpu: &Headless, scene: &TestScene, particles: Particles<'_>) -> Result<(), Error> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.prepare(gpu, &mut encoder, scene, particles)?;
+        self.prepare(&mut encoder, scene, particles)?;
         self.render(&mut encoder, scene);
         if let Some(timing) = &self.timing {
             timing.resolve(&mut encoder);
@@ -167,12 +167,11 @@ impl Host {
     /// Records `prepare`, the first half of a frame.
     pub fn prepare(
         &mut self,
-        gpu: &Headless,
         encoder: &mut wgpu::CommandEncoder,
         scene: &TestScene,
         particles: Particles<'_>,
     ) -> Result<(), Error> {
-        let system = System { bounds: scene.bounds, ..System::new(particles, &scene.settings, &self.material) };
+        let system = System { bounds: scene.bounds, ..System::new(0, particles, &scene.settings, &self.material) };
         let frame = Frame {
             lights: &scene.lights,
             systems: &[system],
@@ -180,7 +179,7 @@ impl Host {
             debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
             ..Frame::new(scene.view, scene_depth(scene.depth, &self.depth, &self.linear))
         };
-        self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
+        self.renderer.prepare(encoder, &frame)
     }
 
     /// Records the host's pass, the second half of a frame.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use haze::settings::{DiffuseMode, LightingResolution, RenderPath};
-use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
+use haze::{Context, Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 use haze_demo::headless::Headless;
 
 use crate::gpu::{can_test, gpu, has_independent_devices};
@@ -29,9 +29,9 @@ fn timed_gpu() -> Option<&'static Headless> {
 
 /// Host that measures its renderer and its own pass.
 fn timed_host(gpu: &Headless, scene: &TestScene) -> (Host, Timing) {
-    let timing = Timing::new(&gpu.device, &gpu.queue).unwrap();
-    assert_eq!(timing.latest(), None);
     let mut host = Host::new(gpu, scene).unwrap();
+    let timing = host.renderer.context().create_timing().unwrap();
+    assert_eq!(timing.latest(), None);
     host.renderer.set_timing(Some(&timing)).unwrap();
     host.timing = Some(timing.clone());
     (host, timing)
@@ -147,10 +147,7 @@ fn pass_times_add_up_over_systems() {
     let mut measure = |settings: &[&Settings]| {
         let systems: Vec<_> = (0..)
             .zip(settings)
-            .map(|(key, settings)| System {
-                key,
-                ..System::new(Particles::Slice(&scene.particles), settings, &host.material)
-            })
+            .map(|(key, settings)| System::new(key, Particles::Slice(&scene.particles), settings, &host.material))
             .collect();
         let frame = Frame {
             lights: &scene.lights,
@@ -159,7 +156,7 @@ fn pass_times_add_up_over_systems() {
         };
         let seen = timing.latest().map(|times| times.frame);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        host.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, &frame).unwrap();
+        host.renderer.prepare(&mut encoder, &frame).unwrap();
         timing.resolve(&mut encoder);
         gpu.submit(encoder).unwrap();
         let times = result_after(&timing, seen);
@@ -182,7 +179,7 @@ fn pass_times_add_up_over_systems() {
 fn device_without_timestamps_has_no_timing() {
     let plain = gpu();
     assert!(!plain.device.features().contains(wgpu::Features::TIMESTAMP_QUERY));
-    assert!(Timing::new(&plain.device, &plain.queue).is_none());
+    assert!(Context::new(&plain.device, &plain.queue, None).create_timing().is_none());
 }
 
 #[test]
@@ -193,11 +190,15 @@ fn timing_of_another_device_is_an_error() {
     }
     let descriptor = wgpu::DeviceDescriptor { required_features: FEATURES, ..Default::default() };
     let (device, queue) = pollster::block_on(gpu.adapter.request_device(&descriptor)).unwrap();
-    let of_another = Timing::new(&device, &queue).unwrap();
     let (mut host, timing) = timed_host(gpu, &scene());
-    let refused = host.renderer.set_timing(Some(&of_another));
-    let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
-    assert_eq!(error.field, "timing");
+    // wgpu may give devices of two instances the same ID.
+    let other_instance = Headless::with(wgpu::Limits::default(), FEATURES).unwrap();
+    for (device, queue) in [(&device, &queue), (&other_instance.device, &other_instance.queue)] {
+        let of_another = Context::new(device, queue, None).create_timing().unwrap();
+        let refused = host.renderer.set_timing(Some(&of_another));
+        let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
+        assert_eq!(error.field, "timing");
+    }
     // The previous timing stays in use.
     assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene())), DEFERRED_PASSES);
 }

@@ -14,7 +14,6 @@ use haze::{Context, PathModel, Timing, read_only_depth_is_supported};
 #[derive(Clone, Debug)]
 pub struct OffscreenContext {
     pub(super) device: wgpu::Device,
-    pub(super) queue: wgpu::Queue,
     pub(super) haze: Context,
     pub(super) scene: Arc<SceneRenderer>,
     /// Materials that existing renderers have uploaded. Shared images are uploaded once.
@@ -35,7 +34,6 @@ impl OffscreenContext {
         Self {
             copies_depth: flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES),
             device: device.clone(),
-            queue: queue.clone(),
             haze: Context::new(device, queue, None),
             scene: Arc::new(SceneRenderer::new(device, queue, draws_linear)),
             materials: Arc::default(),
@@ -50,7 +48,7 @@ impl OffscreenContext {
 
     /// Creates timestamp queries; `None` if the device does not support them.
     pub fn timing(&self) -> Option<Timing> {
-        Timing::new(&self.device, &self.queue)
+        self.haze.create_timing()
     }
 
     /// Same as [`Context::measure_paths`].
@@ -61,7 +59,7 @@ impl OffscreenContext {
         &self,
         submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
     ) -> Result<PathModel, Error> {
-        self.haze.measure_paths(&self.device, &self.queue, submit)
+        self.haze.measure_paths(submit)
     }
 
     /// Returns a copy with another haze [`Context`] of the same device, for example one with other shaders.
@@ -76,7 +74,7 @@ impl OffscreenContext {
     /// # Errors
     /// As [`Context::with_shaders`].
     pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
-        Ok(self.with_context(Context::with_shaders(&self.device, &self.queue, None, sources)?))
+        Ok(self.with_context(self.haze.with_shaders(sources)?))
     }
 
     /// Uploads images, or returns those that another renderer of the context has uploaded.
@@ -87,7 +85,7 @@ impl OffscreenContext {
         {
             return Ok(uploaded);
         }
-        let material = self.haze.create_material(&self.device, &self.queue, assets)?;
+        let material = self.haze.create_material(assets)?;
         let uploaded = Arc::new(UploadedMaterial { assets: assets.clone(), material });
         materials.push(Arc::downgrade(&uploaded));
         Ok(uploaded)

@@ -70,13 +70,12 @@ impl OffscreenRenderer {
     /// [`Error::Field`] if the device cannot render to half floats.
     pub fn new(context: &OffscreenContext, exact_filtering: bool) -> Result<Self, Error> {
         let descriptor = Descriptor {
-            context: Some(&context.haze),
             color_format: COLOUR_FORMAT,
             depth_format: context.attaches_depth.then_some(DEPTH_FORMAT),
             exact_filtering,
             ..Descriptor::default()
         };
-        let renderer = Renderer::new(&context.device, &context.queue, &descriptor)?;
+        let renderer = Renderer::new(&context.haze, &descriptor)?;
         Ok(Self { context: context.clone(), renderer, materials: Vec::new(), sized: None })
     }
 
@@ -121,7 +120,7 @@ impl OffscreenRenderer {
     ) -> Result<(), Error> {
         shot.preset.validate()?;
         self.upload(&shot.materials)?;
-        let OffscreenContext { device, queue, scene, attaches_depth, .. } = &self.context;
+        let OffscreenContext { device, scene, attaches_depth, .. } = &self.context;
         let size = shot.size.max(UVec2::ONE);
         let sized = match &mut self.sized {
             Some(sized) if sized.size() == size => sized,
@@ -146,7 +145,7 @@ impl OffscreenRenderer {
                     ParticleSource::Particles(particles) => Particles::Slice(particles),
                     ParticleSource::EmitterSnapshot(emission) => Particles::Emitter(emission),
                 };
-                System { key, ..System::new(particles, settings, &uploaded.material) }
+                System::new(key, particles, settings, &uploaded.material)
             })
             .collect();
         let depth = &sized.targets.depth;
@@ -158,7 +157,7 @@ impl OffscreenRenderer {
             debug_views: stages,
             ..Frame::new(view, sized.scene_depth())
         };
-        self.renderer.prepare(device, queue, encoder, &frame)?;
+        self.renderer.prepare(encoder, &frame)?;
         for &stage in stages {
             let picture = sized.pictures[stage as usize]
                 .get_or_insert_with(|| texture(device, "demo picture", size, COLOUR_FORMAT));

@@ -3,6 +3,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::Gpu;
 use super::frame_times::{FrameTimes, Results, Span};
 use crate::renderer::auto::PathChoice;
 
@@ -19,7 +20,8 @@ const READ_BACKS: usize = 4;
 /// Measures the GPU time of every pass. A clone refers to the same measurement; one `Timing` serves all renderers of a
 /// frame.
 ///
-/// Pass it to the renderers with [`Renderer::set_timing`](crate::Renderer::set_timing), and call
+/// [`Context::create_timing`](crate::Context::create_timing) creates it. Pass it to the renderers with
+/// [`Renderer::set_timing`](crate::Renderer::set_timing), and call
 /// [`resolve`](Self::resolve) at the end of the frame's last encoder. Results arrive some frames later, without
 /// blocking: the first submission after the GPU has finished delivers them.
 ///
@@ -37,7 +39,7 @@ pub struct Timing(Arc<Shared>);
 
 #[derive(Debug)]
 struct Shared {
-    device: wgpu::Device,
+    device_number: u64,
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     read_backs: [Arc<ReadBack>; READ_BACKS],
@@ -68,8 +70,10 @@ struct Recording {
 }
 
 impl Timing {
-    /// Creates the queries and read-back buffers. `None` if the device lacks `Features::TIMESTAMP_QUERY`.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Option<Self> {
+    /// Creates the queries and read-back buffers; `None` if the device lacks `Features::TIMESTAMP_QUERY`.
+    /// `device_number`: number of the device in the process.
+    pub(crate) fn new(gpu: &Gpu<'_>, device_number: u64) -> Option<Self> {
+        let Gpu { device, queue } = gpu;
         let features = device.features();
         let period = queue.get_timestamp_period();
         if !features.contains(wgpu::Features::TIMESTAMP_QUERY) || period <= 0.0 {
@@ -88,7 +92,7 @@ impl Timing {
             Arc::new(ReadBack { buffer: buffer(usage), recorded: Mutex::default() })
         };
         Some(Self(Arc::new(Shared {
-            device: device.clone(),
+            device_number,
             queries: device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("haze timing"),
                 ty: wgpu::QueryType::Timestamp,
@@ -140,8 +144,9 @@ impl Timing {
         lock(&self.0.results).latest.clone()
     }
 
-    pub(crate) fn is_of(&self, device: &wgpu::Device) -> bool {
-        self.0.device == *device
+    /// Returns the number of the device in the process.
+    pub(crate) fn device_number(&self) -> u64 {
+        self.0.device_number
     }
 
     /// Registers that a renderer is prepared, and returns the current frame. `last`: the frame in which it was prepared

@@ -4,7 +4,7 @@ use glam::{UVec2, Vec4};
 use haze::formula::colour::gamma_target_colour;
 use haze::image::Image;
 use haze::settings::*;
-use haze::{Context, Descriptor, Error, Frame, Renderer, SceneDepth, wgpu};
+use haze::{Context, Descriptor, Error, Renderer, wgpu};
 
 use super::{SIZE, device_with_optional_features, encoder, rejected_field, slice};
 use crate::gpu::{gpu, has_independent_devices};
@@ -19,7 +19,7 @@ fn one_prepare_serves_every_debug_view() {
         (all.settings.path, all.debug_views) = (path, Some(DebugView::ALL));
         let mut host = Host::new(gpu(), &all).unwrap();
         let mut encoder = encoder(gpu());
-        host.prepare(gpu(), &mut encoder, &all, slice(&all)).unwrap();
+        host.prepare(&mut encoder, &all, slice(&all)).unwrap();
         gpu().submit(encoder).unwrap();
         for &scene in DebugView::ALL {
             let separate = TestScene { debug_view: scene, debug_views: None, ..TestScene::new(SIZE) };
@@ -142,7 +142,8 @@ fn gamma_target_receives_srgb_encoded_colour() {
 #[test]
 fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
     use wgpu::TextureFormat as Format;
-    let new = |descriptor: &Descriptor<'_>| Renderer::new(&gpu().device, &gpu().queue, descriptor);
+    let context = Context::new(&gpu().device, &gpu().queue, None);
+    let new = |descriptor: &Descriptor<'_>| Renderer::new(&context, descriptor);
     let refused = |descriptor: Descriptor<'_>| rejected_field(new(&descriptor));
     let plain = Descriptor::default();
     new(&plain).unwrap();
@@ -179,15 +180,8 @@ fn resources_of_another_device_are_rejected() {
     }
     let (device, queue) = pollster::block_on(here.adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap();
     let context = Context::new(&device, &queue, None);
-    let of_another = Descriptor { context: Some(&context), ..Descriptor::default() };
-    assert_eq!(rejected_field(Renderer::new(&here.device, &here.queue, &of_another)), "device");
     let mut host = Host::new(here, &scene).unwrap();
-    assert_eq!(rejected_field(host.renderer.create_material(&device, &queue, &scene.material)), "device");
-    let frame = Frame::new(scene.view, SceneDepth::Linear(&host.linear));
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    assert_eq!(rejected_field(host.renderer.prepare(&device, &queue, &mut encoder, &frame)), "device");
-
-    let material = context.create_material(&device, &queue, &scene.material).unwrap();
+    let material = context.create_material(&scene.material).unwrap();
     let own = std::mem::replace(&mut host.material, material);
     assert_eq!(rejected_field(host.draw(here, &scene)), "systems[0].material");
     // The same for another wgpu instance; wgpu itself may confuse devices of different instances.

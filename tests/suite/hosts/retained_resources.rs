@@ -74,14 +74,13 @@ impl SystemsFixture {
     pub fn frame(&mut self, gpu: &Headless, systems: &[(u64, &[Particle], Settings)]) -> Result<(), Error> {
         let systems: Vec<_> = systems
             .iter()
-            .map(|(key, particles, settings)| System {
-                key: *key,
-                ..System::new(Particles::Slice(particles), settings, &self.host.material)
+            .map(|(key, particles, settings)| {
+                System::new(*key, Particles::Slice(particles), settings, &self.host.material)
             })
             .collect();
         let frame = Frame { systems: &systems, ..Frame::new(self.scene.view, SceneDepth::Linear(&self.host.linear)) };
         let mut encoder = encoder(gpu);
-        self.host.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, &frame)?;
+        self.host.renderer.prepare(&mut encoder, &frame)?;
         gpu.submit(encoder)
     }
 

@@ -23,8 +23,8 @@ fn two_views_in_one_submission_match_two_separate_frames() {
     other.material = one.material.clone();
     for _ in 0..2 {
         let mut encoder = encoder(gpu());
-        one.prepare(gpu(), &mut encoder, &left, slice(&left)).unwrap();
-        other.prepare(gpu(), &mut encoder, &right, slice(&right)).unwrap();
+        one.prepare(&mut encoder, &left, slice(&left)).unwrap();
+        other.prepare(&mut encoder, &right, slice(&right)).unwrap();
         one.render(&mut encoder, &left);
         other.render(&mut encoder, &right);
         gpu().submit(encoder).unwrap();
@@ -44,17 +44,17 @@ fn second_prepare_before_the_first_is_submitted_is_rejected() {
     let mut host = Host::new(gpu(), &scene).unwrap();
     let refused = |host: &mut Host| {
         let mut encoder = encoder(gpu());
-        rejected_field(host.prepare(gpu(), &mut encoder, &scene, slice(&scene)))
+        rejected_field(host.prepare(&mut encoder, &scene, slice(&scene)))
     };
     // Rejected both in the same encoder and in another one.
     let mut first = encoder(gpu());
-    host.prepare(gpu(), &mut first, &scene, slice(&scene)).unwrap();
-    assert_eq!(rejected_field(host.prepare(gpu(), &mut first, &scene, slice(&scene))), "prepare");
+    host.prepare(&mut first, &scene, slice(&scene)).unwrap();
+    assert_eq!(rejected_field(host.prepare(&mut first, &scene, slice(&scene))), "prepare");
     assert_eq!(refused(&mut host), "prepare");
     // Accepted after the first encoder is dropped.
     drop(first);
     let mut second = encoder(gpu());
-    host.prepare(gpu(), &mut second, &scene, slice(&scene)).unwrap();
+    host.prepare(&mut second, &scene, slice(&scene)).unwrap();
     // A pass in a separate encoder must be submitted too, even if the encoder of `prepare` already was.
     let mut passes = encoder(gpu());
     host.render(&mut passes, &scene);
@@ -63,7 +63,7 @@ fn second_prepare_before_the_first_is_submitted_is_rejected() {
     // Submission is enough; the GPU need not have finished.
     gpu().queue.submit([passes.finish()]);
     let mut third = encoder(gpu());
-    host.prepare(gpu(), &mut third, &scene, slice(&scene)).unwrap();
+    host.prepare(&mut third, &scene, slice(&scene)).unwrap();
     host.render(&mut third, &scene);
     gpu().submit(third).unwrap();
     assert!(host.picture(gpu()).unwrap() == picture);

@@ -58,9 +58,8 @@ fn warm_up_can_run_on_another_thread() {
     std::thread::scope(|scope| {
         scope.spawn(|| {
             let depth_format = attach_depth.then_some(wgpu::TextureFormat::Depth32Float);
-            let own =
-                Descriptor { context: Some(&context), depth_format, exact_filtering: true, ..Descriptor::default() };
-            Renderer::new(&gpu().device, &gpu().queue, &own).unwrap().warm_up(&expected).unwrap();
+            let own = Descriptor { depth_format, exact_filtering: true, ..Descriptor::default() };
+            Renderer::new(&context, &own).unwrap().warm_up(&expected).unwrap();
         });
     });
     let warm = context.pipeline_count();
@@ -106,7 +105,7 @@ fn measure_cpu_time_of_prepare() {
         let prepare = |host: &mut Host, scene: &TestScene| {
             let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let started = std::time::Instant::now();
-            host.prepare(gpu(), &mut encoder, scene, haze::Particles::Slice(&scene.particles)).unwrap();
+            host.prepare(&mut encoder, scene, haze::Particles::Slice(&scene.particles)).unwrap();
             let ms = started.elapsed().as_secs_f64() * 1000.0;
             host.render(&mut encoder, scene);
             gpu().submit(encoder).unwrap();

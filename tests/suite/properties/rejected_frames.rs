@@ -15,7 +15,7 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
         host.draw(gpu(), &TestScene::new(SIZE)).unwrap();
         assert!(host.picture(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
         let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let error = host.prepare(gpu(), &mut encoder, scene, particles).unwrap_err();
+        let error = host.prepare(&mut encoder, scene, particles).unwrap_err();
         host.render(&mut encoder, scene);
         gpu().submit(encoder).unwrap();
         assert!(

@@ -112,7 +112,7 @@ fn measured_costs_of_both_paths_are_plausible() {
     let host = Host::new(gpu(), &scene).unwrap();
     let context = host.renderer.context();
     let before = context.path_model();
-    let model = context.measure_paths(&gpu().device, &gpu().queue, |encoder| gpu().submit(encoder)).unwrap();
+    let model = context.measure_paths(|encoder| gpu().submit(encoder)).unwrap();
     assert_eq!((model, model.source), (context.path_model(), PathModelSource::Probe));
     // On any machine, a fragment takes between 0.1 ps and 1 ms. Costs are in nanoseconds.
     for costs in [model.raster, model.tiled] {

@@ -75,7 +75,7 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
     scene.view = TestScene::new(UVec2::new(1920, 1080)).view;
     let mut host = Host::new(gpu(), &scene).unwrap();
     let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu(), &mut encoder, &scene, Particles::Emitter(&emission)).unwrap();
+    host.prepare(&mut encoder, &scene, Particles::Emitter(&emission)).unwrap();
     let memory = host.renderer.memory_use();
     println!("{memory:?}");
     let TiledMemory { emitted, sorted, sprites, keys, counts, lists } = memory.tiled;

@@ -15,7 +15,7 @@ fn dropped_encoders_do_not_disturb_later_results() {
     // More rounds than there are read-back buffers and queries.
     for round in 0..200 {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        host.prepare(gpu, &mut encoder, &scene, Particles::Slice(&scene.particles)).unwrap();
+        host.prepare(&mut encoder, &scene, Particles::Slice(&scene.particles)).unwrap();
         if round % 3 > 0 {
             host.render(&mut encoder, &scene);
         }
@@ -37,10 +37,10 @@ fn host_pass_queries_from_before_a_second_prepare_are_harmless() {
     scene.attach_depth = false;
     let (mut host, timing) = timed_host(gpu, &scene);
     let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu, &mut encoder(), &scene, Particles::Slice(&scene.particles)).unwrap();
+    host.prepare(&mut encoder(), &scene, Particles::Slice(&scene.particles)).unwrap();
     let timestamp_writes = timing.host_pass("host");
     let mut encoder = encoder();
-    host.prepare(gpu, &mut encoder, &scene, Particles::Slice(&scene.particles)).unwrap();
+    host.prepare(&mut encoder, &scene, Particles::Slice(&scene.particles)).unwrap();
     let view = host.colour.create_view(&wgpu::TextureViewDescriptor::default());
     let attachment = wgpu::RenderPassColorAttachment {
         view: &view,

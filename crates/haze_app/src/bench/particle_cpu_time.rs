@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use haze::settings::BlendOrder;
-use haze::{Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
+use haze::{Context, Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
 use haze_author::particle_files;
 use haze_demo::headless::Headless;
 
@@ -19,7 +19,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {
         return Ok(Vec::new());
     };
-    let (device, queue) = (&gpu.device, &gpu.queue);
+    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue, None));
     let depth = gpu.target("depth", shot.size, wgpu::TextureFormat::Depth32Float);
     let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
     let view = shot.preset.camera.view(shot.size);
@@ -27,8 +27,8 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     for order in [BlendOrder::Sorted, BlendOrder::Weighted] {
         let mut settings = system.settings_at_height(shot.size.y);
         settings.accumulate.order = order;
-        let renderer = Renderer::new(device, queue, &Descriptor::default())?;
-        let material = renderer.create_material(device, queue, pictures)?;
+        let renderer = Renderer::new(&context, &Descriptor::default())?;
+        let material = context.create_material(pictures)?;
         renderers.push((renderer, material, settings));
     }
     let mut times = [Vec::new(), Vec::new(), Vec::new()];
@@ -41,7 +41,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
         particle_files::particles(system, None, shot.preset.time, &mut particles);
         let mut found = vec![started.elapsed()];
         for (renderer, material, settings) in &mut renderers {
-            let systems = [System::new(Particles::Slice(&particles), settings, material)];
+            let systems = [System::new(0, Particles::Slice(&particles), settings, material)];
             let frame = Frame {
                 lights: &shot.preset.lights,
                 systems: &systems,
@@ -49,7 +49,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
             };
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let started = Instant::now();
-            renderer.prepare(device, queue, &mut encoder, &frame)?;
+            renderer.prepare(&mut encoder, &frame)?;
             found.push(started.elapsed());
             gpu.submit(encoder)?;
         }

@@ -27,7 +27,7 @@ pub fn run() -> Result<(), Error> {
 /// Returns the choices of the path `auto` for few layers and for many, from the measured costs of this adapter.
 fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
     let context = Context::new(&gpu.device, &gpu.queue, None);
-    let model = context.measure_paths(&gpu.device, &gpu.queue, |encoder| gpu.submit(encoder))?;
+    let model = context.measure_paths(|encoder| gpu.submit(encoder))?;
     if !context.has_tiles() {
         return Ok(vec![PathChoice { path: RenderPath::Raster, reason: PathReason::TiledUnsupported }]);
     }
