@@ -1,7 +1,7 @@
 // forward: lights and blends every sprite fragment at full resolution. The classic method, and the baseline of every
 // comparison.
 // Reads   particles (instances, back to front), sprite flipbook, detail map or noise, scene depth, lights, ramps.
-// Writes  the host's colour target: linear HDR, or sRGB code if GAMMA_TARGET.
+// Writes  the host's colour target: linear light.
 // Blend   alpha: ONE, ONE_MINUS_SRC_ALPHA (premultiplied) · additive: ONE, ONE · multiply: DST, ZERO.
 // Source  OTEE "Typical game particles so far"; techniques: NV, BLOG, MS; age ramp: MS.
 
@@ -49,5 +49,5 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         let colour = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
         light *= mix(vec3f(1.0), colour, system.age_colour);
     }
-    return forward_fragment(BLEND_MODE, target_colour(light), covered);
+    return forward_fragment(BLEND_MODE, bounded_light(light), covered);
 }

@@ -1,6 +1,6 @@
 // specular_scatter: draws the glow of lights behind the smoke, one quad of constant pixel size around each light.
 // Reads   accumulation target, reduced depth, scene depth, lights, specular ramp.
-// Writes  the host's colour target: linear HDR, or sRGB code if GAMMA_TARGET.
+// Writes  the host's colour target: linear light.
 // Blend   ONE, ONE (additive); alpha is unchanged.
 // Source  OTEE "Specular scattering".
 
@@ -82,5 +82,5 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     let window = range_window(dot(to_light, to_light), in.position_inverse_range.w);
     // x is distance², y is the amount.
     let glow = sample_ramp_2d(specular_ramp, linear_sampler, vec2f(distance_squared, amount));
-    return vec4f(target_colour(glow * in.colour * window), 0.0);
+    return vec4f(bounded_light(glow * in.colour * window), 0.0);
 }

@@ -1,7 +1,7 @@
 // transfer: lights the accumulated smoke once per pixel over the system's bounding box, or upsamples the output of
 // light_target.
 // Reads   accumulation target, reduced depth, scene depth, lights, ramps, baked diffuse light.
-// Writes  the host's colour target: linear HDR, or sRGB code if GAMMA_TARGET.
+// Writes  the host's colour target: linear light.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", "Diffuse lighting", "Soft scattering".
 // Space   Lighting in view space, on the plane through the middle of the smoke that faces the viewer.
@@ -80,7 +80,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let covered = smoke_coverage(amount);
     if LIT {
         // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
-        return vec4f(target_colour(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
+        return vec4f(bounded_light(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
     }
     let surface = surface_from_accumulation(accumulated, sample_attachments(pixel));
     if DEBUG_VIEW == DEBUG_VIEW_NORMALS {
@@ -94,5 +94,5 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
         light += soft_scatter(amount);
     }
-    return vec4f(target_colour(light), 1.0) * covered;
+    return vec4f(bounded_light(light), 1.0) * covered;
 }

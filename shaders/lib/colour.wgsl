@@ -1,8 +1,5 @@
 // sRGB encoding, luminance, and the colour scale of overdraw.
 
-// True: the host's target stores sRGB code, and the hardware treats it as linear.
-override GAMMA_TARGET: bool = false;
-
 // Encodes linear light as sRGB, 0..1. (IEC 61966-2-1)
 fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.0031308 {
@@ -16,9 +13,8 @@ fn luminance(light: vec3f) -> f32 {
     return dot(light, vec3f(0.2126, 0.7152, 0.0722));
 }
 
-// Colour for a target that stores sRGB code in a format that the hardware treats as linear: linear light, clamped to
-// 0..1 and encoded.
-fn gamma_target_colour(light: vec3f) -> vec3f {
+// Linear light, clamped to 0..1 and encoded as sRGB, for a target whose format the hardware does not encode.
+fn srgb_colour(light: vec3f) -> vec3f {
     let shown = saturate(light);
     return vec3f(srgb_from_linear(shown.r), srgb_from_linear(shown.g), srgb_from_linear(shown.b));
 }
@@ -29,14 +25,6 @@ const MAX_HALF_FLOAT_LIGHT: f32 = 32752.0;
 // Light, limited to what a target of half floats can store.
 fn bounded_light(light: vec3f) -> vec3f {
     return min(light, vec3f(MAX_HALF_FLOAT_LIGHT));
-}
-
-// Light as the host's target stores it.
-fn target_colour(light: vec3f) -> vec3f {
-    if GAMMA_TARGET {
-        return gamma_target_colour(light);
-    }
-    return bounded_light(light);
 }
 
 // Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.

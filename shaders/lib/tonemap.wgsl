@@ -14,7 +14,7 @@ fn aces_fitted(colour: vec3f) -> vec3f {
 
 // sRGB code of tonemapped light. `exposure` multiplies the light first.
 fn tonemapped(colour: vec3f, exposure: f32) -> vec3f {
-    return gamma_target_colour(aces_fitted(colour * exposure));
+    return srgb_colour(aces_fitted(colour * exposure));
 }
 
 // Dither to add before rounding to 8 bits, so that slow gradients do not band: triangular noise, within half a step

@@ -19,9 +19,8 @@ pub fn luminance(light: Vec3) -> f32 {
     light.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// Colour for a target that stores sRGB code in a format that the hardware treats as linear: linear light, clamped to
-/// 0..1 and encoded.
-pub fn gamma_target_colour(light: Vec3) -> Vec3 {
+/// Linear light, clamped to 0..1 and encoded as sRGB, for a target whose format the hardware does not encode.
+pub fn srgb_colour(light: Vec3) -> Vec3 {
     light.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_from_linear)
 }
 
@@ -31,11 +30,6 @@ pub const MAX_HALF_FLOAT_LIGHT: f32 = 32752.0;
 /// Light, limited to what a target of half floats can store.
 pub fn bounded_light(light: Vec3) -> Vec3 {
     light.min(Vec3::splat(MAX_HALF_FLOAT_LIGHT))
-}
-
-/// Light as the host's target stores it. `gamma_target`: as sRGB code.
-pub fn target_colour(gamma_target: bool, light: Vec3) -> Vec3 {
-    if gamma_target { gamma_target_colour(light) } else { bounded_light(light) }
 }
 
 /// Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.

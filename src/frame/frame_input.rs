@@ -21,6 +21,9 @@ pub struct Frame<'a> {
     pub lights: &'a [Light],
     /// Particle systems, in any order. They are drawn far to near.
     pub systems: &'a [System<'a>],
+    /// Multiplies all light that the smoke sends to the viewer, for hosts whose target holds exposed light. 1 leaves it
+    /// in the units of the lights. From 0 on.
+    pub exposure: f32,
     /// Seconds from any start. The noise of volumetric sprites rises with time.
     pub time: f32,
     /// Up direction of the world, along which the noise rises; need not be unit length.
@@ -34,7 +37,7 @@ impl<'a> Frame<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
         let debug_views = &[DebugView::Final];
-        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, debug_views }
+        Self { view, scene_depth, lights: &[], systems: &[], exposure: 1.0, time: 0.0, up: Vec3::Y, debug_views }
     }
 }
 

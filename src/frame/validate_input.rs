@@ -48,8 +48,11 @@ pub fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
     Ok(())
 }
 
-/// Validates time and up direction of a frame.
-pub fn validate_time_and_up(time: f32, up: Vec3) -> Result<(), FieldError> {
+/// Validates the numbers of a frame.
+pub fn validate_frame_numbers(exposure: f32, time: f32, up: Vec3) -> Result<(), FieldError> {
+    if !exposure.is_finite() || exposure < 0.0 {
+        return Err(FieldError::new("exposure", exposure, "a finite number, at least 0"));
+    }
     if !time.is_finite() {
         return Err(FieldError::new("time", time, "a finite number of seconds"));
     }

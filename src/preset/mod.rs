@@ -18,5 +18,5 @@ pub use material_names::{MaterialNames, image_file_path};
 pub use particle_source::{EndBehaviour, ParticleFiles, UpAxis, particle_file_path};
 #[doc(hidden)]
 pub use preset_file::with_system_context;
-pub use preset_file::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
+pub use preset_file::{MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
 pub use sequence::{Sequence, exists, frame_files, watched_paths};

@@ -19,10 +19,6 @@ use crate::settings::{FieldVisitor, Fields, Settings, validate};
 /// Version of the preset format that this code reads and writes.
 pub const PRESET_VERSION: u32 = 1;
 
-/// Height of the picture that pixel sizes in presets refer to. A renderer of another height scales them, so that a
-/// preset looks the same at every size.
-pub const DESIGN_HEIGHT: f32 = 720.0;
-
 /// Maximum number of systems in a preset.
 pub const MAX_SYSTEMS: usize = 32;
 
@@ -246,13 +242,6 @@ impl PresetSystem {
     /// Flipbook frames per second, of the emitter or the files.
     pub fn frame_rate(&self) -> f32 {
         if self.cache.is_used() { self.cache.flipbook_rate } else { self.emitter.frame_rate }
-    }
-
-    /// Settings for a picture of this height. Pixel sizes in presets refer to [`DESIGN_HEIGHT`].
-    pub fn settings_at_height(&self, height: u32) -> Settings {
-        let mut settings = self.settings;
-        settings.specular_scatter.size = (settings.specular_scatter.size * height as f32 / DESIGN_HEIGHT).max(1.0);
-        settings
     }
 }
 

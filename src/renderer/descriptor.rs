@@ -6,7 +6,9 @@ use crate::error::FieldError;
 /// Describes the host's render pass. All fields are fixed for the lifetime of a [`Renderer`](crate::Renderer).
 #[derive(Clone, Copy, Debug)]
 pub struct Descriptor<'a> {
-    /// Format of the first colour attachment. It must be blendable. Use `Rgba16Float` for HDR.
+    /// Format of the view that is the first colour attachment. It must be blendable. haze writes linear light: use
+    /// `Rgba16Float` for HDR. If the texture holds sRGB-encoded values (`Rgba8Unorm`, `Bgra8Unorm`), attach a view in the
+    /// format that ends in `Srgb`, so that the hardware blends linear light.
     pub color_format: wgpu::TextureFormat,
     /// Formats of the pass's further colour attachments (velocity, object IDs …), in order, at most 7; `None` for an
     /// unused index. haze does not write to them.
@@ -21,11 +23,6 @@ pub struct Descriptor<'a> {
     pub depth_format: Option<wgpu::TextureFormat>,
     /// Samples per pixel of the pass: 1, or a count that the device supports for these formats.
     pub sample_count: u32,
-    /// True if the first attachment stores sRGB-encoded values in a format that the hardware does not encode, for
-    /// example an `Rgba8Unorm` texture that is displayed as is. haze then encodes its output, clamped to 0..1, and
-    /// blends encoded values. Set false for linear light, and for formats that end in `Srgb`, which the hardware
-    /// encodes.
-    pub gamma_target: bool,
     /// Filters ramps and sprites in the shader in f32 instead of by the sampler: slower, but equal to the CPU reference
     /// on every driver. Intended for tests. Samplers quantize filter weights to 1/256; without exact filtering, thin
     /// smoke under light intensities of 1000 and more differs slightly from the reference in up to 0.3 % of the pixels.
@@ -39,7 +36,6 @@ impl Default for Descriptor<'_> {
             further_color_formats: &[],
             depth_format: Some(wgpu::TextureFormat::Depth32Float),
             sample_count: 1,
-            gamma_target: false,
             exact_filtering: false,
         }
     }
@@ -54,7 +50,6 @@ impl Descriptor<'_> {
         let pass = HostPass {
             depth_format: self.depth_format,
             sample_count: self.sample_count,
-            gamma_target: self.gamma_target,
             ..HostPass::color_only(self.color_format)
         };
         let Some(pass) = pass.with_further(self.further_color_formats) else {
@@ -62,10 +57,6 @@ impl Descriptor<'_> {
             let expected = format!("at most {}", MAX_ATTACHMENTS - 1);
             return Err(FieldError::new("further_color_formats", value, expected));
         };
-        if self.gamma_target && self.color_format.is_srgb() {
-            let expected = "false for a format that ends in Srgb, which the hardware encodes";
-            return Err(FieldError::new("gamma_target", "true", expected));
-        }
         pass.validate(device)?;
         Ok(pass)
     }

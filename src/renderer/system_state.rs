@@ -201,7 +201,7 @@ impl SystemState {
         let material = &system.material.info;
         let settings = ResolvedSettings::new(system.settings, view.size, material.frame_count, shared.six_way);
         let bounds = self.particles.measure(view, system, &settings);
-        light_uniforms(view, frame.lights, &bounds, &mut self.light_uniforms);
+        light_uniforms(view, frame.lights, frame.exposure, &bounds, &mut self.light_uniforms);
         let known = self.particles.known(system.particles);
         let (particles, particles_per_sample) = known.unwrap_or((&[], 1));
         let in_world = SystemInput {
@@ -214,6 +214,7 @@ impl SystemState {
             material,
             lights: &self.light_uniforms,
             up: frame.up.normalize_or(Vec3::Y),
+            exposure: frame.exposure,
             time: frame.time,
         };
         let setup = system_setup(view, context.host_size, &in_world)?;

@@ -10,7 +10,7 @@ use super::targets::validate_attachments;
 use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::error::FieldError;
 use crate::frame::validate_input::{
-    validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up,
+    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
 };
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, RenderPath, Technique};
@@ -21,7 +21,7 @@ use crate::view_setup::AttachmentSet;
 /// # Errors
 /// Names the first field that is not valid.
 pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> Result<(), FieldError> {
-    validate_time_and_up(frame.time, frame.up)?;
+    validate_frame_numbers(frame.exposure, frame.time, frame.up)?;
     let size = validate_scene_depth(frame)?;
     if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
         let View { size: pixels, origin, .. } = frame.view;

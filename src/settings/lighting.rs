@@ -124,9 +124,32 @@ settings! {
     /// Specular scatter: glow around a light that is seen through smoke.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SpecularScatter {
-        /// Half the side of the glow's quad, at any distance. Higher: a wider glow; cost grows with its square.
+        /// Half the side of the glow's quad, at any distance, in pixels of a view that is 720 pixels high. It grows with
+        /// the view's height. Higher: a wider glow; cost grows with its square.
         size: f32 = 160.0, number(1.0..=8192.0, "pixels");
         /// Multiplies the glow. Higher: brighter. 0 draws no quads.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
+    }
+}
+
+impl SpecularScatter {
+    /// Height of the view that `size` refers to, pixels.
+    pub const REFERENCE_HEIGHT: f32 = 720.0;
+
+    /// Half the side of the glow's quad in a view of this height, at least one pixel.
+    pub fn size_in_pixels(&self, height: u32) -> f32 {
+        (self.size * height as f32 / Self::REFERENCE_HEIGHT).max(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn glow_keeps_its_share_of_the_views_height() {
+        let share = |height: u32| SpecularScatter::default().size_in_pixels(height) / height as f32;
+        assert_eq!(SpecularScatter::default().size_in_pixels(720), SpecularScatter::default().size);
+        assert!((share(2160) - share(90)).abs() < 1e-6);
     }
 }

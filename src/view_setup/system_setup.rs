@@ -34,6 +34,8 @@ pub struct SystemInput<'a> {
     pub lights: &'a [LightUniform],
     /// Unit length.
     pub up: Vec3,
+    /// Multiplies light; `lights` are exposed already.
+    pub exposure: f32,
     /// Seconds.
     pub time: f32,
 }
@@ -65,7 +67,7 @@ impl SystemSetup {
 /// may be a part of them.
 pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
     let SystemInput { bounds, depth, extent, particles, particles_per_sample, .. } = *system;
-    let SystemInput { settings, material, lights, up, time, .. } = *system;
+    let SystemInput { settings, material, lights, up, exposure, time, .. } = *system;
     let projected = project_bounds(bounds, view)?;
     let extent = SmokeExtent::new(view, extent, bounds, &projected, depth);
     // A sample does not include the farthest particle.
@@ -86,9 +88,9 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         centre: extent.centre,
         smoke_far: extent.far,
         opacity: accumulate.opacity,
-        scatter_colour: settings.soft_scatter.scatter_colour,
+        scatter_colour: settings.soft_scatter.scatter_colour * exposure,
         scatter_amount: settings.soft_scatter.scatter_amount,
-        ambient_colour: settings.soft_scatter.ambient_colour,
+        ambient_colour: settings.soft_scatter.ambient_colour * exposure,
         scatter_smooth: settings.soft_scatter.scatter_smooth,
         target_from_ndc: target_from_ndc(&rect, view.size),
         target_origin: rect.origin.as_vec2(),
@@ -109,7 +111,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         near_fade_end: settings.soft_fade.near_fade_end,
         diffuse_intensity: settings.diffuse.intensity,
         soft_scatter_intensity: settings.soft_scatter.intensity,
-        specular_scatter_size: settings.specular_scatter.size,
+        specular_scatter_size: settings.specular_scatter.size_in_pixels(view.size.y),
         specular_scatter_intensity: settings.specular_scatter.intensity,
         light_count: lights.len() as u32,
         size: settings.sprite.size,

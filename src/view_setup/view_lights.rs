@@ -6,13 +6,22 @@ use super::view_geometry::ViewGeometry;
 use crate::formula::uniforms::LightUniform;
 use crate::frame::{Bounds, Light, LightKind};
 
-/// Writes the lights that reach the bounding box to `out`, in view space.
-pub fn light_uniforms(view: &ViewGeometry, lights: &[Light], bounds: &Bounds, out: &mut Vec<LightUniform>) {
+/// Writes the lights that reach the bounding box to `out`, in view space. `exposure` multiplies their colours.
+pub fn light_uniforms(
+    view: &ViewGeometry,
+    lights: &[Light],
+    exposure: f32,
+    bounds: &Bounds,
+    out: &mut Vec<LightUniform>,
+) {
     out.clear();
     let reaches = |light: &&Light| {
         let nearest = light.position.clamp(bounds.min, bounds.max);
         let lit = light.intensity > 0.0 && light.colour != Vec3::ZERO;
         lit && (light.kind == LightKind::Directional || nearest.distance(light.position) < light.range)
     };
-    out.extend(lights.iter().filter(reaches).map(|light| light.uniform(&view.view_from_world)));
+    out.extend(lights.iter().filter(reaches).map(|light| {
+        let uniform = light.uniform(&view.view_from_world);
+        LightUniform { colour: uniform.colour * exposure, ..uniform }
+    }));
 }

@@ -122,6 +122,7 @@ impl Column {
                 scene_depth: &Image::new(size, 1.0),
                 lights: &[light],
                 systems: &[haze_reference::System::new(&self.particles, settings, material)],
+                exposure: 1.0,
                 time: 0.0,
                 up: Vec3::Y,
                 debug_view: haze::settings::DebugView::Final,

@@ -53,7 +53,7 @@ impl PresetCase {
         let system = &self.preset.systems[0];
         particle_files::particles(system, self.caches[0].as_ref(), self.preset.time, &mut scene.particles);
         scene.lights.clone_from(&self.preset.lights);
-        (scene.settings, scene.time) = (system.settings_at_height(SIZE.y), self.preset.time);
+        (scene.settings, scene.time) = (system.settings, self.preset.time);
         scene.material = self.material.clone();
         scene
     }

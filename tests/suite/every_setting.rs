@@ -124,7 +124,7 @@ fn stages() -> Vec<TestScene> {
         let mut scene = TestScene::new(SIZE);
         (scene.depth, scene.attach_depth) = (DepthKind::Both, true);
         (scene.settings.technique, scene.settings.path) = (technique, path);
-        (scene.settings.volumetric.noise_size, scene.settings.specular_scatter.size) = (1.5, 20.0);
+        (scene.settings.volumetric.noise_size, scene.settings.specular_scatter.size) = (1.5, 260.0);
         scene.settings.boost = 1.0;
         // Particles of every age and flipbook frame.
         for (index, particle) in (0..).zip(&mut scene.particles) {

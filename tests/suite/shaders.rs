@@ -119,7 +119,7 @@ fn shader_errors_report_file_line_and_column() {
     let shown = "saturate(light)";
     says(shown, "saturat(light)", shown, "no definition in scope for identifier: `saturat`");
     // An error in the validation of a function is reported at the expression that causes it.
-    let sum = "Function 'gamma_target_colour' is invalid: Operation Add can't work with vec3<f32> and vec2<f32>";
+    let sum = "Function 'srgb_colour' is invalid: Operation Add can't work with vec3<f32> and vec2<f32>";
     says(shown, "saturate(light) + vec2f(f32(1u ^ 2u))", shown, sum);
     let returned =
         "Function 'srgb_from_linear' is invalid: The `return` expression does not match the declared return type";
@@ -138,8 +138,8 @@ fn shader_errors_report_file_line_and_column() {
         "{\n    return min(light, vec",
         "`{` is never closed",
     );
-    let unended = refused("fn target_colour", "/* fn target_colour");
-    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/colour.wgsl", "fn target_colour")));
+    let unended = refused("fn bounded_light", "/* fn bounded_light");
+    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/colour.wgsl", "fn bounded_light")));
     // The error may be in an embedded file that no longer matches the edited one.
     let renamed = refused("fn overdraw_colour", "fn overdrawn_colour");
     let called = place("transfer.wgsl", "overdraw_colour");
@@ -234,7 +234,7 @@ fn missing_and_circular_imports_are_reported_at_the_import_line() {
 fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
     let plain = draw(None);
     let folder = ShaderFolder::new();
-    folder.edit("lib/colour.wgsl", "return bounded_light(light);", "return bounded_light(light * TINT);");
+    folder.edit("lib/colour.wgsl", "return min(light, vec3f(", "return min(light * TINT, vec3f(");
     assert!(folder.refusal().contains("`TINT`"));
     // TINT is defined in a separate file, which the others import.
     folder.edit("lib/blending.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");

@@ -3,13 +3,12 @@
 mod textures;
 
 use glam::{UVec2, Vec4};
-use haze::formula::colour::gamma_target_colour;
 use haze::image::Image;
 use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, Timing, wgpu};
 use haze_demo::headless::Headless;
 
 pub use self::textures::convert_to_rgba16float;
-use self::textures::{depth_buffer, pad_to_target, target, upload};
+use self::textures::{depth_buffer, pad_to_target, target, target_with_view_format, upload};
 use crate::gpu::shared_context;
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
@@ -22,7 +21,8 @@ pub struct HostKind {
     pub depth_format: wgpu::TextureFormat,
     /// Sample count of the pass. The depth buffer passed to haze always has one sample.
     pub samples: u32,
-    pub gamma_target: bool,
+    /// Format of the colour texture, if the attachment is a view of it in another format.
+    pub stored_format: Option<wgpu::TextureFormat>,
     pub exact_filtering: bool,
     /// Size of the targets, pixels, if the view covers only a part of them. `None` for the size of the view.
     pub target_size: Option<UVec2>,
@@ -35,7 +35,7 @@ impl Default for HostKind {
             additional_attachments: Vec::new(),
             depth_format: wgpu::TextureFormat::Depth32Float,
             samples: 1,
-            gamma_target: false,
+            stored_format: None,
             exact_filtering: true,
             target_size: None,
         }
@@ -99,7 +99,6 @@ impl Host {
             further_color_formats: &additional_attachments,
             depth_format: scene.attach_depth.then_some(kind.depth_format),
             sample_count: kind.samples,
-            gamma_target: kind.gamma_target,
             exact_filtering: kind.exact_filtering,
         };
         let context = context.cloned().unwrap_or_else(|| Context::new(&gpu.device, &gpu.queue, None));
@@ -107,14 +106,18 @@ impl Host {
         let material = context.create_material(&scene.material)?;
         let size = kind.target_size.unwrap_or(scene.view.size);
         let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let colour = gpu.target("host colour", size, kind.color_format);
+        let colour = match kind.stored_format {
+            Some(format) => target_with_view_format(gpu, size, format, kind.color_format),
+            None => gpu.target("host colour", size, kind.color_format),
+        };
         let resolved = (kind.samples > 1).then(|| whole(&colour));
         let mut attachments: Vec<_> = std::iter::once(kind.color_format)
             .chain(kind.additional_attachments.iter().copied())
             .map(|format| whole(&target(gpu, size, format, kind.samples)))
             .collect();
         if resolved.is_none() {
-            attachments[0] = whole(&colour);
+            let format = Some(kind.color_format);
+            attachments[0] = colour.create_view(&wgpu::TextureViewDescriptor { format, ..Default::default() });
         }
         let depth = depth_buffer(gpu, scene, size, 1);
         let attached_depth =
@@ -175,6 +178,7 @@ impl Host {
         let frame = Frame {
             lights: &scene.lights,
             systems: &[system],
+            exposure: scene.exposure,
             time: scene.time,
             debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
             ..Frame::new(scene.view, scene_depth(scene.depth, &self.depth, &self.linear))
@@ -184,12 +188,7 @@ impl Host {
 
     /// Records the host's pass, the second half of a frame.
     pub fn render(&self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) {
-        let clear = if scene.host.gamma_target {
-            gamma_target_colour(BACKDROP.truncate()).extend(BACKDROP.w)
-        } else {
-            BACKDROP
-        };
-        let [r, g, b, a] = clear.to_array().map(f64::from);
+        let [r, g, b, a] = BACKDROP.to_array().map(f64::from);
         let attachments: Vec<_> = self
             .attachments
             .iter()

@@ -29,6 +29,7 @@ pub struct TestScene {
     pub bounds: Option<Bounds>,
     pub settings: Settings,
     pub material: MaterialAssets,
+    pub exposure: f32,
     pub time: f32,
     pub up: Vec3,
     /// Debug view that is drawn.
@@ -164,6 +165,7 @@ impl TestScene {
             // Fixed, because the choice of `auto` depends on the device.
             settings: Settings { path: RenderPath::Raster, boost: 1.5, ..Settings::default() },
             material: material(),
+            exposure: 1.0,
             time: 1.0,
             up: Vec3::Y,
             debug_view: DebugView::Final,
@@ -227,6 +229,7 @@ impl TestScene {
                 bounds: self.bounds,
                 ..haze_reference::System::new(&self.particles, &self.settings, &self.material)
             }],
+            exposure: self.exposure,
             time: self.time,
             up: self.up,
             debug_view: self.debug_view,

@@ -199,8 +199,7 @@ impl OffscreenRenderer {
     /// # Errors
     /// [`Error::Shader`] with the name of the pass, if custom shaders cannot be compiled.
     pub fn warm_up(&self, shot: &Shot) -> Result<(), Error> {
-        let settings: Vec<_> =
-            shot.preset.systems.iter().map(|system| system.settings_at_height(shot.size.y)).collect();
+        let settings: Vec<_> = shot.preset.systems.iter().map(|system| system.settings).collect();
         self.renderer.warm_up(&WarmUp {
             view: shot.preset.camera.view(shot.size),
             scene_depth: if self.context.scene.draws_linear {

@@ -119,7 +119,7 @@ impl Shot {
     fn each_system<T>(&self, source: impl Fn(&PresetSystem, Option<&ParticleFrames>) -> T) -> Vec<(T, Settings)> {
         let system = |(index, system): (usize, &PresetSystem)| {
             let cache = self.caches.get(index).and_then(Option::as_ref);
-            (source(system, cache), system.settings_at_height(self.size.y))
+            (source(system, cache), system.settings)
         };
         self.preset.systems.iter().enumerate().map(system).collect()
     }

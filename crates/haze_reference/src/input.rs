@@ -18,6 +18,8 @@ pub struct Frame<'a> {
     pub lights: &'a [Light],
     /// Particle systems, drawn far to near.
     pub systems: &'a [System<'a>],
+    /// Multiplies all light that the smoke sends to the viewer.
+    pub exposure: f32,
     /// Seconds. The noise of volumetric sprites rises with time.
     pub time: f32,
     /// Up direction of the world; need not be unit length.
@@ -29,7 +31,8 @@ pub struct Frame<'a> {
 impl<'a> Frame<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: &'a Image<f32>) -> Self {
-        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, debug_view: DebugView::Final }
+        let debug_view = DebugView::Final;
+        Self { view, scene_depth, lights: &[], systems: &[], exposure: 1.0, time: 0.0, up: Vec3::Y, debug_view }
     }
 }
 

@@ -10,7 +10,7 @@ use haze::formula::depth::view_depth_from_ndc_depth;
 use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use haze::frame::validate_input::{
-    validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up,
+    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
 };
 use haze::frame::{Bounds, Particle, View};
 use haze::settings::{BlendOrder, DebugView};
@@ -53,7 +53,7 @@ impl<'a> VisibleSystem<'a> {
         measures.measure(view, system.particles, &settings);
         let bounds = system.bounds.unwrap_or(measures.bounds);
         let mut lights = Vec::new();
-        light_uniforms(view, frame.lights, &bounds, &mut lights);
+        light_uniforms(view, frame.lights, frame.exposure, &bounds, &mut lights);
         let in_world = SystemInput {
             particles_per_sample: 1,
             bounds: &bounds,
@@ -64,6 +64,7 @@ impl<'a> VisibleSystem<'a> {
             material,
             lights: &lights,
             up: frame.up.normalize_or(Vec3::Y),
+            exposure: frame.exposure,
             time: frame.time,
         };
         let setup = system_setup(view, frame.view.size, &in_world)?;
@@ -112,7 +113,7 @@ pub fn visible_systems<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usi
     // The picture is the view, whatever its origin in a host's targets.
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
-    validate_time_and_up(frame.time, frame.up)?;
+    validate_frame_numbers(frame.exposure, frame.time, frame.up)?;
     for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture)] {
         if size != frame.view.size {
             let value = format!("{}x{}", size.x, size.y);

@@ -15,8 +15,6 @@ pub(crate) struct HostPass {
     pub further_count: usize,
     pub depth_format: Option<wgpu::TextureFormat>,
     pub sample_count: u32,
-    /// True if the first target stores sRGB-encoded values that the hardware treats as linear.
-    pub gamma_target: bool,
 }
 
 impl HostPass {
@@ -28,7 +26,6 @@ impl HostPass {
             further_count: 0,
             depth_format: None,
             sample_count: 1,
-            gamma_target: false,
         }
     }
 

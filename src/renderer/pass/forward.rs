@@ -50,7 +50,6 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
             enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
             enum_constant!("BACKLIGHT", key.backlight),
             enum_constant!("RAMP_FILTER", key.ramp_filter),
-            bool_constant("GAMMA_TARGET", key.host.gamma_target),
         ]),
     }
 }

@@ -32,7 +32,6 @@ pub(crate) fn describe(key: SpecularScatterKey) -> RenderPipelineDescription {
         targets: key.host.color_targets(ADDITIVE),
         constants: vec![
             enum_constant!("UPSAMPLE", key.upsample),
-            bool_constant("GAMMA_TARGET", key.host.gamma_target),
             enum_constant!("RAMP_FILTER", key.ramp_filter),
             bool_constant("EXACT_FILTERING", key.exact_filtering),
         ],

@@ -58,7 +58,6 @@ pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
             enum_constant!("DEBUG_VIEW", key.debug_view),
             bool_constant("HOST_DEPTH", key.host_depth),
             bool_constant("BACK_FACES", key.back_faces),
-            bool_constant("GAMMA_TARGET", key.host.gamma_target),
             enum_constant!("COVERAGE_MODE", key.coverage),
         ]),
     }

@@ -1,6 +1,5 @@
 //! Formula tests of `shaders/lib/colour.wgsl`.
 
-use glam::vec3;
 use haze::formula::colour;
 
 use super::Formula;
@@ -8,21 +7,6 @@ use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v3};
 
 pub fn formulas() -> Vec<Formula> {
     vec![
-        Formula {
-            name: "target_colour",
-            file: "lib/colour.wgsl",
-            wgsl: "GAMMA_TARGET = x(0) > 0.5; y3(0, target_colour(vec3f(x(1), x(2), x(3) * 40000.0)));",
-            reference: |x| colour::target_colour(x[0] > 0.5, vec3(x[1], x[2], x[3] * 40000.0)).to_array().to_vec(),
-            cases: random(100, &[(0.0, 1.0); 4]),
-            tolerance: TRANSCENDENTAL,
-            mutants: &[
-                (
-                    "if GAMMA_TARGET {\n        return gamma_target_colour(light)",
-                    "if GAMMA_TARGET {\n        return light",
-                ),
-                ("    return bounded_light(light);", "    return light;"),
-            ],
-        },
         Formula {
             name: "luminance",
             file: "lib/colour.wgsl",
@@ -51,10 +35,10 @@ pub fn formulas() -> Vec<Formula> {
             mutants: &[("min(light", "max(light"), ("32752.0", "65504.0")],
         },
         Formula {
-            name: "gamma_target_colour",
+            name: "srgb_colour",
             file: "lib/colour.wgsl",
-            wgsl: "let v = gamma_target_colour(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
-            reference: |x| colour::gamma_target_colour(v3(x)).to_array().to_vec(),
+            wgsl: "let v = srgb_colour(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| colour::srgb_colour(v3(x)).to_array().to_vec(),
             cases: random(100, &[(-0.5, 3.0); 3]),
             tolerance: TRANSCENDENTAL,
             mutants: &[("saturate(light)", "light"), ("srgb_from_linear(shown.g)", "shown.g")],

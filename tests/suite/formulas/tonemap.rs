@@ -26,7 +26,7 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("aces_fitted(colour * exposure)", "aces_fitted(colour)"),
-                ("gamma_target_colour(aces_fitted", "(aces_fitted"),
+                ("srgb_colour(aces_fitted", "(aces_fitted"),
             ],
         },
         Formula {

@@ -18,7 +18,7 @@ fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
             let mut scene = TestScene::new(size);
             scene.view = preset.camera.view(size);
             scene.lights.clone_from(&preset.lights);
-            scene.settings = system.settings_at_height(size.y);
+            scene.settings = system.settings;
             scene.settings.path = RenderPath::Raster;
             scene.material = system.material.load(std::path::Path::new("")).unwrap();
             system.emitter.evaluate(preset.time, &mut scene.particles);

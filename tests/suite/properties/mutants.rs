@@ -17,7 +17,7 @@ fn psnr_limit_detects_typical_mistakes_in_a_pass() {
     type Mistake = fn(&mut TestScene);
     let scene = || {
         let mut scene = TestScene::new(SIZE);
-        scene.settings.specular_scatter.size = 60.0;
+        scene.settings.specular_scatter.size = 480.0;
         scene
     };
     let picture = scene().on_gpu(gpu()).picture;

@@ -22,6 +22,25 @@ pub(super) fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, s
     })
 }
 
+/// Creates a colour target that stores one format and is drawn to through a view of another.
+pub(super) fn target_with_view_format(
+    gpu: &Headless,
+    size: UVec2,
+    stored: wgpu::TextureFormat,
+    viewed: wgpu::TextureFormat,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("host target"),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: stored,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[viewed],
+    })
+}
+
 /// Places a view's depth values at `origin` in a target of `size`. The rest of the target is 0, the nearest depth, so
 /// that a value read from outside the view shows in the image.
 pub(super) fn pad_to_target(values: &Image<f32>, origin: UVec2, size: UVec2) -> Image<f32> {

@@ -222,7 +222,7 @@ impl<'a> CaseBench<'a> {
         let gpu_ms = Milliseconds::of(&mut running.times)?;
         let shot = &running.case.shot;
         let system = shot.preset.systems.first()?;
-        let settings = system.settings_at_height(shot.size.y);
+        let settings = system.settings;
         let is_forward = settings.path == RenderPath::Forward;
         // Forward smoke is blended directly into the scene colour.
         let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };

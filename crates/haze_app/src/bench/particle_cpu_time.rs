@@ -25,7 +25,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let view = shot.preset.camera.view(shot.size);
     let mut renderers = Vec::new();
     for order in [BlendOrder::Sorted, BlendOrder::Weighted] {
-        let mut settings = system.settings_at_height(shot.size.y);
+        let mut settings = system.settings;
         settings.accumulate.order = order;
         let renderer = Renderer::new(&context, &Descriptor::default())?;
         let material = context.create_material(pictures)?;
