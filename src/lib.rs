@@ -18,7 +18,6 @@
 //! - It does not simulate. [`emitter`] is a closed-form source of particles; hosts with their own simulation pass a slice or a
 //!   GPU buffer. The crate `haze_author` reads the particles of a simulation from files.
 //! - It casts no shadows, neither of the smoke on the scene nor of the smoke on itself.
-//! - It reads single-sampled depth. A multisampled host resolves its depth first.
 //!
 //! # Quick start
 //! ```no_run

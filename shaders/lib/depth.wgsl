@@ -20,6 +20,11 @@ fn view_depth_from_linear(texel: f32) -> f32 {
     return select(SKY_VIEW_DEPTH, texel, texel < SKY_VIEW_DEPTH);
 }
 
+// The farther of two values of a depth buffer. `reversed`: it stores the near plane as 1.
+fn farther_ndc_depth(reversed: bool, a: f32, b: f32) -> f32 {
+    return select(max(a, b), min(a, b), reversed);
+}
+
 const DEPTH_DOWNSAMPLE_CHECKERBOARD: u32 = 0u;
 const DEPTH_DOWNSAMPLE_MAX: u32 = 1u;
 const DEPTH_DOWNSAMPLE_MIN: u32 = 2u;

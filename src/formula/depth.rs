@@ -85,6 +85,11 @@ pub fn view_depth_from_linear(texel: f32) -> f32 {
     if texel < SKY_VIEW_DEPTH { texel } else { SKY_VIEW_DEPTH }
 }
 
+/// The farther of two values of a depth buffer. `reversed`: it stores the near plane as 1.
+pub fn farther_ndc_depth(reversed: bool, a: f32, b: f32) -> f32 {
+    if reversed { a.min(b) } else { a.max(b) }
+}
+
 /// Depth of a reduced texel, 0..1. `coarse_copy`: one step of 16 bits farther, so that rounding hides no sprite.
 pub fn stored_depth(view_depth: f32, depth_limit: f32, coarse_copy: bool) -> f32 {
     super::saturate(view_depth / depth_limit + if coarse_copy { 1.0 / 65535.0 } else { 0.0 })

@@ -1,6 +1,6 @@
 //! Input of one frame.
 
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 
 use super::bounds::Bounds;
 use super::emitter_snapshot::EmitterSnapshot;
@@ -17,6 +17,9 @@ pub struct Frame<'a> {
     pub view: View,
     /// Depth of the opaque scene, already rendered in this encoder or an earlier one.
     pub scene_depth: SceneDepth<'a>,
+    /// Size of the host's targets, pixels, if the views of the scene depth show another mip level than the first: wgpu
+    /// does not tell the level of a view. `None` for the size of the depth texture.
+    pub target_size: Option<UVec2>,
     /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
     /// Particle systems, in any order. They are drawn far to near.
@@ -37,16 +40,30 @@ impl<'a> Frame<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
         let debug_views = &[DebugView::Final];
-        Self { view, scene_depth, lights: &[], systems: &[], exposure: 1.0, time: 0.0, up: Vec3::Y, debug_views }
+        Self {
+            view,
+            scene_depth,
+            target_size: None,
+            lights: &[],
+            systems: &[],
+            exposure: 1.0,
+            time: 0.0,
+            up: Vec3::Y,
+            debug_views,
+        }
     }
 }
 
-/// Depth of the opaque scene at full resolution: single-sampled, with `TEXTURE_BINDING` usage, as large as the host's
-/// colour target. `docs/depth.md` has a table of which of the two is read and which is tested.
+/// Depth of the opaque scene at full resolution, with `TEXTURE_BINDING` usage, as large as the host's colour target.
+/// Single-sampled, but for [`SceneDepth::Multisampled`]. `docs/depth.md` has a table of which depth is read and which is
+/// tested.
 #[derive(Clone, Copy, Debug)]
 pub enum SceneDepth<'a> {
     /// Depth buffer written with the view's projection: a 2D view of its depth aspect.
     Buffer(&'a wgpu::TextureView),
+    /// Multisampled depth buffer: a 2D view of its depth aspect. haze resolves it to the farthest sample of each pixel,
+    /// in a pass of its own (`depth_resolve`), and reads the result. Not on OpenGL.
+    Multisampled(&'a wgpu::TextureView),
     /// `R32Float` target with linear view depth in metres. Values from 1e6 up mean that there is no surface.
     Linear(&'a wgpu::TextureView),
     /// Both, of the same scene. The buffer is read, with two exceptions: systems of the technique
@@ -61,11 +78,18 @@ pub enum SceneDepth<'a> {
 }
 
 impl<'a> SceneDepth<'a> {
-    /// The depth buffer, if there is one.
+    /// The texture that is read.
+    pub(crate) fn texture(&self) -> &'a wgpu::Texture {
+        let (Self::Buffer(view) | Self::Multisampled(view) | Self::Linear(view) | Self::Both { buffer: view, .. }) =
+            self;
+        view.texture()
+    }
+
+    /// The single-sampled depth buffer, if there is one.
     pub fn buffer(&self) -> Option<&'a wgpu::TextureView> {
         match self {
             Self::Buffer(view) | Self::Both { buffer: view, .. } => Some(view),
-            Self::Linear(_) => None,
+            Self::Linear(_) | Self::Multisampled(_) => None,
         }
     }
 
@@ -73,7 +97,7 @@ impl<'a> SceneDepth<'a> {
     pub fn linear(&self) -> Option<&'a wgpu::TextureView> {
         match self {
             Self::Linear(view) | Self::Both { linear: view, .. } => Some(view),
-            Self::Buffer(_) => None,
+            Self::Buffer(_) | Self::Multisampled(_) => None,
         }
     }
 }

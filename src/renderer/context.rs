@@ -10,6 +10,7 @@ use super::gpu::pipeline::PipelineStore;
 use super::gpu::timing::Timing;
 use super::layouts::Layouts;
 use super::material_upload::{SharedTextures, create_material};
+use super::pass::depth_resolve::DepthResolveKey;
 use super::pipelines::Pipelines;
 use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
@@ -94,6 +95,10 @@ impl Context {
         plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()
             .try_for_each(|plan| shared.pipelines.compile(plan))?;
+        // OpenGL cannot read multisampled depth.
+        if shared.read_only_depth {
+            shared.pipelines.depth_resolve.check(DepthResolveKey { reversed: false })?;
+        }
         Ok(context)
     }
 

@@ -19,7 +19,7 @@ pub struct Descriptor<'a> {
     /// too. OpenGL and WebGL2 cannot test and sample one texture in the same pass: there, supply a linear target
     /// ([`SceneDepth::Both`](crate::SceneDepth::Both)) or set `None`. See
     /// [`read_only_depth_is_supported`](crate::read_only_depth_is_supported). A multisampled host attaches its
-    /// multisampled depth buffer and supplies a resolved one as scene depth.
+    /// depth buffer and supplies the same as [`SceneDepth::Multisampled`](crate::SceneDepth::Multisampled).
     pub depth_format: Option<wgpu::TextureFormat>,
     /// Samples per pixel of the pass: 1, or a count that the device supports for these formats.
     pub sample_count: u32,

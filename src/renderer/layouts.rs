@@ -22,6 +22,8 @@ pub(crate) struct Layouts {
     pub material: wgpu::BindGroupLayout,
     /// As `material`, with [`LIGHTING_BINDINGS`] only.
     pub lighting: wgpu::BindGroupLayout,
+    /// Of depth_resolve alone: the host's multisampled depth.
+    pub depth_resolve: wgpu::BindGroupLayout,
     pub accumulate: wgpu::BindGroupLayout,
     pub transfer: wgpu::BindGroupLayout,
 }
@@ -68,6 +70,11 @@ impl Layouts {
             texture(wgpu::TextureSampleType::Uint, D2),
             texture(filterable, D2),
         ];
+        let multisampled = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: D2,
+            multisampled: true,
+        };
         let mut transfer = [texture(unfilterable, D2); TRANSFER_TEXTURES];
         transfer[2] = texture(filterable, D2Array);
         Self {
@@ -75,6 +82,7 @@ impl Layouts {
             system: layout("haze system", &[uniform(size_of::<SystemUniform>() as u64), uniform(LIGHTS_SIZE)]),
             material: layout("haze material", &material),
             lighting: layout_of("haze material lighting", &|binding| LIGHTING_BINDINGS.contains(&binding), &material),
+            depth_resolve: layout("haze depth samples", &[multisampled]),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),
             transfer: layout("haze transfer inputs", &transfer),
         }

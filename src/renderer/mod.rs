@@ -15,6 +15,7 @@ mod pass;
 mod path_probe;
 mod pipelines;
 mod plan;
+mod resolved_depth;
 pub mod shader;
 mod sprite_instances;
 mod system_particles;
@@ -27,7 +28,7 @@ mod validate_frame;
 mod warm_up;
 
 use crate::error::{Error, FieldError};
-use crate::frame::Frame;
+use crate::frame::{Frame, SceneDepth};
 use crate::settings::DebugView;
 use crate::view_setup::{ResolvedSettings, ViewGeometry};
 
@@ -48,7 +49,9 @@ use frame_context::FrameContext;
 use gpu::host_pass::HostPass;
 use gpu::record::set_viewport_and_scissor;
 use gpu::submission::SubmissionTracker;
+use pass::depth_resolve::DepthResolveKey;
 use plan::{PipelineInputs, plan};
+use resolved_depth::ResolvedDepth;
 use system_passes::SystemPasses;
 use system_state::SystemState;
 use validate_frame::{host_size, validate};
@@ -67,6 +70,8 @@ pub struct Renderer {
     timing: Option<Timing>,
     /// Frame number of `timing` at the last `prepare`.
     timed_frame: Option<u64>,
+    /// Present while the host's depth is multisampled.
+    resolved_depth: Option<ResolvedDepth>,
     bindings: FrameBindings,
     states: Vec<SystemState>,
     /// Visible systems, farthest first.
@@ -98,6 +103,7 @@ impl Renderer {
             submission: SubmissionTracker::new(device),
             timing: None,
             timed_frame: None,
+            resolved_depth: None,
             bindings: FrameBindings::new(device),
             states: Vec::new(),
             order: Vec::new(),
@@ -122,6 +128,9 @@ impl Renderer {
         let view = ViewGeometry::new(&expected.view)?;
         let inputs = self.pipeline_inputs(&view, expected.scene_depth, expected.debug_views);
         let shared = self.context.shared();
+        if expected.scene_depth == SceneDepthKind::Multisampled {
+            shared.pipelines.depth_resolve.check(DepthResolveKey { reversed: view.depth.reversed })?;
+        }
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
             // The sprite's frame count is not known yet: compiles for one frame and for several.
@@ -155,6 +164,16 @@ impl Renderer {
         let gpu = shared.gpu();
         let view = ViewGeometry::new(&frame.view)?;
         validate(shared, &self.host, frame)?;
+        // The passes read a single-sampled depth in place of a multisampled one.
+        self.resolved_depth = match frame.scene_depth {
+            SceneDepth::Multisampled(samples) => {
+                Some(ResolvedDepth::ensure(self.resolved_depth.take(), shared, samples)?)
+            }
+            _ => None,
+        };
+        let resolved = self.resolved_depth.as_ref().map(|resolved| resolved.target.clone());
+        let scene_depth = resolved.as_ref().map_or(frame.scene_depth, SceneDepth::Buffer);
+        let frame = &Frame { scene_depth, ..*frame };
         let inputs = self.pipeline_inputs(&view, frame.scene_depth.kind(), frame.debug_views);
         // Bind group 0 of every system: view and scene depth.
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
@@ -163,7 +182,9 @@ impl Renderer {
         let timing = self.timing.as_ref();
         self.timed_frame = timing.map(|timing| timing.register_prepare(self.timed_frame));
 
-        let host_size = host_size(&frame.scene_depth);
+        // Keeps the farthest sample of a multisampled scene depth.
+        self.resolved_depth.iter().for_each(|resolved| resolved.pass(shared, &view).record(encoder, timing));
+        let host_size = host_size(frame);
         let bindings = &self.bindings;
         let context = FrameContext { gpu, shared, frame, view: &view, host_size, inputs: &inputs, bindings };
         for system in frame.systems {
@@ -237,7 +258,8 @@ impl Renderer {
 
     /// Returns the GPU memory that this renderer holds, in bytes.
     pub fn memory_use(&self) -> MemoryUse {
-        let own = MemoryUse { buffers: self.bindings.bytes(), ..MemoryUse::default() };
+        let targets = self.resolved_depth.as_ref().map_or(0, ResolvedDepth::bytes);
+        let own = MemoryUse { targets, buffers: self.bindings.bytes(), ..MemoryUse::default() };
         self.states.iter().map(SystemState::memory_use).chain([own]).sum()
     }
 

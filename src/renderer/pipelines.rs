@@ -5,6 +5,7 @@ use super::gpu::pipeline::{PipelineStore, PipelineVariants, Shader, pipeline_var
 use super::layouts::Layouts;
 use super::pass::accumulate::{self, AccumulateKey};
 use super::pass::depth_downsample::{self, DepthDownsampleKey};
+use super::pass::depth_resolve::{self, DepthResolveKey};
 use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
 use super::pass::light_target::{self, LightingKey};
@@ -18,6 +19,7 @@ use crate::error::Error;
 #[derive(Debug)]
 pub(crate) struct Pipelines {
     pub depth_downsample: PipelineVariants<DepthDownsampleKey>,
+    pub depth_resolve: PipelineVariants<DepthResolveKey>,
     pub diffuse_bake: PipelineVariants<DiffuseBakeKey>,
     pub accumulate: PipelineVariants<AccumulateKey>,
     pub light_target: PipelineVariants<LightingKey>,
@@ -43,6 +45,7 @@ impl Pipelines {
         let transfer = with(&layouts.lighting, &layouts.transfer);
         Ok(Self {
             depth_downsample: pipeline_variants!(store, shader, depth_downsample, &frame_and_system),
+            depth_resolve: pipeline_variants!(store, shader, depth_resolve, &[Some(&layouts.depth_resolve)]),
             diffuse_bake: pipeline_variants!(store, shader, diffuse_bake, &material),
             accumulate: pipeline_variants!(store, shader, accumulate, &accumulate),
             light_target: pipeline_variants!(store, shader, light_target, &transfer),
@@ -86,6 +89,6 @@ impl Pipelines {
 
     /// Compiles the sort of a host's particles, which is needed if they arrive unsorted.
     fn compile_depth_sort(&self) -> Result<(), Error> {
-        self.tiled.as_ref().map_or(Ok(()), |tiled| tiled.compile_depth_sort())
+        self.tiled.as_ref().map_or(Ok(()), TiledPipelines::compile_depth_sort)
     }
 }

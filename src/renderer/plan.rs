@@ -5,6 +5,7 @@ use glam::UVec2;
 use super::gpu::host_pass::HostPass;
 use super::pass::accumulate::{AccumulateKey, DepthTest};
 use super::pass::depth_downsample::DepthDownsampleKey;
+use super::pass::depth_resolve::RESOLVED_DEPTH_FORMAT;
 use super::pass::diffuse_bake::DiffuseBakeKey;
 use super::pass::forward::ForwardKey;
 use super::pass::light_target::LightingKey;
@@ -26,6 +27,8 @@ use crate::view_setup::{AttachmentSet, ResolvedSettings};
 pub enum SceneDepthKind {
     /// [`SceneDepth::Buffer`].
     Buffer(wgpu::TextureFormat),
+    /// [`SceneDepth::Multisampled`].
+    Multisampled,
     /// [`SceneDepth::Linear`].
     Linear,
     /// [`SceneDepth::Both`].
@@ -37,6 +40,7 @@ impl SceneDepth<'_> {
     pub fn kind(&self) -> SceneDepthKind {
         match self {
             Self::Buffer(view) => SceneDepthKind::Buffer(view.texture().format()),
+            Self::Multisampled(_) => SceneDepthKind::Multisampled,
             Self::Linear(_) => SceneDepthKind::Linear,
             Self::Both { buffer, .. } => SceneDepthKind::Both(buffer.texture().format()),
         }
@@ -255,6 +259,7 @@ fn depth_test(inputs: &PipelineInputs, settings: &Settings) -> DepthTest {
     }
     match inputs.scene_depth {
         SceneDepthKind::Buffer(format) | SceneDepthKind::Both(format) => DepthTest::Host(format, inputs.reversed),
+        SceneDepthKind::Multisampled => DepthTest::Host(RESOLVED_DEPTH_FORMAT, inputs.reversed),
         // `validate` refuses this case.
         SceneDepthKind::Linear => DepthTest::InShader,
     }
@@ -263,7 +268,7 @@ fn depth_test(inputs: &PipelineInputs, settings: &Settings) -> DepthTest {
 /// Returns true if a system reads the scene's linear target instead of its depth buffer.
 pub(crate) fn reads_linear_target(scene_depth: SceneDepthKind, read_only_depth: bool, settings: &Settings) -> bool {
     match scene_depth {
-        SceneDepthKind::Buffer(_) => false,
+        SceneDepthKind::Buffer(_) | SceneDepthKind::Multisampled => false,
         SceneDepthKind::Linear => true,
         // A backend that cannot test and sample one depth buffer samples the linear target and only tests the buffer.
         SceneDepthKind::Both(_) => settings.technique == Technique::SoftLinear || !read_only_depth,

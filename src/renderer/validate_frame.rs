@@ -22,7 +22,7 @@ use crate::view_setup::AttachmentSet;
 /// Names the first field that is not valid.
 pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> Result<(), FieldError> {
     validate_frame_numbers(frame.exposure, frame.time, frame.up)?;
-    let size = validate_scene_depth(frame)?;
+    let size = validate_scene_depth(shared, frame)?;
     if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
         let View { size: pixels, origin, .. } = frame.view;
         let value = format!("{}x{} from ({}, {})", pixels.x, pixels.y, origin.x, origin.y);
@@ -47,13 +47,39 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> R
 }
 
 /// Returns the size of the host's targets, pixels.
-pub(crate) fn host_size(scene_depth: &SceneDepth<'_>) -> UVec2 {
-    let (SceneDepth::Buffer(view) | SceneDepth::Linear(view) | SceneDepth::Both { buffer: view, .. }) = scene_depth;
-    UVec2::new(view.texture().width(), view.texture().height())
+pub(crate) fn host_size(frame: &Frame<'_>) -> UVec2 {
+    frame.target_size.unwrap_or_else(|| depth_size(&frame.scene_depth))
 }
 
-fn validate_scene_depth(frame: &Frame<'_>) -> Result<UVec2, FieldError> {
-    let size = host_size(&frame.scene_depth);
+/// Returns the size of the texture that holds the scene depth, pixels.
+fn depth_size(scene_depth: &SceneDepth<'_>) -> UVec2 {
+    let texture = scene_depth.texture();
+    UVec2::new(texture.width(), texture.height())
+}
+
+fn validate_scene_depth(shared: &Shared, frame: &Frame<'_>) -> Result<UVec2, FieldError> {
+    let size = depth_size(&frame.scene_depth);
+    if let Some(target_size) = frame.target_size {
+        let is_level = |level: u32| (size >> level).max(UVec2::ONE) == target_size;
+        let levels = frame.scene_depth.texture().mip_level_count();
+        if !(0..levels).any(is_level) {
+            let value = format!("{}x{}", target_size.x, target_size.y);
+            let expected =
+                format!("the size of one of the {levels} mip levels of the scene depth, {}x{}", size.x, size.y);
+            return Err(FieldError::new("target_size", value, expected));
+        }
+    }
+    if let SceneDepth::Multisampled(buffer) = frame.scene_depth {
+        if !shared.read_only_depth {
+            let expected = "Buffer, Linear or Both: this backend (OpenGL) cannot read multisampled depth";
+            return Err(FieldError::new("scene_depth", "Multisampled", expected));
+        }
+        if buffer.texture().sample_count() < 2 {
+            return Err(FieldError::new("scene_depth", "Multisampled with 1 sample", "SceneDepth::Buffer"));
+        }
+        let is_depth = buffer.texture().format().has_depth_aspect();
+        validate_depth_format_and_usage(buffer.texture(), is_depth, "a depth format")?;
+    }
     if let Some(buffer) = frame.scene_depth.buffer() {
         let is_depth = buffer.texture().format().has_depth_aspect();
         validate_depth_texture(size, buffer, is_depth, "a depth format for the depth buffer")?;
@@ -62,7 +88,7 @@ fn validate_scene_depth(frame: &Frame<'_>) -> Result<UVec2, FieldError> {
         let is_linear = linear.texture().format() == wgpu::TextureFormat::R32Float;
         validate_depth_texture(size, linear, is_linear, "R32Float for the linear target")?;
     }
-    Ok(size)
+    Ok(host_size(frame))
 }
 
 fn validate_depth_texture(
@@ -78,8 +104,17 @@ fn validate_depth_texture(
         return refuse(value, &format!("the size of the other depth, {}x{}", size.x, size.y));
     }
     if texture.sample_count() != 1 {
-        return refuse(format!("{} samples", texture.sample_count()), "1 sample; resolve the depth buffer first");
+        return refuse(format!("{} samples", texture.sample_count()), "1 sample, or SceneDepth::Multisampled");
     }
+    validate_depth_format_and_usage(texture, format_fits, expected)
+}
+
+fn validate_depth_format_and_usage(
+    texture: &wgpu::Texture,
+    format_fits: bool,
+    expected: &str,
+) -> Result<(), FieldError> {
+    let refuse = |value: String, expected: &str| Err(FieldError::new("scene_depth", value, expected));
     if !format_fits {
         return refuse(format!("{:?}", texture.format()), expected);
     }
@@ -112,10 +147,12 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
         return Err(FieldError::new(field("settings.technique"), "\"soft_linear\"", expected));
     }
     if system.settings.accumulate.depth_source == DepthSource::Host && !system.settings.is_forward() {
-        let attachable = frame.scene_depth.buffer().is_some_and(|buffer| {
+        let can_be_attached = |buffer: &wgpu::TextureView| {
             let texture = buffer.texture();
             texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT) && !texture.format().has_stencil_aspect()
-        });
+        };
+        let attachable = matches!(frame.scene_depth, SceneDepth::Multisampled(_))
+            || frame.scene_depth.buffer().is_some_and(can_be_attached);
         let is_read = !reads_linear_target(frame.scene_depth.kind(), shared.read_only_depth, system.settings);
         if !attachable || (is_read && !shared.read_only_depth) {
             let expected = "\"reduced\", or a scene_depth that has a depth buffer without stencil, with \

@@ -19,10 +19,12 @@ pub struct HostKind {
     /// Formats of the additional colour attachments of the pass.
     pub additional_attachments: Vec<wgpu::TextureFormat>,
     pub depth_format: wgpu::TextureFormat,
-    /// Sample count of the pass. The depth buffer passed to haze always has one sample.
+    /// Sample count of the pass. The depth buffer passed to haze has one sample, but for [`DepthKind::Multisampled`].
     pub samples: u32,
     /// Format of the colour texture, if the attachment is a view of it in another format.
     pub stored_format: Option<wgpu::TextureFormat>,
+    /// True to put one sample of each pixel of the multisampled depth buffer on the near plane.
+    pub has_near_sample: bool,
     pub exact_filtering: bool,
     /// Size of the targets, pixels, if the view covers only a part of them. `None` for the size of the view.
     pub target_size: Option<UVec2>,
@@ -36,6 +38,7 @@ impl Default for HostKind {
             depth_format: wgpu::TextureFormat::Depth32Float,
             samples: 1,
             stored_format: None,
+            has_near_sample: false,
             exact_filtering: true,
             target_size: None,
         }
@@ -54,6 +57,8 @@ pub struct Host {
     resolved: Option<wgpu::TextureView>,
     /// Single-sampled depth buffer passed to haze.
     pub depth: wgpu::TextureView,
+    /// Depth buffer of the pass, with as many samples: passed to haze as [`DepthKind::Multisampled`].
+    samples: wgpu::TextureView,
     /// Linear view depth passed to haze, metres.
     pub linear: wgpu::TextureView,
     attached_depth: wgpu::TextureView,
@@ -139,6 +144,7 @@ impl Host {
             colour,
             attachments,
             resolved,
+            samples: attached_depth.create_view(&depth_aspect),
             depth: depth.create_view(&depth_aspect),
             linear: whole(&linear),
             attached_depth: whole(&attached_depth),
@@ -175,13 +181,20 @@ impl Host {
         particles: Particles<'_>,
     ) -> Result<(), Error> {
         let system = System { bounds: scene.bounds, ..System::new(0, particles, &scene.settings, &self.material) };
+        let scene_depth = match scene.depth {
+            DepthKind::Buffer => SceneDepth::Buffer(&self.depth),
+            DepthKind::Multisampled => SceneDepth::Multisampled(&self.samples),
+            DepthKind::Linear => SceneDepth::Linear(&self.linear),
+            DepthKind::Both => SceneDepth::Both { buffer: &self.depth, linear: &self.linear },
+        };
         let frame = Frame {
             lights: &scene.lights,
             systems: &[system],
+            target_size: scene.host.target_size,
             exposure: scene.exposure,
             time: scene.time,
             debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
-            ..Frame::new(scene.view, scene_depth(scene.depth, &self.depth, &self.linear))
+            ..Frame::new(scene.view, scene_depth)
         };
         self.renderer.prepare(encoder, &frame)
     }
@@ -242,16 +255,4 @@ fn particle_buffer(gpu: &Headless, particles: &[Particle]) -> wgpu::Buffer {
     });
     gpu.queue.write_buffer(&buffer, 0, bytes);
     buffer
-}
-
-pub fn scene_depth<'a>(
-    kind: DepthKind,
-    buffer: &'a wgpu::TextureView,
-    linear: &'a wgpu::TextureView,
-) -> SceneDepth<'a> {
-    match kind {
-        DepthKind::Buffer => SceneDepth::Buffer(buffer),
-        DepthKind::Linear => SceneDepth::Linear(linear),
-        DepthKind::Both => SceneDepth::Both { buffer, linear },
-    }
 }

@@ -52,6 +52,8 @@ pub struct TestScene {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthKind {
     Buffer,
+    /// For hosts with several samples.
+    Multisampled,
     Linear,
     Both,
 }
@@ -191,14 +193,18 @@ impl TestScene {
     }
 
     /// Depth-buffer value of a surface at a view depth in metres.
+    /// True if the depth buffer stores the near plane as 1.
+    pub fn is_reversed(&self) -> bool {
+        self.ndc_of(1.0) > self.ndc_of(2.0)
+    }
+
     fn ndc_of(&self, view_depth: f32) -> f32 {
         self.view.clip_from_view.project_point3(vec3(0.0, 0.0, self.view_direction_z * view_depth)).z
     }
 
     /// Contents of the depth buffer.
     pub fn ndc_depth(&self) -> Image<f32> {
-        let reversed = self.ndc_of(1.0) > self.ndc_of(2.0);
-        let mut picture = Image::new(self.view.size, if reversed { 0.0 } else { 1.0 });
+        let mut picture = Image::new(self.view.size, if self.is_reversed() { 0.0 } else { 1.0 });
         picture.for_each(|at, texel| {
             if let Some(depth) = self.view_depth(at) {
                 *texel = self.ndc_of(depth);

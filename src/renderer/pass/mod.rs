@@ -3,6 +3,7 @@
 
 pub(crate) mod accumulate;
 pub(crate) mod depth_downsample;
+pub(crate) mod depth_resolve;
 pub(crate) mod depth_sort;
 pub(crate) mod diffuse_bake;
 pub(crate) mod emit;

@@ -17,6 +17,7 @@ macro_rules! embed {
 pub(super) const SOURCES: &[(&str, &str)] = embed![
     "accumulate.wgsl",
     "depth_downsample.wgsl",
+    "depth_resolve.wgsl",
     "depth_sort.wgsl",
     "diffuse_bake.wgsl",
     "emit.wgsl",

@@ -36,6 +36,16 @@ impl TextureAllocator<'_> {
     }
 }
 
+/// Creates a single depth buffer.
+pub(crate) fn depth_target(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    size: UVec2,
+) -> wgpu::TextureView {
+    TextureAllocator { device, bytes: 0, storage: false }.create_whole(label, format, size)
+}
+
 /// Creates a single texture that compute shaders write.
 pub(crate) fn storage_target(
     device: &wgpu::Device,

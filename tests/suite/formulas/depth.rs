@@ -45,6 +45,15 @@ pub fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "farther_ndc_depth",
+            file: "lib/depth.wgsl",
+            wgsl: "y(0, farther_ndc_depth(x(0) > 0.5, x(1), x(2)));",
+            reference: |x| vec![depth::farther_ndc_depth(x[0] > 0.5, x[1], x[2])],
+            cases: random(50, &[(0.0, 1.0); 3]),
+            tolerance: 0.0,
+            mutants: &[("max(a, b), min(a, b)", "min(a, b), max(a, b)")],
+        },
+        Formula {
             name: "view_depth_from_linear",
             file: "lib/depth.wgsl",
             wgsl: "y(0, view_depth_from_linear(x(0)));",

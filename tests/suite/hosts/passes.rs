@@ -5,7 +5,7 @@ use haze::settings::*;
 use haze::{Context, Descriptor, Error, Renderer, wgpu};
 
 use super::{SIZE, device_with_optional_features, encoder, rejected_field, slice};
-use crate::gpu::{can_test, gpu, has_independent_devices};
+use crate::gpu::{can_test, gpu, has_independent_devices, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_host::{Host, HostKind};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
@@ -97,6 +97,79 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
             }
         }
     }
+}
+
+#[test]
+fn multisampled_depth_is_resolved_to_the_farthest_sample() {
+    use wgpu::TextureFormat::{Depth24PlusStencil8, Depth32Float};
+    if !is_tiled_available() {
+        // OpenGL cannot read multisampled depth.
+        let mut scene = TestScene::new(SIZE);
+        (scene.depth, scene.host.samples) = (DepthKind::Multisampled, 4);
+        assert_eq!(rejected_field(Host::new(gpu(), &scene).unwrap().draw(gpu(), &scene)), "scene_depth");
+        return;
+    }
+    let reversed = glam::camera::rh::proj::directx::perspective(0.9, SIZE.x as f32 / SIZE.y as f32, 60.0, 0.1);
+    for (path, depth_format, is_reversed) in [
+        (RenderPath::Raster, Depth32Float, false),
+        (RenderPath::Raster, Depth24PlusStencil8, true),
+        (RenderPath::Tiled, Depth32Float, true),
+        (RenderPath::Forward, Depth32Float, false),
+    ] {
+        for attach_depth in [true, false] {
+            let mut scene = TestScene::new(SIZE);
+            (scene.depth, scene.attach_depth, scene.settings.path) = (DepthKind::Multisampled, attach_depth, path);
+            (scene.host.samples, scene.host.depth_format) = (4, depth_format);
+            // The hardware tests every sample of an attached buffer, and would hide a quarter of the smoke.
+            scene.host.has_near_sample = !attach_depth;
+            if is_reversed {
+                scene.view.clip_from_view = reversed;
+            }
+            assert_eq!(scene.is_reversed(), is_reversed);
+            let mut host = Host::new(gpu(), &scene).unwrap();
+            host.draw(gpu(), &scene).unwrap();
+            gpu().check().unwrap();
+            let psnr = psnr(&host.picture(gpu()).unwrap(), &scene.on_cpu());
+            println!("{path:?} {depth_format:?} attached {attach_depth}: {psnr:.1} dB");
+            assert!(psnr >= MIN_PSNR, "{path:?} {depth_format:?} attached {attach_depth}: {psnr:.1} dB");
+        }
+    }
+}
+
+#[test]
+fn depth_of_a_mip_level_is_measured_by_the_target_size() {
+    let mut scene = TestScene::new(SIZE);
+    scene.attach_depth = false;
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    let expected = scene.on_gpu(gpu()).picture;
+    let texture = gpu().device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: 2 * SIZE.x, height: 2 * SIZE.y, depth_or_array_layers: 1 },
+        mip_level_count: 2,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let mut level = texture.as_image_copy();
+    level.mip_level = 1;
+    let linear = scene.linear_depth();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.x), rows_per_image: None };
+    let size = wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 };
+    gpu().queue.write_texture(level, bytemuck::cast_slice(&linear.texels), layout, size);
+    host.linear = texture.create_view(&wgpu::TextureViewDescriptor {
+        base_mip_level: 1,
+        mip_level_count: Some(1),
+        ..Default::default()
+    });
+    scene.depth = DepthKind::Linear;
+    scene.host.target_size = Some(SIZE);
+    host.draw(gpu(), &scene).unwrap();
+    let psnr = psnr(&host.picture(gpu()).unwrap(), &expected);
+    assert!(psnr >= MIN_PSNR, "{psnr:.1} dB");
+    scene.host.target_size = Some(SIZE + 1);
+    assert_eq!(rejected_field(host.draw(gpu(), &scene)), "target_size");
 }
 
 #[test]

@@ -13,6 +13,7 @@ use crate::test_scene::{DepthKind, TestScene};
 fn warm_up<'a>(scene: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
     let scene_depth = match scene.depth {
         DepthKind::Buffer => SceneDepthKind::Buffer(scene.host.depth_format),
+        DepthKind::Multisampled => SceneDepthKind::Multisampled,
         DepthKind::Linear => SceneDepthKind::Linear,
         DepthKind::Both => SceneDepthKind::Both(scene.host.depth_format),
     };

@@ -9,7 +9,8 @@ use haze_demo::headless::Headless;
 use crate::test_scene::TestScene;
 
 pub(super) fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, sample_count: u32) -> wgpu::Texture {
-    let sampled = if sample_count > 1 { wgpu::TextureUsages::empty() } else { wgpu::TextureUsages::TEXTURE_BINDING };
+    let is_sampled = sample_count == 1 || format.has_depth_aspect();
+    let sampled = if is_sampled { wgpu::TextureUsages::TEXTURE_BINDING } else { wgpu::TextureUsages::empty() };
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("host target"),
         size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
@@ -76,7 +77,14 @@ pub(super) fn depth_buffer(gpu: &Headless, scene: &TestScene, size: UVec2, sampl
     let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @builtin(frag_depth) f32 {
         return textureLoad(values, vec2i(p.xy), 0).r;
     }";
-    fill(gpu, &values, &depth, fragment);
+    let nearest = f32::from(u8::from(scene.is_reversed()));
+    let with_near_sample = format!(
+        "@fragment fn fragment(@builtin(position) p: vec4f, @builtin(sample_index) i: u32) -> @builtin(frag_depth) f32 {{
+            return select(textureLoad(values, vec2i(p.xy), 0).r, {nearest:.1}, i == 1u);
+        }}"
+    );
+    let has_near_sample = samples > 1 && scene.host.has_near_sample;
+    fill(gpu, &values, &depth, if has_near_sample { &with_near_sample } else { fragment });
     depth
 }
 
