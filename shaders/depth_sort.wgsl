@@ -23,7 +23,7 @@ fn depth_keys(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let position = particles[tiles.first + 2u * index].xyz;
-    let view_z = (view.view_from_world * vec4f(position, 1.0)).z;
+    let view_z = (system.view_from_particles * vec4f(position, 1.0)).z;
     keys[index] = ~front_to_back_bits(view_z);
     indices[index] = index;
 }

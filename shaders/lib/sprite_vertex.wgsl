@@ -90,7 +90,7 @@ struct ProjectedSprite {
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.
 fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite {
-    let centre = (view.view_from_world * vec4f(particle.position_radius.xyz, 1.0)).xyz;
+    let centre = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     var radius = particle.position_radius.w * system.size;
     if TECHNIQUE == TECHNIQUE_SPHERICAL_BILLBOARD {
         radius *= system.billboard_radius;

@@ -2,6 +2,7 @@
 // the values of those settings.
 
 struct System {
+    view_from_particles: mat4x4f,
     // World space.
     bounds_min: vec3f,
     // View depth of the box's near side.

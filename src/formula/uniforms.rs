@@ -60,6 +60,7 @@ uniform! {
 uniform! {
     /// `System` in `shaders/lib/system.wgsl`.
     SystemUniform {
+        view_from_particles: Mat4,
         bounds_min: Vec3,
         bounds_near: f32,
         bounds_max: Vec3,

@@ -1,6 +1,6 @@
 //! Input of one frame.
 
-use glam::{UVec2, Vec3};
+use glam::{Mat4, UVec2, Vec3};
 
 use super::bounds::Bounds;
 use super::emitter_snapshot::EmitterSnapshot;
@@ -109,8 +109,11 @@ pub struct System<'a> {
     pub key: u64,
     /// The sprites, in any order.
     pub particles: Particles<'a>,
-    /// World-space box that contains every sprite with its corners: [`Settings::sprite_extent`] radii around each
-    /// particle. It decides which pixels are lit, which lights reach the smoke, and whether the system is visible.
+    /// Places the particles in the world: rotation, translation and a uniform scale, which also multiplies their radii.
+    /// An emitter that moves as a whole, or a simulation in local space, needs no work on the CPU.
+    pub world_from_particles: Mat4,
+    /// Box in the particles' space that contains every sprite with its corners: [`Settings::sprite_extent`] radii around
+    /// each particle. It decides which pixels are lit, which lights reach the smoke, and whether the system is visible.
     /// Sprites outside the box may be cut off; a box that is too large costs time. `None` measures a slice with
     /// [`particle_bounds`](crate::frame::particle_bounds).
     pub bounds: Option<Bounds>,
@@ -128,7 +131,7 @@ pub struct System<'a> {
 impl<'a> System<'a> {
     /// System with a measured box. `key`: any number that the frame's other systems do not have.
     pub const fn new(key: u64, particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
-        Self { key, particles, bounds: None, depth: None, settings, material }
+        Self { key, particles, world_from_particles: Mat4::IDENTITY, bounds: None, depth: None, settings, material }
     }
 }
 

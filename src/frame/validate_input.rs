@@ -1,6 +1,6 @@
 //! Validation of the input that both renderers share.
 
-use glam::{UVec2, Vec3};
+use glam::{Mat4, UVec2, Vec3, Vec4};
 
 use super::bounds::Bounds;
 use super::light::{Light, LightKind, MAX_LIGHTS};
@@ -31,6 +31,21 @@ pub fn validate_bounds_and_depth(index: usize, bounds: Option<&Bounds>, depth: O
         }
         _ => Ok(()),
     }
+}
+
+/// Validates the placement of the particles of system `index`.
+pub fn validate_world_from_particles(index: usize, matrix: &Mat4) -> Result<(), FieldError> {
+    let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4::truncate);
+    let scale = axes[0].length();
+    let is_affine = matrix.row(3) == Vec4::W && matrix.is_finite() && scale > 0.0;
+    let has_one_scale = axes.iter().all(|axis| (axis.length() - scale).abs() <= 1.0e-3 * scale);
+    let products = [axes[0].dot(axes[1]), axes[1].dot(axes[2]), axes[2].dot(axes[0])];
+    let is_orthogonal = products.iter().all(|product| product.abs() <= 1.0e-3 * scale * scale);
+    if is_affine && has_one_scale && is_orthogonal {
+        return Ok(());
+    }
+    let expected = "rotation, translation and a uniform scale above 0";
+    Err(FieldError::new(format!("systems[{index}].world_from_particles"), matrix, expected))
 }
 
 /// Validates the lights.

@@ -5,7 +5,7 @@ use super::gpu::idle_counter::IdleCounter;
 use super::sprite_instances::Sprites;
 use crate::frame::{Particle, Particles};
 use crate::settings::{BlendOrder, Settings};
-use crate::view_setup::{DrawingOrder, ViewGeometry};
+use crate::view_setup::{DrawingOrder, ParticleSpace};
 
 /// Processor that sorts particles for compute shaders. If the CPU also draws (software adapters), sorting on the CPU
 /// directly is faster.
@@ -30,7 +30,7 @@ impl Instances {
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
-        view: &ViewGeometry,
+        space: &ParticleSpace,
         order: &mut DrawingOrder,
         particles: Particles<'_>,
         settings: &Settings,
@@ -47,7 +47,7 @@ impl Instances {
             Particles::Slice(particles) => particles,
             Particles::Emitter(emission) => {
                 emission.evaluate(&mut self.evaluated);
-                order.read(view, &self.evaluated);
+                order.read(space, &self.evaluated);
                 &self.evaluated
             }
         };

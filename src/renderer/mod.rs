@@ -6,6 +6,7 @@ mod counts;
 mod descriptor;
 mod frame_bindings;
 mod frame_context;
+mod frame_statistics;
 mod gpu;
 mod instances;
 mod layouts;
@@ -135,7 +136,7 @@ impl Renderer {
             settings.validate(|| format!("settings[{index}]"))?;
             // The sprite's frame count is not known yet: compiles for one frame and for several.
             for frame_count in [1.0, 2.0] {
-                let resolved = ResolvedSettings::new(settings, view.size, frame_count, shared.six_way);
+                let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, shared.six_way);
                 for &path in settings.path.candidates() {
                     let settings = resolved.with_path(path);
                     for back_faces in [false, true] {
@@ -227,11 +228,35 @@ impl Renderer {
     /// Records a debug view instead of the final image. Draws nothing unless `debug_view` is one of the frame's
     /// [`debug_views`](Frame::debug_views). After one `prepare`, any number of debug views can be drawn.
     pub fn render_debug_view(&self, pass: &mut wgpu::RenderPass<'_>, debug_view: DebugView) {
+        self.record_systems(pass, self.order.iter(), debug_view);
+    }
+
+    /// Records the smoke of one system, for hosts that draw smoke between their own transparent objects: draw far to
+    /// near, with [`depth_of`](Self::depth_of) as the smoke's depth. State of the pass as in [`render`](Self::render).
+    /// Draws nothing if the system with this key is out of sight.
+    pub fn render_system(&self, pass: &mut wgpu::RenderPass<'_>, key: u64) {
+        let visible = self.order.iter().filter(|visible| self.states[visible.state].key == key);
+        self.record_systems(pass, visible, DebugView::Final);
+    }
+
+    /// Returns the view depth of a system's smoke, metres, by which [`render`](Self::render) sorts: `System::depth`, or
+    /// the measured one. `None` if the system with this key is out of sight.
+    pub fn depth_of(&self, key: u64) -> Option<f32> {
+        let visible = self.order.iter().find(|visible| self.states[visible.state].key == key)?;
+        Some(self.states[visible.state].lit_depth())
+    }
+
+    fn record_systems<'a>(
+        &'a self,
+        pass: &mut wgpu::RenderPass<'_>,
+        systems: impl Iterator<Item = &'a VisibleSystem>,
+        debug_view: DebugView,
+    ) {
         let Some(view) = self.view.as_ref().filter(|_| !self.order.is_empty()) else { return };
         self.submission.track_pass(pass);
         let timing = self.timing.as_ref();
         set_viewport_and_scissor(pass, view.origin, view.size);
-        for visible in &self.order {
+        for visible in systems {
             match self.states[visible.state].passes() {
                 // Path `forward`: lights every sprite fragment.
                 Some(SystemPasses::Forward(forward)) if debug_view.shows_lit_smoke() => {
@@ -248,38 +273,6 @@ impl Renderer {
                 _ => {}
             }
         }
-    }
-
-    /// Returns the targets of the system with this key, as the last [`prepare`](Self::prepare) fills them, for tools
-    /// and for a host's own passes. `None` if the system is out of sight or drawn forward.
-    pub fn targets(&self, key: u64) -> Option<TargetViews<'_>> {
-        self.states.iter().find(|state| state.key == key)?.target_views()
-    }
-
-    /// Returns the GPU memory that this renderer holds, in bytes.
-    pub fn memory_use(&self) -> MemoryUse {
-        let targets = self.resolved_depth.as_ref().map_or(0, ResolvedDepth::bytes);
-        let own = MemoryUse { targets, buffers: self.bindings.bytes(), ..MemoryUse::default() };
-        self.states.iter().map(SystemState::memory_use).chain([own]).sum()
-    }
-
-    /// Counts the systems, sprites and texels that [`render`](Self::render) draws after the last
-    /// [`prepare`](Self::prepare).
-    pub fn counts(&self) -> FrameCounts {
-        self.order.iter().map(|visible| self.states[visible.state].counts()).sum()
-    }
-
-    /// Returns the path that `auto` chose in the last [`prepare`](Self::prepare) for the system with this key, with the
-    /// reason. `None` if the system is out of sight or its path setting is not `auto`.
-    pub fn path_choice(&self, key: u64) -> Option<PathChoice> {
-        self.states.iter().find(|state| state.key == key)?.choice()
-    }
-
-    /// Computes the overdraw of the sprites of the last [`prepare`](Self::prepare). Every call iterates over all
-    /// sprites on the CPU: about 0.5 ms for 10,000 sprites.
-    pub fn overdraw(&self) -> Overdraw {
-        let Some(view) = self.view.map(|view| view.uniform(false)) else { return Overdraw::default() };
-        self.order.iter().map(|visible| self.states[visible.state].overdraw(&view)).sum()
     }
 
     /// Measures the GPU time of this renderer's passes from the next [`prepare`](Self::prepare) on. `None`, the initial

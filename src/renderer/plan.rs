@@ -147,7 +147,7 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
     let forward = Settings { path: RenderPath::Forward, ..Settings::default() };
     let tiled = Settings { path: RenderPath::Tiled, ..Settings::default() };
     [deferred, lit, forward, tiled]
-        .map(|settings| plan(&inputs, &ResolvedSettings::new(&settings, UVec2::ONE, 2.0, true), false))
+        .map(|settings| plan(&inputs, &ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 2.0, true), false))
 }
 
 fn deferred<'a>(

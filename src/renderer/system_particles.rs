@@ -10,7 +10,7 @@ use super::system_passes::ParticlePass;
 use super::tiled::{EmittedParticles, SortedParticles};
 use crate::frame::{Bounds, Particle, Particles, System};
 use crate::settings::{RenderPath, Settings};
-use crate::view_setup::{ParticleMeasures, ViewGeometry};
+use crate::view_setup::{ParticleMeasures, ParticleSpace, ViewGeometry};
 
 /// Particles of one system, and the buffers that hold them.
 #[derive(Debug, Default)]
@@ -27,8 +27,14 @@ pub(crate) struct SystemParticles {
 }
 
 impl SystemParticles {
-    /// Measures a slice or an emitter's sample. Returns the box that contains every sprite.
-    pub fn measure(&mut self, view: &ViewGeometry, system: &System<'_>, settings: &Settings) -> Bounds {
+    /// Measures a slice or an emitter's sample. Returns the world-space box that contains every sprite.
+    pub fn measure(
+        &mut self,
+        view: &ViewGeometry,
+        space: &ParticleSpace,
+        system: &System<'_>,
+        settings: &Settings,
+    ) -> Bounds {
         if let Particles::Emitter(emission) = system.particles {
             emission.sample(&mut self.sample);
         }
@@ -37,10 +43,12 @@ impl SystemParticles {
             Particles::Emitter(_) => &self.sample,
             Particles::Buffer { .. } => &[],
         };
-        self.measures.measure(view, known, settings);
+        self.measures.measure(space, view.depth.near, known, settings);
         match (system.bounds, system.particles) {
-            (Some(bounds), _) => bounds,
-            (None, Particles::Emitter(emission)) => emission.bounds(settings.sprite_extent()),
+            (Some(bounds), _) => space.world_bounds(&bounds),
+            (None, Particles::Emitter(emission)) => {
+                space.world_bounds(&emission.bounds(system.settings.sprite_extent()))
+            }
             // `validate` refuses a buffer without bounds.
             (None, Particles::Slice(_) | Particles::Buffer { .. }) => self.measures.bounds,
         }
@@ -66,11 +74,12 @@ impl SystemParticles {
     pub fn upload(
         &mut self,
         context: &FrameContext<'_>,
+        space: &ParticleSpace,
         particles: Particles<'_>,
         settings: &Settings,
         groups: &Groups,
     ) -> Option<(Sprites, Option<ParticlePass>)> {
-        let FrameContext { gpu, shared, view, .. } = context;
+        let FrameContext { gpu, shared, .. } = context;
         let is_tiled = settings.path == RenderPath::Tiled;
         if let (Particles::Emitter(emission), Some(tiled), true) = (particles, &shared.pipelines.tiled, is_tiled) {
             self.instances = Instances::default();
@@ -79,7 +88,7 @@ impl SystemParticles {
         }
         let sorted_by = shared.tiles().filter(|_| is_tiled);
         let sorted_by = sorted_by.map(|cooperative| if cooperative { SortedBy::Gpu } else { SortedBy::Cpu });
-        let sprites = self.instances.write(gpu, view, &mut self.measures.order, particles, settings, sorted_by)?;
+        let sprites = self.instances.write(gpu, space, &mut self.measures.order, particles, settings, sorted_by)?;
         match &shared.pipelines.tiled {
             Some(tiled) if !is_tiled && particles.need_sorting(settings) => {
                 let (sprites, sort) = self.depth_sorted.write(gpu, tiled, &sprites);

@@ -22,7 +22,8 @@ use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::System;
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
-    ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, light_uniforms, system_setup,
+    ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, light_uniforms,
+    system_setup,
 };
 
 /// Buffers and targets of one system, and its passes of the current frame.
@@ -109,6 +110,11 @@ impl SystemState {
     /// Returns the view depth of the smoke's centre, metres.
     pub fn distance(&self) -> f32 {
         self.prepared.as_ref().map_or(0.0, |prepared| prepared.setup.distance)
+    }
+
+    /// Returns the same in the host's view space, metres.
+    pub fn lit_depth(&self) -> f32 {
+        self.prepared.as_ref().map_or(0.0, |prepared| prepared.setup.lit_depth)
     }
 
     pub fn memory_use(&self) -> MemoryUse {
@@ -199,14 +205,17 @@ impl SystemState {
     fn prepare(&mut self, context: &FrameContext<'_>, system: &System<'_>) -> Option<PreparedSystem> {
         let FrameContext { gpu, shared, frame, view, .. } = context;
         let material = &system.material.info;
-        let settings = ResolvedSettings::new(system.settings, view.size, material.frame_count, shared.six_way);
-        let bounds = self.particles.measure(view, system, &settings);
+        let space = ParticleSpace::new(view, &system.world_from_particles);
+        let settings =
+            ResolvedSettings::new(system.settings, space.scale, view.size, material.frame_count, shared.six_way);
+        let bounds = self.particles.measure(view, &space, system, &settings);
         light_uniforms(view, frame.lights, frame.exposure, &bounds, &mut self.light_uniforms);
         let known = self.particles.known(system.particles);
         let (particles, particles_per_sample) = known.unwrap_or((&[], 1));
         let in_world = SystemInput {
             bounds: &bounds,
             depth: system.depth,
+            space: &space,
             extent: self.particles.measures.extent(),
             particles,
             particles_per_sample,
@@ -238,7 +247,7 @@ impl SystemState {
             material: system.material.bind_group.clone(),
             lighting: system.material.lighting.clone(),
         };
-        let (sprites, particle_pass) = self.particles.upload(context, system.particles, &settings, &groups)?;
+        let (sprites, particle_pass) = self.particles.upload(context, &space, system.particles, &settings, &groups)?;
         let sampled = matches!(particle_pass, Some(ParticlePass::Emit(_))).then_some(particles_per_sample);
         let builder = PassBuilder { gpu: *gpu, pipelines: &shared.pipelines, groups, sprites };
         let passes = match &plan {

@@ -11,6 +11,7 @@ use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::error::FieldError;
 use crate::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
+    validate_world_from_particles,
 };
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, RenderPath, Technique};
@@ -134,6 +135,7 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
             "\"raster\", or a device with compute shaders and WebGPU's default limits; OpenGL is not supported";
         return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
     }
+    validate_world_from_particles(index, &system.world_from_particles)?;
     validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
     let field = |name: &str| format!("systems[{index}].{name}");
     validate_particles(shared, system, &field)?;

@@ -3,7 +3,7 @@
 
 use glam::Vec4;
 
-use super::view_geometry::ViewGeometry;
+use super::particle_space::ParticleSpace;
 use crate::frame::Particle;
 
 /// Keys of the visible particles.
@@ -23,9 +23,9 @@ const MIN_RADIX_KEYS: usize = 512;
 
 impl DrawingOrder {
     /// Reads the keys of particles.
-    pub fn read(&mut self, view: &ViewGeometry, particles: &[Particle]) {
+    pub fn read(&mut self, space: &ParticleSpace, particles: &[Particle]) {
         self.clear();
-        let depth_row = depth_row(view);
+        let depth_row = depth_row(space);
         for (index, particle) in (0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()) {
             self.push(depth_row, index, particle);
         }
@@ -91,9 +91,9 @@ impl DrawingOrder {
     }
 }
 
-/// Returns the third row of `view_from_world`, which gives view z; it increases towards the viewer.
-pub(super) fn depth_row(view: &ViewGeometry) -> Vec4 {
-    view.view_from_world.row(2)
+/// Returns the third row of `view_from_particles`, which gives view z; it increases towards the viewer.
+pub(super) fn depth_row(space: &ParticleSpace) -> Vec4 {
+    space.view_from_particles.row(2)
 }
 
 /// Maps a number to bits that sort in the same order. (Herf, "Radix tricks", 2001)
@@ -106,6 +106,7 @@ fn ordered_bits(value: f32) -> u32 {
 mod tests {
     use super::*;
     use crate::frame::View;
+    use crate::view_setup::view_geometry::ViewGeometry;
     use glam::camera::rh;
     use glam::{Mat4, UVec2, Vec3};
 
@@ -123,7 +124,7 @@ mod tests {
             Particle { amount: 0.0, ..at(-1.0, 5.0) },
         ];
         let (mut order, mut sorted) = (DrawingOrder::default(), Vec::new());
-        order.read(&view, &particles);
+        order.read(&ParticleSpace::new(&view, &Mat4::IDENTITY), &particles);
         order.write(&particles, true, &mut sorted);
         let frames: Vec<_> = sorted.iter().map(|particle| particle.frame).collect();
         assert_eq!(frames, [3.0, 0.0, 4.0, 2.0]);

@@ -5,6 +5,7 @@ mod attachment_role;
 mod drawing_order;
 mod optical_depth;
 mod particle_measures;
+mod particle_space;
 mod projected_bounds;
 mod resolved_settings;
 mod smoke_extent;
@@ -17,6 +18,7 @@ pub use attachment_role::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS}
 pub use drawing_order::DrawingOrder;
 pub use optical_depth::optical_depth;
 pub use particle_measures::ParticleMeasures;
+pub use particle_space::ParticleSpace;
 pub use resolved_settings::ResolvedSettings;
 pub use smoke_extent::SmokeExtent;
 pub use sprite_projector::{ProjectedSprite, SpriteProjector, SpriteTrim, TexelGrid};

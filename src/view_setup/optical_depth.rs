@@ -3,6 +3,7 @@
 
 use glam::{DVec2, Vec3Swizzles, Vec4};
 
+use super::particle_space::ParticleSpace;
 use super::smoke_extent::SmokeExtent;
 use super::view_geometry::ViewGeometry;
 use crate::formula::order::{FRONT_KNOTS, knot_coordinate};
@@ -18,7 +19,7 @@ const ASSUMED_OPTICAL_DEPTH: f32 = 4.0;
 /// Computes the optical depth in front of each knot of `optical_depth_in_front`. `particles_per_sample`: number of
 /// sprites that each particle represents.
 pub(super) fn optical_depths(
-    view: &ViewGeometry,
+    (view, space): (&ViewGeometry, &ParticleSpace),
     particles: &[Particle],
     particles_per_sample: u32,
     settings: &Settings,
@@ -29,7 +30,7 @@ pub(super) fn optical_depths(
     // the view-space positions.
     let (mut total, mut sum, mut squares) = (0.0_f64, DVec2::ZERO, DVec2::ZERO);
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
-        let position = view.view_position(particle.position);
+        let position = space.view_position(particle.position);
         let (optical_depth, radius) = centre_optical_depth_and_radius(particle, settings);
         let in_front = ((-position.z - view.depth.near) / radius).clamp(0.0, 1.0);
         let area = 4.0 * radius * radius;
@@ -111,7 +112,13 @@ mod tests {
         let wall = |(depth, amount)| (0..256).map(move |i| sprite(depth, amount, i));
         let particles: Vec<_> = [8.0, 12.0].into_iter().zip(amounts).flat_map(wall).collect();
         let extent = SmokeExtent { centre: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
-        let knots = optical_depths(&view, &particles, 1, &Settings::default(), &extent);
+        let knots = optical_depths(
+            (&view, &ParticleSpace::new(&view, &Mat4::IDENTITY)),
+            &particles,
+            1,
+            &Settings::default(),
+            &extent,
+        );
         depths.map(|depth| optical_depth_in_front(&knots, depth, extent.near, extent.far))
     }
 

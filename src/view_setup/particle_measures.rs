@@ -1,8 +1,8 @@
 //! One iteration over a system's particles per frame: bounding box, extent of the smoke, and drawing order.
 
 use super::drawing_order::{DrawingOrder, depth_row};
+use super::particle_space::ParticleSpace;
 use super::smoke_extent::{ExtentSums, SmokeExtent};
-use super::view_geometry::ViewGeometry;
 use crate::frame::{Bounds, Particle};
 use crate::settings::Settings;
 
@@ -22,16 +22,17 @@ impl Default for ParticleMeasures {
 }
 
 impl ParticleMeasures {
-    /// Measures particles; replaces all earlier measures.
-    pub fn measure(&mut self, view: &ViewGeometry, particles: &[Particle], settings: &Settings) {
-        let (reach, size, depth_row) = (settings.sprite_extent(), settings.sprite.size, depth_row(view));
+    /// Measures particles; replaces all earlier measures. `near`: view depth of the near plane, metres. `settings`: their
+    /// sizes are in metres of the world.
+    pub fn measure(&mut self, space: &ParticleSpace, near: f32, particles: &[Particle], settings: &Settings) {
+        let (reach, size, depth_row) = (settings.sprite_extent(), settings.sprite.size, depth_row(space));
         self.bounds = Bounds::EMPTY;
         self.order.clear();
         self.sums.clear();
         for (index, particle) in (0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()) {
-            self.bounds.include(particle.position, particle.radius * reach);
+            self.bounds.include(space.world_position(particle.position), particle.radius * reach);
             self.order.push(depth_row, index, particle);
-            self.sums.include(view, particle, size);
+            self.sums.include(near, space.view_position(particle.position), particle, size);
         }
     }
 

@@ -16,11 +16,13 @@ pub struct ResolvedSettings {
 }
 
 impl ResolvedSettings {
-    /// `picture`: size of the view, pixels. `frame_count`: number of frames of the sprite. `has_six_way`: false if the
+    /// `particle_scale`: metres per unit of the particles' space; sprite sizes grow by it. `picture`: size of the view,
+    /// pixels. `frame_count`: number of frames of the sprite. `has_six_way`: false if the
     /// device cannot light by six-way maps; normals replace them.
-    pub fn new(settings: &Settings, picture: UVec2, frame_count: f32, has_six_way: bool) -> Self {
+    pub fn new(settings: &Settings, particle_scale: f32, picture: UVec2, frame_count: f32, has_six_way: bool) -> Self {
         let lighting = if has_six_way { settings.lighting } else { Lighting::Normals };
-        let sprite = settings.sprite.for_frames(frame_count);
+        let mut sprite = settings.sprite.for_frames(frame_count);
+        sprite.size *= particle_scale;
         let scale = settings.accumulate.effective_scale(picture);
         Self { settings: Settings { lighting, sprite, ..*settings }, scale }
     }

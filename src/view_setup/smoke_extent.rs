@@ -49,9 +49,9 @@ impl ExtentSums {
         *self = Self { faint_backs, ..Self::default() };
     }
 
-    /// Adds a visible particle, weighted by amount and area. `size` multiplies its radius.
-    pub fn include(&mut self, view: &ViewGeometry, particle: &Particle, size: f32) {
-        let position = view.view_position(particle.position);
+    /// Adds a visible particle at a view-space position, weighted by amount and area. `near`: view depth of the near
+    /// plane, metres. `size` multiplies its radius.
+    pub fn include(&mut self, near: f32, position: Vec3, particle: &Particle, size: f32) {
         let back = -position.z + particle.radius * size;
         let share = particle.shown_amount() / NEARLY_TRANSPARENT;
         if share < 1.0 {
@@ -62,7 +62,7 @@ impl ExtentSums {
         let position = position.as_dvec3();
         let radius = f64::from(particle.radius * size);
         // The weight of a sprite fades out while it passes the near plane.
-        let in_front = ((-position.z - f64::from(view.depth.near)) / radius).clamp(0.0, 1.0);
+        let in_front = ((-position.z - f64::from(near)) / radius).clamp(0.0, 1.0);
         let weight = f64::from(particle.shown_amount()) * in_front * radius * radius;
         self.weights += weight;
         self.positions += position * weight;
@@ -126,7 +126,10 @@ mod tests {
         let bounds = particle_bounds(particles, 1.5);
         let mut sums = ExtentSums::default();
         sums.clear();
-        particles.iter().filter(|particle| particle.is_visible()).for_each(|puff| sums.include(&view, puff, 1.0));
+        particles
+            .iter()
+            .filter(|particle| particle.is_visible())
+            .for_each(|puff| sums.include(view.depth.near, puff.position, puff, 1.0));
         SmokeExtent::new(&view, sums.extent(), &bounds, &project_bounds(&bounds, &view).unwrap(), depth)
     }
 

@@ -85,7 +85,7 @@ impl SpriteProjector<'_> {
     /// Same as `project_sprite()` in the shader; `None` if the sprite is hidden.
     pub fn project(&self, particle: &Particle, texels_per_pixel: f32) -> Option<ProjectedSprite> {
         let Self { view, system, technique, trim } = *self;
-        let centre = view.view_from_world.transform_point3(particle.position);
+        let centre = self.system.view_from_particles.transform_point3(particle.position);
         let mut radius = particle.radius * system.size;
         if technique == Technique::SphericalBillboard {
             radius *= system.billboard_radius;

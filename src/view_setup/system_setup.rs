@@ -3,6 +3,7 @@
 use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 
 use super::optical_depth::optical_depths;
+use super::particle_space::ParticleSpace;
 use super::projected_bounds::{TargetRect, project_bounds, target_rect};
 use super::resolved_settings::ResolvedSettings;
 use super::smoke_extent::SmokeExtent;
@@ -22,6 +23,8 @@ pub struct SystemInput<'a> {
     pub bounds: &'a Bounds,
     /// View depth that the host chose for lighting, metres.
     pub depth: Option<f32>,
+    /// Placement of the particles.
+    pub space: &'a ParticleSpace,
     /// Extent of the particles, if they are known and one of them is in front of the viewer.
     pub extent: Option<SmokeExtent>,
     /// Empty if the particles are on the GPU.
@@ -66,7 +69,7 @@ impl SystemSetup {
 /// Places a system in the view; `None` if it is out of sight. `targets`: size of the host's targets, pixels; the view
 /// may be a part of them.
 pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
-    let SystemInput { bounds, depth, extent, particles, particles_per_sample, .. } = *system;
+    let SystemInput { bounds, depth, space, extent, particles, particles_per_sample, .. } = *system;
     let SystemInput { settings, material, lights, up, exposure, time, .. } = *system;
     let projected = project_bounds(bounds, view)?;
     let extent = SmokeExtent::new(view, extent, bounds, &projected, depth);
@@ -81,6 +84,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
     };
 
     let uniform = SystemUniform {
+        view_from_particles: space.view_from_particles,
         bounds_min: bounds.min,
         bounds_near: projected.near,
         bounds_max: bounds.max,
@@ -130,7 +134,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         depth_weight: accumulate.depth_weight,
         front_knots: match settings.order() {
             BlendOrder::Sorted => [Vec4::ZERO; 4],
-            BlendOrder::Weighted => optical_depths(view, particles, particles_per_sample, settings, &extent),
+            BlendOrder::Weighted => optical_depths((view, space), particles, particles_per_sample, settings, &extent),
         },
         spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
     };

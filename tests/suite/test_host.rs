@@ -180,7 +180,9 @@ impl Host {
         scene: &TestScene,
         particles: Particles<'_>,
     ) -> Result<(), Error> {
-        let system = System { bounds: scene.bounds, ..System::new(0, particles, &scene.settings, &self.material) };
+        let (bounds, world_from_particles) = (scene.bounds, scene.world_from_particles);
+        let system =
+            System { bounds, world_from_particles, ..System::new(0, particles, &scene.settings, &self.material) };
         let scene_depth = match scene.depth {
             DepthKind::Buffer => SceneDepth::Buffer(&self.depth),
             DepthKind::Multisampled => SceneDepth::Multisampled(&self.samples),
@@ -201,6 +203,16 @@ impl Host {
 
     /// Records the host's pass, the second half of a frame.
     pub fn render(&self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) {
+        self.render_with(encoder, scene, |pass| self.renderer.render_debug_view(pass, scene.debug_view));
+    }
+
+    /// Records the host's pass; `draw` records its contents.
+    pub fn render_with(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &TestScene,
+        draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
         let [r, g, b, a] = BACKDROP.to_array().map(f64::from);
         let attachments: Vec<_> = self
             .attachments
@@ -229,7 +241,7 @@ impl Host {
             timestamp_writes: self.timing.as_ref().and_then(|timing| timing.host_pass("host")),
             ..Default::default()
         });
-        self.renderer.render_debug_view(&mut pass, scene.debug_view);
+        draw(&mut pass);
     }
 
     /// Reads back the colour target as floats. sRGB formats are decoded to linear light.

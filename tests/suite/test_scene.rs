@@ -29,6 +29,7 @@ pub struct TestScene {
     pub bounds: Option<Bounds>,
     pub settings: Settings,
     pub material: MaterialAssets,
+    pub world_from_particles: Mat4,
     pub exposure: f32,
     pub time: f32,
     pub up: Vec3,
@@ -167,6 +168,7 @@ impl TestScene {
             // Fixed, because the choice of `auto` depends on the device.
             settings: Settings { path: RenderPath::Raster, boost: 1.5, ..Settings::default() },
             material: material(),
+            world_from_particles: Mat4::IDENTITY,
             exposure: 1.0,
             time: 1.0,
             up: Vec3::Y,
@@ -232,6 +234,7 @@ impl TestScene {
             scene_depth: &self.ndc_depth(),
             lights: &self.lights,
             systems: &[haze_reference::System {
+                world_from_particles: self.world_from_particles,
                 bounds: self.bounds,
                 ..haze_reference::System::new(&self.particles, &self.settings, &self.material)
             }],

@@ -1,6 +1,6 @@
 //! Input of the CPU renderer: the same as that of the GPU renderer, in memory.
 
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
@@ -41,7 +41,9 @@ impl<'a> Frame<'a> {
 pub struct System<'a> {
     /// The sprites, in any order.
     pub particles: &'a [Particle],
-    /// Box that contains every sprite; `None` measures it.
+    /// Places the particles in the world: rotation, translation and a uniform scale.
+    pub world_from_particles: Mat4,
+    /// Box in the particles' space that contains every sprite; `None` measures it.
     pub bounds: Option<Bounds>,
     /// View depth at which the system is lit; `None` measures it.
     pub depth: Option<f32>,
@@ -54,6 +56,6 @@ pub struct System<'a> {
 impl<'a> System<'a> {
     /// System with measured box and depth.
     pub const fn new(particles: &'a [Particle], settings: &'a Settings, material: &'a MaterialAssets) -> Self {
-        Self { particles, bounds: None, depth: None, settings, material }
+        Self { particles, world_from_particles: Mat4::IDENTITY, bounds: None, depth: None, settings, material }
     }
 }

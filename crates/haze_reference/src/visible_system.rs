@@ -11,12 +11,13 @@ use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use haze::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
+    validate_world_from_particles,
 };
 use haze::frame::{Bounds, Particle, View};
 use haze::settings::{BlendOrder, DebugView};
 use haze::view_setup::{
-    ParticleMeasures, ResolvedSettings, SpriteTrim, SystemInput, SystemSetup, ViewGeometry, light_uniforms,
-    system_setup,
+    ParticleMeasures, ParticleSpace, ResolvedSettings, SpriteTrim, SystemInput, SystemSetup, ViewGeometry,
+    light_uniforms, system_setup,
 };
 
 /// Visible system, with the input of its passes.
@@ -48,16 +49,18 @@ pub struct VisibleSystem<'a> {
 impl<'a> VisibleSystem<'a> {
     /// Returns `None` if the system is not visible.
     pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
-        let settings = ResolvedSettings::new(system.settings, frame.view.size, material.frame_count, true);
+        let space = ParticleSpace::new(view, &system.world_from_particles);
+        let settings = ResolvedSettings::new(system.settings, space.scale, frame.view.size, material.frame_count, true);
         let mut measures = ParticleMeasures::default();
-        measures.measure(view, system.particles, &settings);
-        let bounds = system.bounds.unwrap_or(measures.bounds);
+        measures.measure(&space, view.depth.near, system.particles, &settings);
+        let bounds = system.bounds.map_or(measures.bounds, |bounds| space.world_bounds(&bounds));
         let mut lights = Vec::new();
         light_uniforms(view, frame.lights, frame.exposure, &bounds, &mut lights);
         let in_world = SystemInput {
             particles_per_sample: 1,
             bounds: &bounds,
             depth: system.depth,
+            space: &space,
             extent: measures.extent(),
             particles: system.particles,
             settings: &settings,
@@ -123,6 +126,7 @@ pub fn visible_systems<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usi
     let mut systems = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
         validate_settings(index, system.settings, frame.view.size)?;
+        validate_world_from_particles(index, &system.world_from_particles)?;
         validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
         let info = system.material.info();
         info.validate(index, system.settings)?;

@@ -100,7 +100,7 @@ pub fn visible_system(settings: &Settings) -> VisibleSystem<'_> {
         particles: Vec::new(),
         trim: SpriteTrim::new(settings, &INFO),
         scene_depth: &DEPTHS,
-        settings: ResolvedSettings::new(settings, SIZE, system.frame_count, true),
+        settings: ResolvedSettings::new(settings, 1.0, SIZE, system.frame_count, true),
         material: &MATERIAL,
     }
 }

@@ -1,6 +1,7 @@
 //! Several views in one submission, and a second `prepare` before the first is submitted.
 
 use glam::{Mat4, vec3};
+use haze::{Frame, Particles, SceneDepth, System};
 
 use super::{SIZE, encoder, rejected_field, slice};
 use crate::gpu::gpu;
@@ -68,4 +69,34 @@ fn second_prepare_before_the_first_is_submitted_is_rejected() {
     gpu().submit(third).unwrap();
     assert!(host.picture(gpu()).unwrap() == picture);
     gpu().check().unwrap();
+}
+
+#[test]
+fn systems_can_be_drawn_one_by_one_between_objects_of_the_host() {
+    let scene = TestScene::new(SIZE);
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    let mut behind = scene.particles.clone();
+    behind.iter_mut().for_each(|particle| particle.position += vec3(0.4, 0.2, -1.5));
+    let (material, linear) = (host.material.clone(), host.linear.clone());
+    let systems = [(7, &scene.particles), (3, &behind)]
+        .map(|(key, particles)| System::new(key, Particles::Slice(particles), &scene.settings, &material));
+    let frame =
+        Frame { lights: &scene.lights, systems: &systems, ..Frame::new(scene.view, SceneDepth::Linear(&linear)) };
+    let mut draw = |is_single: bool| {
+        let mut encoder = encoder(gpu());
+        host.renderer.prepare(&mut encoder, &frame).unwrap();
+        let [near, far] = [7, 3].map(|key| host.renderer.depth_of(key).unwrap());
+        assert!(far > near + 1.0 && host.renderer.depth_of(1).is_none());
+        let renderer = &host.renderer;
+        host.render_with(&mut encoder, &scene, |pass| {
+            if is_single {
+                [3, 7, 1].into_iter().for_each(|key| renderer.render_system(pass, key));
+            } else {
+                renderer.render(pass);
+            }
+        });
+        gpu().submit(encoder).unwrap();
+        host.picture(gpu()).unwrap()
+    };
+    assert!(draw(true) == draw(false));
 }

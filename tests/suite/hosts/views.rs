@@ -1,13 +1,13 @@
 //! Left- and right-handed views, any up axis, mirrored projections, and views of a part of the target.
 
 use glam::camera::{lh, rh};
-use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
-use haze::Bounds;
+use glam::{EulerRot, Mat4, Quat, UVec2, Vec3, Vec4, vec3};
 use haze::image::Image;
 use haze::settings::*;
+use haze::{Bounds, Particle};
 
 use super::{SIZE, rejected_field};
-use crate::gpu::gpu;
+use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
@@ -160,4 +160,43 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
     scene.host.target_size = Some(UVec2::new(200, 100));
     scene.view.origin = UVec2::new(41, 0);
     assert_eq!(rejected_field(scene.try_on_gpu(gpu())), "view.size");
+}
+
+#[test]
+fn particles_in_a_space_of_their_own_look_like_transformed_ones() {
+    let world_from_particles = Mat4::from_scale_rotation_translation(
+        Vec3::splat(1.7),
+        Quat::from_euler(EulerRot::XYZ, 0.4, -0.9, 0.2),
+        vec3(0.6, -0.3, -0.8),
+    );
+    let local = |particle: &Particle| Particle {
+        position: world_from_particles.inverse().transform_point3(particle.position),
+        radius: particle.radius / 1.7,
+        ..*particle
+    };
+    for (technique, path, order) in [
+        (Technique::Soft, RenderPath::Raster, BlendOrder::Sorted),
+        (Technique::Soft, RenderPath::Raster, BlendOrder::Weighted),
+        (Technique::SphericalBillboard, RenderPath::Raster, BlendOrder::Sorted),
+        (Technique::Soft, RenderPath::Forward, BlendOrder::Sorted),
+        (Technique::Soft, RenderPath::Tiled, BlendOrder::Sorted),
+    ] {
+        if path == RenderPath::Tiled && !is_tiled_available() {
+            continue;
+        }
+        let mut scene = TestScene::new(SIZE);
+        (scene.settings.technique, scene.settings.path, scene.settings.accumulate.order) = (technique, path, order);
+        let expected = scene.on_gpu(gpu()).picture;
+        let mut own_space = scene.clone();
+        own_space.world_from_particles = world_from_particles;
+        own_space.particles = scene.particles.iter().map(local).collect();
+        let name = format!("{} {} {order:?}", technique.name(), path.name());
+        let psnr = psnr(&own_space.on_gpu(gpu()).picture, &expected);
+        println!("{name}: {psnr:.1} dB");
+        assert!(psnr >= 70.0, "{name}: {psnr:.1} dB");
+        assert!(self::psnr(&own_space.on_cpu(), &scene.on_cpu()) >= 70.0, "{name} on the CPU");
+    }
+    let mut sheared = TestScene::new(SIZE);
+    sheared.world_from_particles.x_axis.y = 0.5;
+    assert_eq!(rejected_field(sheared.try_on_gpu(gpu())), "systems[0].world_from_particles");
 }

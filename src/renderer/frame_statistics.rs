@@ -1,0 +1,43 @@
+//! Targets, memory and counts of a renderer's last frame.
+
+use super::Renderer;
+use super::auto::PathChoice;
+use super::counts::{FrameCounts, Overdraw};
+use super::memory_use::MemoryUse;
+use super::resolved_depth::ResolvedDepth;
+use super::system_state::SystemState;
+use super::targets::TargetViews;
+
+impl Renderer {
+    /// Returns the targets of the system with this key, as the last [`prepare`](Self::prepare) fills them, for tools
+    /// and for a host's own passes. `None` if the system is out of sight or drawn forward.
+    pub fn targets(&self, key: u64) -> Option<TargetViews<'_>> {
+        self.states.iter().find(|state| state.key == key)?.target_views()
+    }
+
+    /// Returns the GPU memory that this renderer holds, in bytes.
+    pub fn memory_use(&self) -> MemoryUse {
+        let targets = self.resolved_depth.as_ref().map_or(0, ResolvedDepth::bytes);
+        let own = MemoryUse { targets, buffers: self.bindings.bytes(), ..MemoryUse::default() };
+        self.states.iter().map(SystemState::memory_use).chain([own]).sum()
+    }
+
+    /// Counts the systems, sprites and texels that [`render`](Self::render) draws after the last
+    /// [`prepare`](Self::prepare).
+    pub fn counts(&self) -> FrameCounts {
+        self.order.iter().map(|visible| self.states[visible.state].counts()).sum()
+    }
+
+    /// Returns the path that `auto` chose in the last [`prepare`](Self::prepare) for the system with this key, with the
+    /// reason. `None` if the system is out of sight or its path setting is not `auto`.
+    pub fn path_choice(&self, key: u64) -> Option<PathChoice> {
+        self.states.iter().find(|state| state.key == key)?.choice()
+    }
+
+    /// Computes the overdraw of the sprites of the last [`prepare`](Self::prepare). Every call iterates over all
+    /// sprites on the CPU: about 0.5 ms for 10,000 sprites.
+    pub fn overdraw(&self) -> Overdraw {
+        let Some(view) = self.view.map(|view| view.uniform(false)) else { return Overdraw::default() };
+        self.order.iter().map(|visible| self.states[visible.state].overdraw(&view)).sum()
+    }
+}
