@@ -8,11 +8,19 @@ struct System {
     // View depth of the box's near side.
     bounds_near: f32,
     bounds_max: vec3f,
+    opacity: f32,
+    // View space: the middle of the smoke. Light is evaluated on the plane through it that faces the viewer. This field
+    // and the next three are measured on the GPU for particles that the CPU cannot read.
+    centre: vec3f,
     // Most of the smoke lies between this view depth and smoke_far.
     smoke_near: f32,
-    // View space: the middle of the smoke. Light is evaluated on the plane through it that faces the viewer.
-    centre: vec3f,
     smoke_far: f32,
+    // Like depth_limit, but from the visible smoke: it does not jump with the box.
+    smoke_depth_limit: f32,
+    // Depths beyond this are equivalent for the system: the far side of the box plus the length of the fade.
+    depth_limit: f32,
+    // Pixels per reduced texel.
+    scale: u32,
     scatter_colour: vec3f,
     scatter_amount: f32,
     ambient_colour: vec3f,
@@ -22,13 +30,8 @@ struct System {
     // Reduced texels.
     target_origin: vec2f,
     target_size: vec2f,
-    // Pixels per reduced texel.
-    scale: u32,
-    // Depths beyond this are equivalent for the system: the far side of the box plus the length of the fade.
-    depth_limit: f32,
     sprite_size: f32,
     frame_count: f32,
-    opacity: f32,
     boost: f32,
     fade_scale: f32,
     contrast_power: f32,
@@ -53,6 +56,9 @@ struct System {
     march_steps: u32,
     noise_octaves: u32,
     depth_weight: f32,
+    padding0: f32,
+    padding1: f32,
+    padding2: f32,
     // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
     // Metres behind the scene at which sprites still show, under the curve `always`.
@@ -60,11 +66,6 @@ struct System {
     // Linear RGB of smoke that is lit by six-way maps.
     six_way_colour: vec3f,
     six_way_anisotropy: f32,
-    // Like depth_limit, but from the visible smoke: it does not jump with the box.
-    smoke_depth_limit: f32,
-    padding0: f32,
-    padding1: f32,
-    padding2: f32,
     // Optical depth of the smoke in front of sixteen view depths.
     front_knots: array<vec4f, 4>,
     // Diffuse light as spherical harmonics, rgb.

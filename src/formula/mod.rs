@@ -14,6 +14,7 @@ pub mod normal;
 pub mod order;
 pub mod ramp;
 pub mod six_way;
+pub mod smoke_extent;
 pub mod soft_fade;
 pub mod sprite;
 pub mod technique;

@@ -64,9 +64,13 @@ uniform! {
         bounds_min: Vec3,
         bounds_near: f32,
         bounds_max: Vec3,
-        smoke_near: f32,
+        opacity: f32,
         centre: Vec3,
+        smoke_near: f32,
         smoke_far: f32,
+        smoke_depth_limit: f32,
+        depth_limit: f32,
+        scale: u32,
         scatter_colour: Vec3,
         scatter_amount: f32,
         ambient_colour: Vec3,
@@ -74,11 +78,8 @@ uniform! {
         target_from_ndc: Vec4,
         target_origin: Vec2,
         target_size: Vec2,
-        scale: u32,
-        depth_limit: f32,
         sprite_size: f32,
         frame_count: f32,
-        opacity: f32,
         boost: f32,
         fade_scale: f32,
         contrast_power: f32,
@@ -102,14 +103,25 @@ uniform! {
         march_steps: u32,
         noise_octaves: u32,
         depth_weight: f32,
+        padding: [f32; 3],
         noise_offset: Vec3,
         show_through_distance: f32,
         six_way_colour: Vec3,
         six_way_anisotropy: f32,
-        smoke_depth_limit: f32,
-        padding: [f32; 3],
         front_knots: [Vec4; 4],
         spherical_harmonics: [Vec4; 9],
+    }
+}
+
+uniform! {
+    /// `Measure` in `shaders/measure.wgsl`.
+    MeasureUniform {
+        count: u32,
+        first: u32,
+        workgroups: u32,
+        keeps_depth: u32,
+        fade_distance: f32,
+        padding: [f32; 3],
     }
 }
 

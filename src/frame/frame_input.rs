@@ -118,9 +118,9 @@ pub struct System<'a> {
     /// [`particle_bounds`](crate::frame::particle_bounds).
     pub bounds: Option<Bounds>,
     /// View depth, metres, of the plane on which light is evaluated, and by which systems are drawn far to near. It
-    /// should move without jumps. The mean depth of the sprites, weighted by amount and area, is best; `None` uses it
-    /// for a slice. For a buffer `None` uses the middle of the part of `bounds` in front of the viewer, which jumps
-    /// when `bounds` does.
+    /// should move without jumps. The mean depth of the sprites, weighted by amount and area, is best; `None` uses it.
+    /// For a buffer, `None` lights by the mean depth if compute shaders can read the buffer, and draws far to near by the
+    /// middle of the part of `bounds` in front of the viewer, which jumps when `bounds` does.
     pub depth: Option<f32>,
     /// Settings of the system.
     pub settings: &'a Settings,
@@ -141,7 +141,9 @@ pub enum Particles<'a> {
     /// Particles in memory. [`Renderer::prepare`](crate::Renderer::prepare) sorts and uploads them. A sprite with a
     /// number that is not finite or out of range is skipped.
     Slice(&'a [Particle]),
-    /// Particles on the GPU, in the layout of [`Particle`], with `VERTEX` usage. Requires `System::bounds`.
+    /// Particles on the GPU, in the layout of [`Particle`], with `VERTEX` usage. Requires `System::bounds`. With
+    /// `STORAGE` usage and an `offset` that is a multiple of 16, the GPU measures them, and the smoke is lit as that of a
+    /// slice; without, as if it filled `bounds`.
     Buffer {
         /// Contains `count` particles from `offset` on.
         buffer: &'a wgpu::Buffer,

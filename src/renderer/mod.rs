@@ -198,6 +198,8 @@ impl Renderer {
             }
             let Some(passes) = state.passes() else { continue };
             self.order.push(VisibleSystem { state: index, distance: state.distance() });
+            // Measures a host's particles, which the CPU cannot read.
+            state.measure().iter().for_each(|pass| pass.record(encoder, timing));
             // Evaluates an emitter's particles, or sorts a host's particles back to front.
             state.particle_pass().iter().for_each(|pass| pass.record(encoder, timing));
             let SystemPasses::Deferred(passes) = passes else { continue };

@@ -5,9 +5,11 @@ use super::gpu::idle_counter::IdleCounter;
 use super::instances::{Instances, SortedBy};
 use super::memory_use::TiledMemory;
 use super::pass::Groups;
+use super::pass::measure::Measure;
 use super::sprite_instances::Sprites;
 use super::system_passes::ParticlePass;
-use super::tiled::{EmittedParticles, SortedParticles};
+use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles};
+use super::validate_frame::is_readable_by_compute;
 use crate::frame::{Bounds, Particle, Particles, System};
 use crate::settings::{RenderPath, Settings};
 use crate::view_setup::{ParticleMeasures, ParticleSpace, ViewGeometry};
@@ -22,8 +24,11 @@ pub(crate) struct SystemParticles {
     instances: Instances,
     emitted: EmittedParticles,
     depth_sorted: SortedParticles,
+    measured: MeasuredParticles,
     /// Counts frames in which no host's particles were sorted, after which the sort's buffers are released.
     frames_unsorted: IdleCounter,
+    /// Counts frames in which no host's particles were measured.
+    frames_unmeasured: IdleCounter,
 }
 
 impl SystemParticles {
@@ -98,14 +103,35 @@ impl SystemParticles {
         }
     }
 
+    /// Prepares the pass that measures a host's particles and writes their extent to the uniforms `system`. `None` for
+    /// other particles, and for a buffer that compute shaders cannot read.
+    pub fn measure_pass(
+        &mut self,
+        context: &FrameContext<'_>,
+        host: &System<'_>,
+        settings: &Settings,
+        groups: &Groups,
+        system: &wgpu::Buffer,
+    ) -> Option<Measure> {
+        let FrameContext { gpu, shared, .. } = context;
+        let Particles::Buffer { buffer, offset, count, is_sorted } = host.particles else { return None };
+        let tiled = shared.pipelines.tiled.as_ref().filter(|_| is_readable_by_compute(buffer, offset))?;
+        let sprites = Sprites { buffer: buffer.clone(), offset, count, loops: 1, is_sorted, by_view_depth: false };
+        let fade_distance = settings.soft_fade.max_distance();
+        Some(self.measured.write(gpu, tiled, (&sprites, groups, system), host.depth.is_some(), fade_distance))
+    }
+
     /// Releases buffers that have not been needed for 120 frames. `is_untiled`: true if that is so for the path
-    /// `tiled`.
-    pub fn release_unused(&mut self, is_untiled: bool, pass: Option<&ParticlePass>) {
+    /// `tiled`. `is_measured`: true if a host's particles were measured in this frame.
+    pub fn release_unused(&mut self, is_untiled: bool, is_measured: bool, pass: Option<&ParticlePass>) {
         if is_untiled {
             self.emitted = EmittedParticles::default();
         }
         if self.frames_unsorted.tick(!matches!(pass, Some(ParticlePass::DepthSort(..)))) {
             self.depth_sorted = SortedParticles::default();
+        }
+        if self.frames_unmeasured.tick(!is_measured) {
+            self.measured = MeasuredParticles::default();
         }
     }
 
@@ -116,6 +142,7 @@ impl SystemParticles {
 
     /// Returns the GPU memory of particles that compute shaders produce.
     pub fn tiled_memory(&self) -> TiledMemory {
-        TiledMemory { emitted: self.emitted.bytes(), ..TiledMemory::default() } + self.depth_sorted.memory()
+        let emitted = self.emitted.bytes() + self.measured.bytes();
+        TiledMemory { emitted, ..TiledMemory::default() } + self.depth_sorted.memory()
     }
 }

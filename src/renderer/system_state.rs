@@ -11,6 +11,7 @@ use super::gpu::record::uniform_buffer;
 use super::layouts::LIGHTS_SIZE;
 use super::memory_use::MemoryUse;
 use super::pass::Groups;
+use super::pass::measure::Measure;
 use super::plan::{Plan, plan};
 use super::system_particles::SystemParticles;
 use super::system_passes::{ParticlePass, PassBuilder, SystemPasses, TiledContext};
@@ -58,6 +59,7 @@ struct PreparedSystem {
     choice: Option<PathChoice>,
     /// Number of particles that each one of `sample` represents, if the GPU evaluates the emitter; otherwise `None`.
     sampled: Option<u32>,
+    measure: Option<Measure>,
     particle_pass: Option<ParticlePass>,
     passes: SystemPasses,
 }
@@ -95,6 +97,11 @@ impl SystemState {
     /// Returns this frame's passes; `None` if the system is out of sight.
     pub fn passes(&self) -> Option<&SystemPasses> {
         self.prepared.as_ref().map(|prepared| &prepared.passes)
+    }
+
+    /// Returns the pass that measures a host's particles. It runs before all other passes.
+    pub fn measure(&self) -> Option<&Measure> {
+        self.prepared.as_ref()?.measure.as_ref()
     }
 
     /// Returns the pass that produces the system's particles. It runs before all other passes.
@@ -199,7 +206,8 @@ impl SystemState {
             self.tiles = TiledSystem::default();
         }
         let particle_pass = self.prepared.as_ref().and_then(|prepared| prepared.particle_pass.as_ref());
-        self.particles.release_unused(is_released, particle_pass);
+        let is_measured = self.measure().is_some();
+        self.particles.release_unused(is_released, is_measured, particle_pass);
     }
 
     fn prepare(&mut self, context: &FrameContext<'_>, system: &System<'_>) -> Option<PreparedSystem> {
@@ -248,6 +256,7 @@ impl SystemState {
             lighting: system.material.lighting.clone(),
         };
         let (sprites, particle_pass) = self.particles.upload(context, &space, system.particles, &settings, &groups)?;
+        let measure = self.particles.measure_pass(context, system, &settings, &groups, &self.uniform);
         let sampled = matches!(particle_pass, Some(ParticlePass::Emit(_))).then_some(particles_per_sample);
         let builder = PassBuilder { gpu: *gpu, pipelines: &shared.pipelines, groups, sprites };
         let passes = match &plan {
@@ -260,7 +269,16 @@ impl SystemState {
                 builder.deferred(plan, tiles, targets, &setup, depth, frame.scene_depth.buffer())
             }
         };
-        Some(PreparedSystem { setup, technique: settings.technique, trim, choice, sampled, particle_pass, passes })
+        Some(PreparedSystem {
+            setup,
+            technique: settings.technique,
+            trim,
+            choice,
+            sampled,
+            measure,
+            particle_pass,
+            passes,
+        })
     }
 }
 

@@ -170,16 +170,18 @@ pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &System<'_>) -> 
     let Some(tiled) = &shared.pipelines.tiled else { return Some(PathReason::TiledUnsupported) };
     let (count, is_readable) = match system.particles {
         Particles::Slice(particles) => (particles.len() as u64, true),
-        Particles::Buffer { buffer, offset, count, .. } => {
-            let is_storage = buffer.usage().contains(wgpu::BufferUsages::STORAGE);
-            (u64::from(count), is_storage && offset.is_multiple_of(PARTICLE_ALIGNMENT))
-        }
+        Particles::Buffer { buffer, offset, count, .. } => (u64::from(count), is_readable_by_compute(buffer, offset)),
         Particles::Emitter(emission) => (u64::from(emission.count()), true),
     };
     if !is_readable {
         return Some(PathReason::BufferNotReadable);
     }
     (count > tiled.limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES).then_some(PathReason::TooManyParticles)
+}
+
+/// Returns true if compute shaders can read particles from this offset of a host's buffer.
+pub(crate) fn is_readable_by_compute(buffer: &wgpu::Buffer, offset: u64) -> bool {
+    buffer.usage().contains(wgpu::BufferUsages::STORAGE) && offset.is_multiple_of(PARTICLE_ALIGNMENT)
 }
 
 fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {

@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3};
 
 use super::projected_bounds::ProjectedBounds;
 use super::view_geometry::ViewGeometry;
+use crate::formula::smoke_extent::{NEARLY_TRANSPARENT, extent_weight, half_extent, mean_square_depth, reach_behind};
 use crate::frame::{Bounds, Particle};
 
 /// Extent of the smoke, view space.
@@ -25,19 +26,18 @@ pub struct SmokeExtent {
     pub farthest: f32,
 }
 
-/// Amount below which a sprite counts as nearly transparent.
-const NEARLY_TRANSPARENT: f32 = 0.05;
-
 /// Sums over the visible particles, from which their extent follows.
 #[derive(Debug, Default)]
 pub(super) struct ExtentSums {
+    /// First visible particle. Sums are relative to it, so that squares of large depths do not cancel out.
+    reference: Option<Vec3>,
     // f64, because the squares of up to a million sprites are summed.
     weights: f64,
     positions: DVec3,
     squares: f64,
-    /// Largest view depth of the back of a sprite, metres.
+    /// Largest view depth of the back of a sprite with full weight, metres.
     back: f32,
-    /// View depth of the back of each nearly transparent sprite, and its share of [`NEARLY_TRANSPARENT`].
+    /// View depth of the back of each nearly transparent sprite, and its amount.
     faint_backs: Vec<(f32, f32)>,
 }
 
@@ -52,36 +52,32 @@ impl ExtentSums {
     /// Adds a visible particle at a view-space position, weighted by amount and area. `near`: view depth of the near
     /// plane, metres. `size` multiplies its radius.
     pub fn include(&mut self, near: f32, position: Vec3, particle: &Particle, size: f32) {
-        let back = -position.z + particle.radius * size;
-        let share = particle.shown_amount() / NEARLY_TRANSPARENT;
-        if share < 1.0 {
-            self.faint_backs.push((back, share));
+        let (radius, amount) = (particle.radius * size, particle.shown_amount());
+        let back = -position.z + radius;
+        if amount < NEARLY_TRANSPARENT {
+            self.faint_backs.push((back, amount));
         } else {
             self.back = self.back.max(back);
         }
-        let position = position.as_dvec3();
-        let radius = f64::from(particle.radius * size);
-        // The weight of a sprite fades out while it passes the near plane.
-        let in_front = ((-position.z - f64::from(near)) / radius).clamp(0.0, 1.0);
-        let weight = f64::from(particle.shown_amount()) * in_front * radius * radius;
+        let weight = f64::from(extent_weight(amount, radius, -position.z, near));
+        let position = position - *self.reference.get_or_insert(position);
         self.weights += weight;
-        self.positions += position * weight;
-        // A sprite represents a puff as thick as it is wide.
-        self.squares += (position.z * position.z + radius * radius / 3.0) * weight;
+        self.positions += position.as_dvec3() * weight;
+        self.squares += f64::from(mean_square_depth(position.z, radius)) * weight;
     }
 
     /// Returns the extent of the included particles; `None` if none of them is in front of the viewer.
     pub fn extent(&self) -> Option<SmokeExtent> {
+        let reference = self.reference?;
         // False for NaN, which comes from sprites of size 0.
         (self.weights > 0.0).then(|| {
-            let centre = self.positions / self.weights;
-            // The variance of a slab is its squared half thickness divided by 3.
-            let half = (3.0 * (self.squares / self.weights - centre.z * centre.z)).max(0.0).sqrt();
-            let (near, far) = ((-centre.z - half) as f32, (-centre.z + half) as f32);
-            let z = centre.z as f32;
-            let faint = self.faint_backs.iter().map(|&(back, share)| (back + z) * share);
-            let farthest = faint.fold((self.back + z).max(0.0), f32::max) - z;
-            SmokeExtent { centre: centre.as_vec3(), near, far, farthest }
+            let mean = (self.positions / self.weights).as_vec3();
+            let half = half_extent((self.squares / self.weights) as f32, mean.z);
+            let centre = reference + mean;
+            let reach = |(back, amount)| reach_behind(amount, back, -centre.z);
+            let faint = self.faint_backs.iter().copied().map(reach).fold(0.0, f32::max);
+            let farthest = -centre.z + reach((self.back, 1.0)).max(faint);
+            SmokeExtent { centre, near: -centre.z - half, far: -centre.z + half, farthest }
         })
     }
 }

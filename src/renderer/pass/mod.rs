@@ -9,6 +9,7 @@ pub(crate) mod diffuse_bake;
 pub(crate) mod emit;
 pub(crate) mod forward;
 pub(crate) mod light_target;
+pub(crate) mod measure;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;
 pub(crate) mod tile_accumulate;

@@ -2,6 +2,7 @@
 
 mod accumulate_variants;
 mod emitted_particles;
+mod measured_particles;
 mod sort_buffers;
 mod sorted_particles;
 mod storage_buffers;
@@ -11,6 +12,7 @@ mod tiled_pipelines;
 mod tiled_system;
 
 pub(crate) use emitted_particles::EmittedParticles;
+pub(crate) use measured_particles::MeasuredParticles;
 pub(crate) use sorted_particles::SortedParticles;
 pub(crate) use tile_buffers::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 pub(crate) use tiled_passes::TiledPasses;

@@ -4,13 +4,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::accumulate_variants::AccumulateVariants;
 use crate::error::Error;
-use crate::formula::uniforms::{EmitterUniform, TilesUniform};
+use crate::formula::uniforms::{EmitterUniform, MeasureUniform, TilesUniform};
 use crate::renderer::gpu::pipeline::{
     ComputePipelineDescription, PipelineStore, PipelineVariants, Shader, pipeline_variants,
 };
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
+use crate::renderer::pass::measure::{self, MeasureKey};
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::TileAccumulateKey;
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
@@ -28,6 +29,7 @@ pub(crate) struct TiledPipelines {
     pub limits: wgpu::Limits,
     /// Evaluates emitters.
     pub emit: PipelineVariants<(), ComputePipelineDescription>,
+    pub measure: PipelineVariants<MeasureKey, ComputePipelineDescription>,
     pub depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
@@ -41,6 +43,7 @@ pub(crate) struct TiledPipelines {
 #[derive(Debug)]
 pub(crate) struct TiledLayouts {
     pub emit: wgpu::BindGroupLayout,
+    pub measure: wgpu::BindGroupLayout,
     pub depth_sort: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
@@ -93,6 +96,7 @@ impl TiledPipelines {
             cooperative: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
             limits: device.limits(),
             emit: pipeline_variants!(store, shader, emit, &[Some(&own.emit)]),
+            measure: pipeline_variants!(store, shader, measure, &with(&own.measure)),
             depth_sort: pipeline_variants!(store, shader, depth_sort, &with(&own.depth_sort)),
             project: pipeline_variants!(store, shader, tile_project, &with(&own.project)),
             sort: pipeline_variants!(store, shader, sort, &[Some(&own.sort)]),
@@ -126,8 +130,9 @@ impl TiledPipelines {
         self.accumulate.check(keys.accumulate)
     }
 
-    /// Compiles the pipelines that sort a host's particles back to front.
+    /// Compiles the pipelines that measure a host's particles and sort them back to front.
     pub fn compile_depth_sort(&self) -> Result<(), Error> {
+        MeasureKey::ALL.into_iter().try_for_each(|key| self.measure.check(key))?;
         self.depth_sort.check(DepthSortKey::DepthKeys)?;
         self.depth_sort.check(DepthSortKey::GatherParticles)?;
         self.compile_sort()
@@ -189,6 +194,7 @@ impl TiledLayouts {
         };
         Self {
             emit: layout("haze emit inputs", &[uniform_of(size_of::<EmitterUniform>()), written]),
+            measure: layout("haze measure inputs", &[uniform_of(size_of::<MeasureUniform>()), read, written, written]),
             depth_sort: layout("haze depth_sort inputs", &[uniform, read, written, written, written]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),

@@ -1,0 +1,149 @@
+// measure
+// Measures the extent of a host's particles, which the CPU cannot read.
+//
+// Reads   particles; the system's uniforms, whose extent is that of the bounding box.
+// Writes  sums of each workgroup; the extent, which is then copied over the box's in the system's uniforms.
+// Space   View space.
+
+#import "lib/bindings.wgsl"
+#import "lib/smoke_extent.wgsl"
+#import "lib/sprite_vertex.wgsl"
+
+const WORKGROUP: u32 = 256u;
+
+struct Measure {
+    count: u32,
+    // Start of the first particle, in units of vec4f.
+    first: u32,
+    // Workgroups of `sum_particles` and of `farthest_particle`, at most WORKGROUP.
+    workgroups: u32,
+    // 1 if the host has chosen the depth of the centre.
+    keeps_depth: u32,
+    // Length of the fade, metres.
+    fade_distance: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32,
+}
+
+// Sums over sprites, relative to the centre of the bounding box.
+struct ExtentSums {
+    // xyz: weighted positions; w: weights.
+    positions: vec4f,
+    squares: f32,
+}
+
+// The first six numbers are laid out as in System.
+struct MeasuredExtent {
+    centre: vec3f,
+    smoke_near: f32,
+    smoke_far: f32,
+    // Bits of a positive number, which order as an integer.
+    smoke_depth_limit: atomic<u32>,
+    // View depth of the measured centre; `centre` may have another, chosen by the host.
+    mean_depth: f32,
+}
+
+@group(3) @binding(0) var<uniform> measure: Measure;
+// Two per particle, as in Particle.
+@group(3) @binding(1) var<storage, read> particles: array<vec4f>;
+@group(3) @binding(2) var<storage, read_write> sums: array<ExtentSums>;
+@group(3) @binding(3) var<storage, read_write> measured: MeasuredExtent;
+
+var<workgroup> shared_sums: array<ExtentSums, WORKGROUP>;
+
+// Adds up the values of all invocations of the workgroup in shared_sums[0].
+fn add_up(local: u32, value: ExtentSums) {
+    shared_sums[local] = value;
+    workgroupBarrier();
+    for (var step = WORKGROUP / 2u; step > 0u; step /= 2u) {
+        if local < step {
+            shared_sums[local].positions += shared_sums[local + step].positions;
+            shared_sums[local].squares += shared_sums[local + step].squares;
+        }
+        workgroupBarrier();
+    }
+}
+
+// Particle at `index` in view space, its radius in metres; radius 0 if it is not drawn.
+fn sized_particle(index: u32) -> vec4f {
+    let at = measure.first + 2u * index;
+    let particle = particles[at];
+    let other = particles[at + 1u];
+    let centre = (system.view_from_particles * vec4f(particle.xyz, 1.0)).xyz;
+    let radius = particle.w * system.size;
+    let finite = dot(abs(centre), vec3f(1.0)) + radius + dot(abs(other), vec4f(1.0)) < MAX_MAGNITUDE;
+    return vec4f(centre, select(0.0, radius, finite && other.y > 0.0 && radius > 0.0));
+}
+
+fn amount_of(index: u32) -> f32 {
+    return particles[measure.first + 2u * index + 1u].y;
+}
+
+@compute @workgroup_size(256)
+fn sum_particles(
+    @builtin(global_invocation_id) invocation: vec3u,
+    @builtin(workgroup_id) workgroup: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    var sum = ExtentSums(vec4f(0.0), 0.0);
+    for (var index = invocation.x; index < measure.count; index += measure.workgroups * WORKGROUP) {
+        let particle = sized_particle(index);
+        if particle.w > 0.0 {
+            let weight = extent_weight(amount_of(index), particle.w, -particle.z, view.near);
+            let position = particle.xyz - system.centre;
+            sum.positions += vec4f(position, 1.0) * weight;
+            sum.squares += mean_square_depth(position.z, particle.w) * weight;
+        }
+    }
+    add_up(local, sum);
+    if local == 0u {
+        sums[workgroup.x] = shared_sums[0];
+    }
+}
+
+@compute @workgroup_size(256)
+fn combine_sums(@builtin(local_invocation_index) local: u32) {
+    var sum = ExtentSums(vec4f(0.0), 0.0);
+    if local < measure.workgroups {
+        sum = sums[local];
+    }
+    add_up(local, sum);
+    if local != 0u {
+        return;
+    }
+    let total = shared_sums[0];
+    let weight = total.positions.w;
+    if !(weight > 0.0) {
+        // No particle is in front of the viewer: the extent of the box stays.
+        measured.centre = system.centre;
+        measured.smoke_near = system.smoke_near;
+        measured.smoke_far = system.smoke_far;
+        measured.mean_depth = -system.centre.z;
+        atomicStore(&measured.smoke_depth_limit, bitcast<u32>(system.smoke_depth_limit));
+        return;
+    }
+    let mean = total.positions.xyz / weight;
+    let half = half_extent(total.squares / weight, mean.z);
+    let centre = system.centre + mean;
+    measured.centre = select(centre, vec3f(centre.xy, system.centre.z), measure.keeps_depth == 1u);
+    measured.smoke_near = -centre.z - half;
+    measured.smoke_far = -centre.z + half;
+    measured.mean_depth = -centre.z;
+    let limit = min(-centre.z + measure.fade_distance, system.depth_limit);
+    atomicStore(&measured.smoke_depth_limit, bitcast<u32>(max(limit, 0.0)));
+}
+
+@compute @workgroup_size(256)
+fn farthest_particle(@builtin(global_invocation_id) invocation: vec3u) {
+    var reach = 0.0;
+    for (var index = invocation.x; index < measure.count; index += measure.workgroups * WORKGROUP) {
+        let particle = sized_particle(index);
+        if particle.w > 0.0 {
+            let back = -particle.z + particle.w;
+            reach = max(reach, reach_behind(amount_of(index), back, measured.mean_depth));
+        }
+    }
+    let limit = min(measured.mean_depth + reach + measure.fade_distance, system.depth_limit);
+    atomicMax(&measured.smoke_depth_limit, bitcast<u32>(max(limit, 0.0)));
+}
