@@ -163,6 +163,7 @@ impl Context {
         if self.0.device == *device {
             return Ok(());
         }
-        Err(FieldError::new("device", "a device other than the context's", "the device that created the context"))
+        let expected = "the device that created the context";
+        Err(FieldError::from_problem("device", "differs from the context's device", expected))
     }
 }

@@ -202,10 +202,14 @@ impl Settings {
         };
         let accumulate = &self.accumulate;
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.encoding == NormalEncoding::Signed {
-            return conflict("encoding", "signed", "\"biased\" with format \"rgba8unorm\", which cannot hold signs");
+            return conflict(
+                "encoding",
+                "\"signed\"",
+                "\"biased\" with format \"rgba8unorm\", which cannot hold signs",
+            );
         }
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.order == BlendOrder::Weighted {
-            return conflict("order", "weighted", "\"sorted\" with format \"rgba8unorm\", which cannot hold sums");
+            return conflict("order", "\"weighted\"", "\"sorted\" with format \"rgba8unorm\", which cannot hold sums");
         }
         if accumulate.depth_source == DepthSource::Host && accumulate.scale != 1 {
             return conflict("scale", &accumulate.scale.to_string(), "1 with depth_source \"host\"");

@@ -85,7 +85,11 @@ impl Fields for RampStop {
 
 /// Returns an error for an empty list.
 pub fn check_not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
-    if list.is_empty() { Err(FieldError::new(field, "[]", "at least one entry")) } else { Ok(()) }
+    if list.is_empty() {
+        Err(FieldError::from_problem(field, "the list is empty", "at least one entry"))
+    } else {
+        Ok(())
+    }
 }
 
 /// Rows prepared for sampling: sorted, with colours converted to the blend space.
