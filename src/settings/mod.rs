@@ -21,9 +21,9 @@ pub use accumulate::{
     NormalEncoding, Upsample,
 };
 pub use assign::set_field;
-pub use choice::Choice;
 #[doc(hidden)]
 pub use choice::choice;
+pub use choice::{Choice, UnknownChoice};
 pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
@@ -234,10 +234,7 @@ mod tests {
             assert_eq!(serde_json::to_string(&choice).unwrap(), format!("{:?}", choice.name()));
         }
         let error = "cubic".parse::<Upsample>().unwrap_err().to_string();
-        assert!(
-            error.contains("\"cubic\"") && error.contains("guided, joint_bilateral, nearest_depth, bilinear"),
-            "{error}"
-        );
+        assert_eq!(error, "\"cubic\" is not valid; expected one of guided, joint_bilateral, nearest_depth, bilinear");
     }
 
     #[test]

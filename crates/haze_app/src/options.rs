@@ -11,7 +11,7 @@ use glam::{UVec2, Vec4};
 use haze::image::Image;
 use haze::image::{CompressionEffort, write_png};
 use haze::preset::{AssetFolders, Preset};
-use haze::settings::{Choice, RenderPath, Technique, set_field};
+use haze::settings::{Choice, RenderPath, Technique, UnknownChoice, set_field};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_demo::headless::Headless;
@@ -306,7 +306,7 @@ pub fn whole_number(range: RangeInclusive<u32>) -> impl TypedValueParser<Value =
 /// Parser of a setting enum, by its names in presets.
 pub fn choices<T>() -> impl TypedValueParser<Value = T>
 where
-    T: Choice + Default + FromStr<Err = FieldError> + Clone + Send + Sync + 'static,
+    T: Choice + Default + FromStr<Err = UnknownChoice> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(T::default().names()).try_map(|name| name.parse::<T>())
 }
