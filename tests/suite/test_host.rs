@@ -24,7 +24,7 @@ pub struct HostKind {
     pub samples: u32,
     pub gamma_target: bool,
     pub exact_filtering: bool,
-    /// Size of the targets, pixels, if the view covers only a part of them. `None` for the size of the view.
+    /// Size of the targets, pixels, if the view covers only a part of the targets. `None` for the size of the view.
     pub target_size: Option<UVec2>,
 }
 

@@ -49,7 +49,7 @@ pub struct RampRow {
 #[serde(deny_unknown_fields)]
 pub struct RampStop {
     /// Position on the first axis, 0 to 1. Stops are sorted by it; stops at one position keep the order of the list.
-    /// The first of them ends the gradient below, the last begins the gradient above.
+    /// The first stop ends the gradient below, the last begins the gradient above.
     pub at: f32,
     /// sRGB, `#rrggbb`.
     pub colour: HexColour,

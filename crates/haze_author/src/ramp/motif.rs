@@ -17,7 +17,7 @@ use haze::settings::{FieldVisitor, Fields, validate};
 /// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
 
-/// Maximum number of lights of a motif. Every texel sums all of them.
+/// Maximum number of lights of a motif. Every texel sums all lights.
 const MAX_LIGHTS: usize = 256;
 
 /// Recipe of a motif: the contents of a `*.motif.json`.
