@@ -81,7 +81,7 @@ fn rounds() -> u32 {
     return select(ROUNDS, 1u, SCATTER_ONLY);
 }
 
-// Returns the number of keys that have a digit, and how many of them are in earlier blocks.
+// Returns the number of keys that have a digit, and how many of these keys are in earlier blocks.
 fn total_and_before(digit: u32, block: u32) -> vec2u {
     if WITHOUT_SCAN {
         var sums = vec2u(0u);

@@ -116,7 +116,7 @@ const BATCH: u32 = 64u;
 
 // Sprites of a batch that touch the tile, front to back.
 var<workgroup> batch: array<TileSprite, BATCH>;
-// One bit for each of them.
+// One bit for each sprite of the batch.
 var<workgroup> touching: array<atomic<u32>, 2>;
 // 1 if any texel of the tile is not done.
 var<workgroup> unfinished: atomic<u32>;

@@ -18,7 +18,7 @@
 
 // Farthest view depth at which each part of the bin shows anything.
 var<workgroup> ends: array<f32, BITS_PER_WORD>;
-// Bits of the nearest of them. It is positive, so that its bits order as an integer.
+// Bits of the nearest end. It is positive, so that its bits order as an integer.
 var<workgroup> nearest_end: atomic<u32>;
 // For each sprite of a batch, one bit for every part in which it may be visible.
 var<workgroup> marks: array<u32, BITS_PER_WORD>;

@@ -113,8 +113,12 @@ impl Emitter {
         }
         let most = self.max_alive();
         if most > f64::from(MAX_PARTICLES) {
-            let expected = format!("at most {MAX_PARTICLES} particles alive at once, not {most:.0}");
-            return Err(FieldError::new(format!("{}.rate", path()), self.rate, expected));
+            let problem = format!("at this rate, {most:.0} particles are alive at once");
+            return Err(FieldError::from_problem(
+                format!("{}.rate", path()),
+                problem,
+                format!("at most {MAX_PARTICLES}"),
+            ));
         }
         Ok(())
     }
@@ -329,7 +333,8 @@ mod tests {
     fn too_many_particles_are_refused() {
         let emitter = Emitter { rate: 100_000.0, lifetime: 600.0, ..Emitter::default() };
         let error = emitter.validate(|| "systems[0].emitter".into()).unwrap_err();
-        assert!(error.to_string().starts_with("systems[0].emitter.rate: 100000"), "{error}");
+        let expected = "at this rate, 72000000 particles are alive at once; expected at most 1048576";
+        assert_eq!(error.to_string(), format!("systems[0].emitter.rate: {expected}"));
         Emitter { duration: 0.1, ..emitter }.validate(String::new).unwrap();
     }
 }

@@ -35,20 +35,25 @@ fn escape(text: impl Iterator<Item = char>) -> String {
 
 /// Value outside its valid range, or in conflict with another value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{field}: {} is not valid; expected {expected}", one_line(value))]
+#[error("{field}: {problem}; expected {expected}")]
 pub struct FieldError {
     /// Dotted path of the field, for example `systems[0].settings.soft_fade.fade_scale`.
     pub field: String,
-    /// Value that was given.
-    pub value: String,
+    /// Problem, on one line: `VALUE is not valid`, or in words.
+    pub problem: String,
     /// Description of valid values: a range with its unit, or a list of choices.
     pub expected: String,
 }
 
 impl FieldError {
-    /// Creates the error from any printable value.
-    pub fn new(field: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
-        Self { field: field.into(), value: value.to_string(), expected: expected.into() }
+    /// Creates the error of a value that is not valid.
+    pub fn new(field: impl Into<String>, value: impl Display, expected: impl Into<String>) -> Self {
+        Self::from_problem(field, format!("{} is not valid", one_line(value)), expected)
+    }
+
+    /// Creates the error of a problem that "VALUE is not valid" does not describe: `129 lights are too many`.
+    pub fn from_problem(field: impl Into<String>, problem: impl AsRef<str>, expected: impl Into<String>) -> Self {
+        Self { field: field.into(), problem: escape(problem.as_ref().chars()), expected: expected.into() }
     }
 }
 

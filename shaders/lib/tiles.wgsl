@@ -1,7 +1,7 @@
 // Uniforms, constants and counts of the tiled path. Tiles mirrors TilesUniform in src/formula/uniforms.rs.
 
 struct Tiles {
-    // Number of particles, and how often all of them are drawn.
+    // Number of particles, and how often all particles are drawn.
     count: u32,
     loops: u32,
     // Offset of the first particle, in units of vec4f.

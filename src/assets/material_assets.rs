@@ -123,36 +123,36 @@ pub struct DetailInfo {
 impl MaterialInfo {
     /// Returns an error if the settings need an image that the material of system `index` lacks.
     pub fn validate(&self, index: usize, settings: &Settings) -> Result<(), FieldError> {
-        let refuse = |field: &str, value: String, expected: String| {
-            Err(FieldError::new(format!("systems[{index}].{field}"), value, expected))
-        };
+        let field = |name: &str| format!("systems[{index}].{name}");
         let frames = self.frame_count as u32;
         match self.six_way {
             None if settings.is_six_way() => {
                 let expected =
                     "\"normals\", or six-way maps in the material, as `haze sprite bake --six-way` makes them";
-                return refuse("settings.lighting", "\"six_way\"".into(), expected.into());
+                return Err(FieldError::new(field("settings.lighting"), "\"six_way\"", expected));
             }
             Some((size, count)) if (size, count) != (self.sprite_size as u32, 2 * frames) => {
-                let expected = format!("twice the sprite's frames, {}, of {} texels", 2 * frames, self.sprite_size);
-                return refuse("material.six_way", format!("{count} frames of {size} texels"), expected);
+                let problem = format!("the number of frames is {count}, each of {size} texels");
+                let expected = format!("{}, two for each of the sprite, of {} texels", 2 * frames, self.sprite_size);
+                return Err(FieldError::from_problem(field("material.six_way"), problem, expected));
             }
             _ => {}
         }
         let Some(detail) = &self.detail else {
-            let expected =
-                || "another value, or a material with a detail map, as `haze sprite bake` makes it".to_owned();
+            let expected = "another value, or a material with a detail map, as `haze sprite bake` makes it";
             if settings.technique.is_depth_sprite() {
-                return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected());
+                let value = format!("{:?}", settings.technique.name());
+                return Err(FieldError::new(field("settings.technique"), value, expected));
             }
             if settings.sprite.motion > 0.0 {
-                return refuse("settings.sprite.motion", settings.sprite.motion.to_string(), expected());
+                return Err(FieldError::new(field("settings.sprite.motion"), settings.sprite.motion, expected));
             }
             return Ok(());
         };
         if detail.frame_count != frames {
-            let expected = format!("as many as the sprite has, {}", self.frame_count);
-            return refuse("material.detail", format!("{} frames", detail.frame_count), expected);
+            let problem = format!("the number of frames is {}", detail.frame_count);
+            let expected = format!("{frames}, as many as the sprite has");
+            return Err(FieldError::from_problem(field("material.detail"), problem, expected));
         }
         Ok(())
     }

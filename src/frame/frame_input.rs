@@ -31,7 +31,7 @@ pub struct Frame<'a> {
     pub time: f32,
     /// Up direction of the world, along which the noise rises; need not be unit length.
     pub up: Vec3,
-    /// Debug views that may be shown of this frame; [`DebugView::Final`] for a normal image. All of them share one
+    /// Debug views that may be shown of this frame; [`DebugView::Final`] for a normal image. All views share one
     /// accumulation, except [`DebugView::Overdraw`], which needs a pass of its own.
     pub debug_views: &'a [DebugView],
 }

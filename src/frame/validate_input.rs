@@ -51,7 +51,8 @@ pub fn validate_world_from_particles(index: usize, matrix: &Mat4) -> Result<(), 
 /// Validates the lights.
 pub fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
     if lights.len() > MAX_LIGHTS {
-        return Err(FieldError::new("lights", format!("{} lights", lights.len()), format!("at most {MAX_LIGHTS}")));
+        let problem = format!("{} lights are too many", lights.len());
+        return Err(FieldError::from_problem("lights", problem, format!("at most {MAX_LIGHTS}")));
     }
     for (index, light) in lights.iter().enumerate() {
         validate(light, || format!("lights[{index}]"))?;

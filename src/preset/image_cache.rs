@@ -69,9 +69,9 @@ impl ImageCache {
             return Ok(());
         }
         let [found, most] = [self.bytes, MAX_IMAGE_BYTES].map(|bytes| bytes >> 20);
-        let expected =
-            format!("at most {most} MiB for all pictures of the preset, each counted as often as it is named");
-        Err(FieldError::new(format!("material.{field}"), format!("{found} MiB of pictures"), expected))
+        let problem = format!("up to this one, the pictures of the preset take {found} MiB");
+        let expected = format!("at most {most} MiB, each picture counted as often as it is named");
+        Err(FieldError::from_problem(format!("material.{field}"), problem, expected))
     }
 }
 

@@ -160,7 +160,7 @@ impl MaterialNames {
             return refuse("detail", format!("{:?}", self.detail), "\"\"");
         }
         if (self.columns, self.rows) != (1, 1) {
-            return refuse("columns and rows", format!("{}x{}", self.columns, self.rows), "1 and 1");
+            return refuse("columns and rows", format!("{}x{}", self.columns, self.rows), "1x1");
         }
         if self.y_down {
             return refuse("y_down", self.y_down.to_string(), "false");

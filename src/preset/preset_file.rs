@@ -198,8 +198,8 @@ impl Preset {
         }
         validate_lights(&self.lights)?;
         if self.systems.len() > MAX_SYSTEMS {
-            let expected = format!("at most {MAX_SYSTEMS} systems");
-            return Err(FieldError::new("systems", format!("{} systems", self.systems.len()), expected));
+            let problem = format!("{} systems are too many", self.systems.len());
+            return Err(FieldError::from_problem("systems", problem, format!("at most {MAX_SYSTEMS}")));
         }
         let mut most = 0.0;
         for (index, system) in self.systems.iter().enumerate() {
@@ -209,8 +209,8 @@ impl Preset {
             }
             if most > f64::from(MAX_PARTICLES) {
                 let field = format!("systems[{index}].emitter.rate");
-                let expected = format!("at most {MAX_PARTICLES} particles alive at once in all systems, not {most:.0}");
-                return Err(FieldError::new(field, system.emitter.rate, expected));
+                let problem = format!("at this rate, {most:.0} particles of all systems are alive at once");
+                return Err(FieldError::from_problem(field, problem, format!("at most {MAX_PARTICLES}")));
             }
             system.settings.validate(|| format!("systems[{index}].settings"))?;
         }
@@ -289,8 +289,8 @@ mod tests {
         let crowded = parse(&format!(r#"{{"version": 1, "name": "x", "systems": [{system}, {system}, {system}]}}"#));
         assert_eq!(
             crowded,
-            "my.json: systems[2].emitter.rate: 100000 is not valid; \
-             expected at most 1048576 particles alive at once in all systems, not 1500000"
+            "my.json: systems[2].emitter.rate: at this rate, 1500000 particles of all systems are alive at once; \
+             expected at most 1048576"
         );
         let unknown = Preset::load("colunm").unwrap_err().to_string();
         assert!(unknown.contains("column, backlit_fog"), "{unknown}");

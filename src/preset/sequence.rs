@@ -22,7 +22,7 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// Parses the pattern of a path. `None` if the file name has no `#` or more than one run of them.
+    /// Parses the pattern of a path. `None` if the file name has no `#` or more than one run of `#`.
     pub fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?;
         let start = name.find('#')?;

@@ -53,9 +53,9 @@ impl Descriptor<'_> {
             ..HostPass::color_only(self.color_format)
         };
         let Some(pass) = pass.with_further(self.further_color_formats) else {
-            let value = format!("{} formats", self.further_color_formats.len());
+            let problem = format!("{} formats are too many", self.further_color_formats.len());
             let expected = format!("at most {}", MAX_ATTACHMENTS - 1);
-            return Err(FieldError::new("further_color_formats", value, expected));
+            return Err(FieldError::from_problem("further_color_formats", problem, expected));
         };
         pass.validate(device)?;
         Ok(pass)

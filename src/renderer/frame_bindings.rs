@@ -84,7 +84,8 @@ impl Source {
             self.bound = None;
             let bound = with_error_scopes(gpu.device, || self.bind(gpu.device, layouts, depth)).map_err(|reason| {
                 let expected = format!("a 2D view of one layer and one aspect of a texture of this device ({reason})");
-                FieldError::new("scene_depth", format!("a view of a {:?}", depth.texture().format()), expected)
+                let problem = format!("a view of a {:?} texture cannot be bound", depth.texture().format());
+                FieldError::from_problem("scene_depth", problem, expected)
             })?;
             self.bound = Some(bound);
         }

@@ -106,17 +106,15 @@ pub(crate) fn create_material(
 
 /// Refuses images that are too large for the device, and six-way maps that do not fit the sprite.
 fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), FieldError> {
-    let check = |name: &str, side: u32, max: u32| {
-        if side <= max {
+    let check = |name: &str, count: u32, unit: &str, max: u32| {
+        if count <= max {
             return Ok(());
         }
-        Err(FieldError::new(
-            format!("material.{name}"),
-            format!("{side} texels"),
-            format!("at most {max} on this device"),
-        ))
+        let problem = format!("{count} {unit} are too many");
+        Err(FieldError::from_problem(format!("material.{name}"), problem, format!("at most {max} on this device")))
     };
-    let flat = limits.max_texture_dimension_2d;
+    let side = "texels along a side";
+    let (flat, max_layers) = (limits.max_texture_dimension_2d, limits.max_texture_array_layers);
     let ramps = [
         ("diffuse_ramp", &assets.diffuse_ramp),
         ("soft_scatter_ramp", &assets.soft_scatter_ramp),
@@ -127,26 +125,23 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         ("backlight_ramp", &assets.backlight_ramp),
     ];
     for (name, ramp) in ramps {
-        check(name, ramp.size().max_element(), flat)?;
+        check(name, ramp.size().max_element(), side, flat)?;
     }
     for (name, sprite) in [("sprite", Some(&assets.sprite)), ("detail", assets.detail.as_ref())] {
         let Some(sprite) = sprite else { continue };
-        check(name, sprite.size(), flat)?;
-        check(name, array_layers(sprite.frame_count()), limits.max_texture_array_layers)?;
+        check(name, sprite.size(), side, flat)?;
+        check(name, array_layers(sprite.frame_count()), "frames", max_layers)?;
     }
     if let Some(maps) = &assets.six_way {
         if maps.size() != assets.sprite.size() {
-            let expected = format!("the size of the sprite, {}", assets.sprite.size());
-            return Err(FieldError::new("material.six_way", format!("{} texels", maps.size()), expected));
+            let problem = format!("the frames have {} texels along a side", maps.size());
+            let expected = format!("{}, as the sprite has", assets.sprite.size());
+            return Err(FieldError::from_problem("material.six_way", problem, expected));
         }
         let layers = array_layers(assets.sprite.frame_count() + maps.frame_count());
-        if layers > limits.max_texture_array_layers {
-            let max = limits.max_texture_array_layers;
-            let expected = format!("at most {max} on this device, with the sprite's own");
-            return Err(FieldError::new("material.six_way", format!("{} frames", maps.frame_count()), expected));
-        }
+        check("six_way", layers, "frames together with those of the sprite", max_layers)?;
     }
-    check("noise", assets.noise.size(), limits.max_texture_dimension_3d)
+    check("noise", assets.noise.size(), side, limits.max_texture_dimension_3d)
 }
 
 fn upload_ramp(gpu: &Gpu<'_>, label: &str, ramp: &Ramp, bytes: &mut u64) -> wgpu::TextureView {

@@ -285,7 +285,7 @@ impl Renderer {
     pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
         if timing.is_some_and(|timing| timing.device_number() != self.context.shared().device_number) {
             let expected = "a Timing of the renderer's context, or of one with other shaders";
-            return Err(FieldError::new("timing", "a Timing of another device", expected).into());
+            return Err(FieldError::from_problem("timing", "was created on another device", expected).into());
         }
         self.timing = timing.cloned();
         self.timed_frame = None;
@@ -316,9 +316,9 @@ impl Renderer {
         if !self.submission.is_outstanding() {
             return Ok(());
         }
-        let value = "a second call before the commands of the first are submitted or dropped";
+        let problem = "called again before the commands of the first call were submitted or dropped";
         let expected = "one renderer per view of a submission; renderers that share a Context are cheap";
-        Err(FieldError::new("prepare", value, expected))
+        Err(FieldError::from_problem("prepare", problem, expected))
     }
 
     /// Keeps one state per system of the frame, found by its key. Drops states whose system has been absent for more

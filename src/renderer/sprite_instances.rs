@@ -67,7 +67,7 @@ pub(crate) struct Sprites {
     /// Offset of the first sprite, bytes.
     pub offset: u64,
     pub count: u32,
-    /// Number of times that all of them are drawn.
+    /// Number of times that all instances are drawn.
     pub loops: u32,
     /// True if they are known to be back to front.
     pub is_sorted: bool,

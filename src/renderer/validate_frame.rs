@@ -26,21 +26,22 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> R
     let size = validate_scene_depth(shared, frame)?;
     if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
         let View { size: pixels, origin, .. } = frame.view;
-        let value = format!("{}x{} from ({}, {})", pixels.x, pixels.y, origin.x, origin.y);
+        let [x, y] = origin.to_array();
+        let problem = format!("{}x{} from ({x}, {y}) is not inside the scene depth", pixels.x, pixels.y);
         let expected = format!("the size of the scene depth, {}x{}, or a part of it", size.x, size.y);
-        return Err(FieldError::new("view.size", value, expected));
+        return Err(FieldError::from_problem("view.size", problem, expected));
     }
     let reads_attached = host.depth_format.is_some() && frame.scene_depth.linear().is_none();
     if reads_attached && !shared.read_only_depth && host.sample_count == 1 {
         let expected = "SceneDepth::Linear or Both, or a descriptor with depth_format None: this backend (OpenGL) \
                         cannot sample the depth buffer that the pass tests";
-        return Err(FieldError::new("scene_depth", "Buffer", expected));
+        return Err(FieldError::new("scene_depth", "SceneDepth::Buffer", expected));
     }
     validate_lights(frame.lights)?;
     for (index, system) in frame.systems.iter().enumerate() {
         if let Some(other) = frame.systems[..index].iter().position(|other| other.key == system.key) {
-            let expected = format!("a unique key; systems[{other}] has the same one");
-            return Err(FieldError::new(format!("systems[{index}].key"), system.key, expected));
+            let problem = format!("{} is also the key of systems[{other}]", system.key);
+            return Err(FieldError::from_problem(format!("systems[{index}].key"), problem, "a unique key"));
         }
         validate_system(shared, index, frame, system)?;
     }
@@ -76,7 +77,8 @@ fn validate_scene_depth(shared: &Shared, frame: &Frame<'_>) -> Result<UVec2, Fie
             return Err(FieldError::new("scene_depth", "Multisampled", expected));
         }
         if buffer.texture().sample_count() < 2 {
-            return Err(FieldError::new("scene_depth", "Multisampled with 1 sample", "SceneDepth::Buffer"));
+            let problem = "Multisampled has 1 sample per pixel";
+            return Err(FieldError::from_problem("scene_depth", problem, "SceneDepth::Buffer"));
         }
         let is_depth = buffer.texture().format().has_depth_aspect();
         validate_depth_format_and_usage(buffer.texture(), is_depth, "a depth format")?;
@@ -99,13 +101,14 @@ fn validate_depth_texture(
     expected: &str,
 ) -> Result<(), FieldError> {
     let texture = depth.texture();
-    let refuse = |value: String, expected: &str| Err(FieldError::new("scene_depth", value, expected));
+    let refuse = |problem: String, expected: &str| Err(FieldError::from_problem("scene_depth", problem, expected));
     if (texture.width(), texture.height()) != (size.x, size.y) {
-        let value = format!("{}x{}", texture.width(), texture.height());
-        return refuse(value, &format!("the size of the other depth, {}x{}", size.x, size.y));
+        let problem = format!("{}x{} is not the size of the other depth", texture.width(), texture.height());
+        return refuse(problem, &format!("{}x{}", size.x, size.y));
     }
     if texture.sample_count() != 1 {
-        return refuse(format!("{} samples", texture.sample_count()), "1 sample, or SceneDepth::Multisampled");
+        let problem = format!("has {} samples per pixel", texture.sample_count());
+        return refuse(problem, "1, or SceneDepth::Multisampled");
     }
     validate_depth_format_and_usage(texture, format_fits, expected)
 }
@@ -115,12 +118,13 @@ fn validate_depth_format_and_usage(
     format_fits: bool,
     expected: &str,
 ) -> Result<(), FieldError> {
-    let refuse = |value: String, expected: &str| Err(FieldError::new("scene_depth", value, expected));
+    let refuse = |problem: String, expected: &str| Err(FieldError::from_problem("scene_depth", problem, expected));
     if !format_fits {
-        return refuse(format!("{:?}", texture.format()), expected);
+        return refuse(format!("{:?} is not valid", texture.format()), expected);
     }
     if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-        return refuse(format!("usage {:?}", texture.usage()), "a usage that includes TEXTURE_BINDING");
+        let problem = format!("usage {:?} lacks TEXTURE_BINDING", texture.usage());
+        return refuse(problem, "a usage that includes TEXTURE_BINDING");
     }
     Ok(())
 }
@@ -141,7 +145,7 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
     validate_particles(shared, system, &field)?;
     if system.material.context != shared.number {
         let expected = "a material created by this renderer's context; renderers share materials by sharing a context";
-        return Err(FieldError::new(field("material"), "a material of another context", expected));
+        return Err(FieldError::from_problem(field("material"), "belongs to another context", expected));
     }
     system.material.info.validate(index, system.settings)?;
     if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {
@@ -208,7 +212,8 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
             let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
             if !bounds.is_empty() && !is_finite {
                 let expected = "an emission of an emitter that Emitter::validate accepts";
-                return Err(FieldError::new(field("particles"), "an emission whose bounds are not finite", expected));
+                let problem = "the bounds of the emission are not finite";
+                return Err(FieldError::from_problem(field("particles"), problem, expected));
             }
         }
         Particles::Buffer { buffer, offset, count, .. } => {
@@ -227,9 +232,9 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
             let mut usage = wgpu::BufferUsages::VERTEX;
             usage.set(wgpu::BufferUsages::STORAGE, is_read);
             if buffer.size() < needed || !buffer.usage().contains(usage) {
-                let value = format!("{} bytes, usage {:?}", buffer.size(), buffer.usage());
-                let expected = format!("at least {needed} bytes, usage {usage:?}");
-                return Err(FieldError::new(field("particles"), value, expected));
+                let problem = format!("the buffer has {} bytes and usage {:?}", buffer.size(), buffer.usage());
+                let expected = format!("at least {needed} bytes and usage {usage:?}");
+                return Err(FieldError::from_problem(field("particles"), problem, expected));
             }
         }
     }
@@ -238,8 +243,9 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
 
 fn validate_count(count: u64, max_count: u64, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
     if count > max_count {
-        let value = format!("{count} particles");
-        return Err(FieldError::new(field("particles"), value, format!("at most {max_count} on this device")));
+        let problem = format!("{count} particles are too many");
+        let expected = format!("at most {max_count} on this device");
+        return Err(FieldError::from_problem(field("particles"), problem, expected));
     }
     Ok(())
 }

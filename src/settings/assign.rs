@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::fields::Fields;
 use super::traversal::{FieldRef, PathStep, for_each_field};
-use crate::error::FieldError;
+use crate::error::{FieldError, one_line};
 
 /// Sets the fields that `path` names to `value`. Returns their name without list indices.
 ///
@@ -93,7 +93,8 @@ impl Names {
             }
             (_, Some(first)) => {
                 let all: Vec<_> = std::iter::once(first).chain(self.wanted).collect();
-                Err(FieldError::new("field", format!("{path:?}"), format!("one of {}", all.join(", "))))
+                let problem = format!("{:?} names several fields", one_line(path));
+                Err(FieldError::from_problem("field", problem, format!("one of {}", all.join(", "))))
             }
         }
     }
@@ -197,7 +198,7 @@ mod tests {
     fn errors_name_the_expected_value_and_change_nothing() {
         let mut settings = outer();
         for (path, value, message) in [
-            ("metal", "tin", "field: \"metal\" is not valid; expected one of core.metal, layers.metal"),
+            ("metal", "tin", "field: \"metal\" names several fields; expected one of core.metal, layers.metal"),
             (
                 "core.metals",
                 "tin",

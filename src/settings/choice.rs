@@ -1,5 +1,7 @@
 //! Settings with a fixed set of named choices, which a user interface can list.
 
+use crate::error::one_line;
+
 /// Setting enum, for code that lists its choices.
 pub trait Choice {
     /// Names of all choices, as in presets, on the command line and in user interfaces.
@@ -10,6 +12,16 @@ pub trait Choice {
 
     /// Selects a choice. An index beyond the names changes nothing.
     fn set_index(&mut self, index: usize);
+}
+
+/// Text that names no choice of a setting. The caller knows which field or option it was given for.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{} is not valid; expected one of {}", one_line(format!("{text:?}")), names.join(", "))]
+pub struct UnknownChoice {
+    /// Text that was given.
+    pub text: String,
+    /// Names of all choices.
+    pub names: &'static [&'static str],
 }
 
 /// Defines a setting enum: variants, names, `FromStr` and serde.
@@ -49,13 +61,11 @@ macro_rules! choice {
         }
 
         impl std::str::FromStr for $name {
-            type Err = $crate::error::FieldError;
+            type Err = $crate::settings::choice::UnknownChoice;
 
             fn from_str(text: &str) -> Result<Self, Self::Err> {
-                Self::ALL.iter().copied().find(|choice| choice.name() == text).ok_or_else(|| {
-                    let expected = format!("one of {}", Self::NAMES.join(", "));
-                    Self::Err::new(stringify!($name), format!("{text:?}"), expected)
-                })
+                let choice = Self::ALL.iter().copied().find(|choice| choice.name() == text);
+                choice.ok_or_else(|| Self::Err { text: text.into(), names: Self::NAMES })
             }
         }
     };

@@ -149,7 +149,7 @@ impl Validator {
         } else {
             format!("{low} to {high}{space}{unit}")
         };
-        self.error = Some(FieldError { field, value: value.to_string(), expected });
+        self.error = Some(FieldError::new(field, value, expected));
     }
 
     fn enter(&mut self, step: PathStep, fields: &mut dyn Fields) {

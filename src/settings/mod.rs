@@ -21,9 +21,9 @@ pub use accumulate::{
     NormalEncoding, Upsample,
 };
 pub use assign::set_field;
-pub use choice::Choice;
 #[doc(hidden)]
 pub use choice::choice;
+pub use choice::{Choice, UnknownChoice};
 pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
@@ -202,10 +202,14 @@ impl Settings {
         };
         let accumulate = &self.accumulate;
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.encoding == NormalEncoding::Signed {
-            return conflict("encoding", "signed", "\"biased\" with format \"rgba8unorm\", which cannot hold signs");
+            return conflict(
+                "encoding",
+                "\"signed\"",
+                "\"biased\" with format \"rgba8unorm\", which cannot hold signs",
+            );
         }
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.order == BlendOrder::Weighted {
-            return conflict("order", "weighted", "\"sorted\" with format \"rgba8unorm\", which cannot hold sums");
+            return conflict("order", "\"weighted\"", "\"sorted\" with format \"rgba8unorm\", which cannot hold sums");
         }
         if accumulate.depth_source == DepthSource::Host && accumulate.scale != 1 {
             return conflict("scale", &accumulate.scale.to_string(), "1 with depth_source \"host\"");
@@ -230,10 +234,7 @@ mod tests {
             assert_eq!(serde_json::to_string(&choice).unwrap(), format!("{:?}", choice.name()));
         }
         let error = "cubic".parse::<Upsample>().unwrap_err().to_string();
-        assert!(
-            error.contains("\"cubic\"") && error.contains("guided, joint_bilateral, nearest_depth, bilinear"),
-            "{error}"
-        );
+        assert_eq!(error, "\"cubic\" is not valid; expected one of guided, joint_bilateral, nearest_depth, bilinear");
     }
 
     #[test]

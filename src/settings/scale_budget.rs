@@ -50,7 +50,7 @@ const MAX_FINER_INTERVAL: u32 = 16;
 /// The cost is modelled as a fixed part and a part that falls with the square of the scale. Their ratio is learned from
 /// each change of scale.
 ///
-/// The measurements may be of one system, or of all of them, which then share the scale. Systems that are compared with
+/// The measurements may be of one system, or of all systems, which then share the scale. Systems that are compared with
 /// the host's own depth ([`DepthSource::Host`](super::DepthSource::Host)) support scale 1 only. `docs/recipes.md` has
 /// an example host.
 #[derive(Clone, Debug, PartialEq)]

@@ -29,7 +29,7 @@ pub struct SystemInput<'a> {
     pub extent: Option<SmokeExtent>,
     /// Empty if the particles are on the GPU.
     pub particles: &'a [Particle],
-    /// Number of particles that each of them represents.
+    /// Number of particles that each element represents.
     pub particles_per_sample: u32,
     pub settings: &'a ResolvedSettings,
     pub material: &'a MaterialInfo,
@@ -67,7 +67,7 @@ impl SystemSetup {
 }
 
 /// Places a system in the view; `None` if it is out of sight. `targets`: size of the host's targets, pixels; the view
-/// may be a part of them.
+/// may be a part of the targets.
 pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
     let SystemInput { bounds, depth, space, extent, particles, particles_per_sample, .. } = *system;
     let SystemInput { settings, material, lights, up, exposure, time, .. } = *system;

@@ -19,7 +19,7 @@ use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::six_way_layout;
 
 const LIGHTS: usize = 8;
-/// Flipbook frames in use; each puff shows one of them.
+/// Flipbook frames in use; each puff shows one frame.
 const FRAMES: u32 = 2;
 
 /// Puffs in a cube with sides of 2 m, and the parameters to path-trace them.

@@ -116,7 +116,7 @@ impl FieldVisitor for SettingMutator {
     fn item(&mut self, _: &'static str, _: usize, _: &mut dyn Fields) {}
 }
 
-/// Returns stages in which settings may have an effect: most of them in soft smoke, some only with one technique or
+/// Returns stages in which settings may have an effect: most settings in soft smoke, some only with one technique or
 /// path.
 fn stages() -> Vec<TestScene> {
     let flipbook = crate::techniques::flipbook();

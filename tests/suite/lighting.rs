@@ -44,7 +44,7 @@ fn new_sprite_changes_the_image_in_proportion_to_its_amount() {
     let original = TestScene::new(SIZE);
     let step = |amount| {
         let mut with_particle = original.clone();
-        // In front of all other sprites, and larger than any of them.
+        // In front of all other sprites, and larger than any other.
         with_particle.particles.push(Particle {
             position: vec3(0.0, 0.0, -3.0),
             radius: 1.0,

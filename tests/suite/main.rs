@@ -1,4 +1,4 @@
-//! Tests of the library on a real GPU adapter. They form one binary so that all of them share one device.
+//! Tests of the library on a real GPU adapter. They form one binary so that all tests share one device.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::redundant_closure_for_method_calls, reason = "some wgpu types cannot be named in a path")]

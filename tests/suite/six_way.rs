@@ -198,7 +198,9 @@ fn missing_or_mismatched_maps_are_errors_that_name_the_field() {
     assert!(said.contains("systems[0].settings.lighting: \"six_way\"") && said.contains("haze sprite bake"), "{said}");
     let said = refused(|scene| scene.material.six_way = Some(scene.material.sprite.clone()));
     assert!(
-        said.contains("material.six_way: 1 frames of 64 texels is not valid; expected twice the sprite's frames, 2"),
+        said.contains(
+            "material.six_way: the number of frames is 1, each of 64 texels; expected 2, two for each of the sprite"
+        ),
         "{said}"
     );
 }

@@ -26,7 +26,7 @@ pub struct HostKind {
     /// True to put one sample of each pixel of the multisampled depth buffer on the near plane.
     pub has_near_sample: bool,
     pub exact_filtering: bool,
-    /// Size of the targets, pixels, if the view covers only a part of them. `None` for the size of the view.
+    /// Size of the targets, pixels, if the view covers only a part of the targets. `None` for the size of the view.
     pub target_size: Option<UVec2>,
 }
 

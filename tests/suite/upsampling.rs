@@ -21,7 +21,7 @@ fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Image<Vec4> {
     render_on_gpu(&shot, true)
 }
 
-/// Marks pixels whose depth differs from a pixel within `reach` pixels of them.
+/// Marks pixels whose depth differs from a pixel at most `reach` pixels away.
 fn edges(shot: &Shot, reach: i32) -> Vec<bool> {
     let depth = render(&Shot { debug_view: DebugView::ReducedDepth, ..shot.clone() }, 1, Upsample::Bilinear);
     let is_edge = |i: u32| {

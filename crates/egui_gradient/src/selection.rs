@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// Set of selected stops. The fields show one of them, the lead.
+/// Set of selected stops. The fields show one stop, the lead.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Selection {
     lead: usize,

@@ -150,7 +150,7 @@ impl<'a> BakeJob<'a> {
     }
 }
 
-/// Bakes all recipes if every one of them is valid.
+/// Bakes all recipes if every recipe is valid.
 pub fn bake_all(recipes: &[PathBuf], kinds: &RecipeKinds) -> Result<(), Failures> {
     let mut files = FileChecks::for_inputs(recipes);
     let (jobs, failures) = Failures::of_each(recipes, |path| BakeJob::load(path, kinds, &mut files));

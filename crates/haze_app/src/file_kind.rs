@@ -70,8 +70,9 @@ pub fn explain_wrong_kind(error: Error, path: &Path, own: &str, expected: &str) 
     let kind = by_name.or_else(|| kinds().find(|kind| (kind.can_load)(path)));
     match kind.filter(|kind| kind.name != own) {
         Some(FileKind { description, command, .. }) => {
-            let expected = format!("{expected}, but it is {description}: use `{command}`");
-            FieldError::new(own, path.display(), expected).into()
+            let problem = format!("{} is {description}", path.display());
+            let expected = format!("{expected}, or `{command}` for this file");
+            FieldError::from_problem(own, problem, expected).into()
         }
         None => error,
     }

@@ -1,5 +1,5 @@
-//! Measures draw times of several variants in turn, round by round, so that other load on the machine slows all of them
-//! alike; takes the median of each.
+//! Measures draw times of several variants in turn, round by round, so that other load on the machine slows all
+//! variants alike; takes the median of each.
 
 use std::time::Instant;
 

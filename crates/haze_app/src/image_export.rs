@@ -121,8 +121,9 @@ pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), 
     }
     let size = size * UVec2::new(columns, rows);
     if size.max_element() > MAX_FLIPBOOK_SIDE {
-        let expected = format!("at most {MAX_FLIPBOOK_SIDE} pixels along a side, not {}x{}", size.x, size.y);
-        return Err(FieldError::new("--sheet", format!("{rows}x{columns}"), expected).into());
+        let problem = format!("{rows}x{columns} cells make a sheet of {}x{} pixels", size.x, size.y);
+        let expected = format!("at most {MAX_FLIPBOOK_SIDE} along a side");
+        return Err(FieldError::from_problem("--sheet", problem, expected).into());
     }
     check_memory("--sheet", size)
 }

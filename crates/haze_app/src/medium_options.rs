@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use glam::Vec3;
-use haze::settings::validate;
 use haze::{Error, FieldError, builtin};
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
 use haze_author::sprite::bake::SpriteRecipe;
 
+use super::options::{number, parse_seed, whole_number};
 use super::output::has_extension;
 use super::progress::with_changing_progress;
 
@@ -29,12 +29,13 @@ pub struct MediumNumbers {
     /// Share of light that is scattered, 0 to 1, instead of the medium's; one number, or red, green and blue separated
     /// by commas.
     #[arg(long, value_name = "SHARE", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(value_parser = number(Medium::ALBEDO_RANGE))]
     albedo: Vec<f32>,
     /// Mean cosine of the scattering angle, -0.95 (backward) to 0.95 (forward), instead of the medium's.
-    #[arg(long, value_name = "COSINE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "COSINE", allow_hyphen_values = true, value_parser = number(Medium::ANISOTROPY_RANGE))]
     g: Option<f32>,
     /// Extinction in the middle of the puff, per half side of it, 0.1 to 100, instead of the medium's.
-    #[arg(long, value_name = "EXTINCTION", allow_hyphen_values = true)]
+    #[arg(long, value_name = "EXTINCTION", allow_hyphen_values = true, value_parser = number(Medium::DENSITY_RANGE))]
     density: Option<f32>,
 }
 
@@ -59,7 +60,7 @@ impl MediumNumbers {
     /// Returns the medium of this name with the given numbers instead of its own.
     ///
     /// # Errors
-    /// Names the option that is out of range.
+    /// If --albedo has neither one number nor three.
     pub fn medium_of(&self, name: &str) -> Result<Medium, FieldError> {
         let mut medium = medium_by_name(name);
         medium.albedo = match self.albedo[..] {
@@ -67,14 +68,13 @@ impl MediumNumbers {
             [all] => Vec3::splat(all),
             [r, g, b] => Vec3::new(r, g, b),
             _ => {
-                let given = format!("{} numbers", self.albedo.len());
-                return Err(FieldError::new("--albedo", given, "one number, or three: red, green and blue"));
+                let problem = format!("{} numbers are given", self.albedo.len());
+                let expected = "one number, or three: red, green and blue";
+                return Err(FieldError::from_problem("--albedo", problem, expected));
             }
         };
         medium.anisotropy = self.g.unwrap_or(medium.anisotropy);
         medium.density = self.density.unwrap_or(medium.density);
-        let of_option = |error: FieldError| FieldError { field: format!("--{}", error.field), ..error };
-        validate(&medium, String::new).map_err(of_option)?;
         Ok(medium)
     }
 
@@ -100,13 +100,16 @@ impl MediumArguments {
 #[derive(Args)]
 pub struct PathTraceArguments {
     /// Pixels along a side of the puff.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(8..=256), default_value_t = Self::default().size)]
+    #[arg(long, default_value_t = Self::default().size, allow_hyphen_values = true)]
+    #[arg(value_parser = whole_number(8..=256))]
     size: u32,
     /// Paths per pixel.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536), default_value_t = Self::default().samples)]
+    #[arg(long, default_value_t = Self::default().samples, allow_hyphen_values = true)]
+    #[arg(value_parser = whole_number(1..=65536))]
     samples: u32,
     /// Seed of the noise.
-    #[arg(long, default_value_t = Self::default().seed)]
+    #[arg(long, default_value_t = Self::default().seed, allow_hyphen_values = true)]
+    #[arg(value_parser = parse_seed)]
     seed: u32,
 }
 

@@ -1,6 +1,7 @@
 //! Options shared by several subcommands: a preset and changes to it, an image size, a renderer.
 
 use std::cell::RefCell;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -10,7 +11,7 @@ use glam::{UVec2, Vec4};
 use haze::image::Image;
 use haze::image::{CompressionEffort, write_png};
 use haze::preset::{AssetFolders, Preset};
-use haze::settings::{Choice, RenderPath, Technique, set_field};
+use haze::settings::{Choice, RenderPath, Technique, UnknownChoice, set_field};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_demo::headless::Headless;
@@ -282,14 +283,30 @@ fn parse_scale(text: &str) -> Result<u32, String> {
     scale.ok_or_else(|| format!("{text:?} is not a scale; expected 1 to 16 pixels per texel"))
 }
 
-fn parse_seed(text: &str) -> Result<u32, String> {
+pub fn parse_seed(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| format!("{text:?} is not a seed; expected 0 to {}", u32::MAX))
+}
+
+/// Parser of a number in a range, which the error names.
+pub fn number(range: RangeInclusive<f32>) -> impl TypedValueParser<Value = f32> {
+    move |text: &str| {
+        let value = text.parse().ok().filter(|value| range.contains(value));
+        value.ok_or_else(|| format!("expected a number, {} to {}", range.start(), range.end()))
+    }
+}
+
+/// Parser of a whole number in a range, which the error names.
+pub fn whole_number(range: RangeInclusive<u32>) -> impl TypedValueParser<Value = u32> {
+    move |text: &str| {
+        let value = text.parse().ok().filter(|value| range.contains(value));
+        value.ok_or_else(|| format!("expected a whole number, {} to {}", range.start(), range.end()))
+    }
 }
 
 /// Parser of a setting enum, by its names in presets.
 pub fn choices<T>() -> impl TypedValueParser<Value = T>
 where
-    T: Choice + Default + FromStr<Err = FieldError> + Clone + Send + Sync + 'static,
+    T: Choice + Default + FromStr<Err = UnknownChoice> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(T::default().names()).try_map(|name| name.parse::<T>())
 }

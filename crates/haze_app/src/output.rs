@@ -97,31 +97,34 @@ impl FileChecks {
     /// Refuses a file that cannot be written, before any work is done and any file is replaced. Its name must end in
     /// `extension`.
     pub fn check_output(&mut self, option: &str, path: &Path, extension: &str) -> Result<(), Error> {
-        let refuse = |expected: &str| Err(FieldError::new(option, path.display(), expected).into());
+        let refuse = |problem: &str, expected: &str| {
+            let problem = format!("{} {problem}", path.display());
+            Err(FieldError::from_problem(option, problem, expected).into())
+        };
         if !has_extension(path, extension) {
-            return refuse(&format!("a name that ends in .{extension}"));
+            return refuse("is not valid", &format!("a name that ends in .{extension}"));
         }
         if !path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir()) {
-            return refuse("a file in a folder that exists");
+            return refuse("is in a folder that does not exist", "a file in a folder that exists");
         }
         // `a.png/` and `a.png/.` have the file name `a.png`, but mean a folder.
         let name = path.file_name().unwrap_or_default().as_encoded_bytes();
         let found = std::fs::metadata(path);
         if !path.as_os_str().as_encoded_bytes().ends_with(name) || found.as_ref().is_ok_and(|found| !found.is_file()) {
-            return refuse("a file, or a name that does not exist yet");
+            return refuse("is not a file", "a file, or a name that does not exist yet");
         }
         if found.is_ok_and(|found| found.permissions().readonly()) {
-            return refuse("a file with write permission");
+            return refuse("is read-only", "a file with write permission");
         }
         if let Err(error) = check_writable(path) {
-            return refuse(&format!("a file that can be written ({error})"));
+            return refuse(&format!("cannot be written ({error})"), "a file that can be written");
         }
         let identity = FileIdentity::of(path);
         if self.inputs.contains(&identity) {
-            return refuse("a file that is not also an input");
+            return refuse("is also an input", "another file");
         }
         if self.outputs.contains(&identity) {
-            return refuse("a different file for each output");
+            return refuse("is named for two outputs", "a different file for each output");
         }
         self.outputs.push(identity);
         Ok(())

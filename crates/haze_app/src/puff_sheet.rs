@@ -10,7 +10,7 @@ use image::{Rgb, RgbImage};
 use super::contact_sheet::ContactSheet;
 use super::flip::flips;
 
-/// Linear background of the puffs: darker than most of them, lighter than soot.
+/// Linear background of the puffs: darker than most puffs, lighter than soot.
 const BACKGROUND: Vec3 = Vec3::splat(0.03);
 /// Side of a puff on a sheet, pixels.
 const SIDE: u32 = 160;

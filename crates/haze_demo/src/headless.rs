@@ -29,7 +29,9 @@ fn find_adapter() -> Result<wgpu::Adapter, Error> {
     if !backends.is_empty() {
         wanted = wgpu::Backends::from_comma_list(&backends);
         if wanted.is_empty() {
-            return Err(FieldError::new("WGPU_BACKEND", format!("{backends:?}"), format!("some of {}", list())).into());
+            return Err(
+                FieldError::new("WGPU_BACKEND", format!("{backends:?}"), format!("one or more of {}", list())).into()
+            );
         }
     }
     let mut others = Vec::new();

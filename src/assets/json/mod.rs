@@ -133,7 +133,7 @@ mod tests {
     fn errors_name_the_position_and_the_expected_value() {
         parse_versioned::<Sample>(Path::new("a.json"), "{\"version\": 1, \"boost\": 3}", 1).unwrap();
         let unknown = message("{\"version\": 1, \"boost\": 3,\n  \"bost\": 4}");
-        assert!(unknown.starts_with("a.json:2:8: unknown field `bost`, expected `version` or `boost`"), "{unknown}");
+        assert!(unknown.starts_with("a.json:2:8: unknown field `bost`; expected `version` or `boost`"), "{unknown}");
         assert!(message("{\"version\": 1}").contains("missing field `boost`"));
         assert!(message("{\"boost\": 1}").contains("missing field `version`"));
         assert!(message("{").starts_with("a.json:1:1: the file ends inside an object"));
@@ -174,9 +174,9 @@ mod tests {
             (r#"{"parts": [3]}"#, "a.json:1:12: parts[0]: 3 is not valid; expected an object"),
             (
                 r#"{"parts": [{"bost": 1}]}"#,
-                "a.json:1:18: parts[0]: unknown field `bost`, expected `version` or `boost`",
+                "a.json:1:18: parts[0]: unknown field `bost`; expected `version` or `boost`",
             ),
-            (r#"{"parts": [{"a.b": 1}]}"#, "a.json:1:17: parts[0]: unknown field `a.b`, expected `version` or `boost`"),
+            (r#"{"parts": [{"a.b": 1}]}"#, "a.json:1:17: parts[0]: unknown field `a.b`; expected `version` or `boost`"),
             (r#"{"count": 1, "count": 1}"#, "a.json:1:20: duplicate field `count`"),
             (r#"{"count": 1,}"#, "a.json:1:13: a comma before the closing bracket; expected none"),
             (
@@ -190,7 +190,7 @@ mod tests {
             ),
             (
                 r#"{"a\u001b[2J": 1}"#,
-                r"a.json:1:13: unknown field `a\u{1b}[2J`, expected one of `count`, `on`, `names`, `place`, `path`, `parts`",
+                r"a.json:1:13: unknown field `a\u{1b}[2J`; expected one of `count`, `on`, `names`, `place`, `path`, `parts`",
             ),
         ] {
             assert_eq!(said(text), expected, "{text}");

@@ -59,7 +59,7 @@ pub fn translate(message: &str, path: &str, rest: &str) -> String {
 fn translate_mismatch(message: &str) -> Option<String> {
     if let Some(field) = message.strip_prefix("unknown field `") {
         let (field, expected) = field.rsplit_once("`, expected ")?;
-        return Some(format!("unknown field `{}`, expected {expected}", one_line(field)));
+        return Some(format!("unknown field `{}`; expected {expected}", one_line(field)));
     }
     let (kind, rest) = ["unknown variant ", "invalid type: ", "invalid value: ", "invalid length "]
         .iter()

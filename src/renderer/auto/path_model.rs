@@ -11,7 +11,7 @@ const BIN: f64 = 32.0;
 /// Side of the squares that a CPU's cores rasterize, one core per square, texels.
 const RASTER_SQUARE: u32 = 64;
 /// Optical depth at which a traversal stops: `OPAQUE` in `shaders/tile_accumulate.wgsl`, doubled because texels that
-/// are traversed together wait for the last of them.
+/// are traversed together wait for the last texel.
 const STOP_OPTICAL_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
 /// Fraction of the traversals that never stop: those at the borders of the smoke. With this value and
 /// `STOP_OPTICAL_DEPTH`, the model is within 5 % of an H200 for large sprites.

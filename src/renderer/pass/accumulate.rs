@@ -66,7 +66,7 @@ pub(crate) fn describe(key: AccumulateKey) -> RenderPipelineDescription {
         targets: attachments(set)
             .map(|row| {
                 let blend = if key.overdraw { ADD_ALL } else { row.blend(key.order) };
-                color_target(row.texture_format(key.format, false), Some(blend))
+                color_target(row.raster_format(key.format), Some(blend))
             })
             .collect(),
         constants: key.sprite.constants(attachment_constants(set).chain([

@@ -19,7 +19,7 @@ const IMPORT: &str = "#import ";
 /// Column of the file name on an import line, 1-based.
 pub(super) const IMPORT_COLUMN: usize = IMPORT.len() + 1;
 
-/// Shader sources of a [`Context`](crate::Context): haze's own, or custom files that replace some of them. A clone
+/// Shader sources of a [`Context`](crate::Context): haze's own, or custom files that replace some sources. A clone
 /// shares the same sources.
 #[derive(Clone, Debug)]
 pub struct Sources {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::attachments::attachments;
+use super::attachments::{Attachment, attachments};
 use super::texture_allocator::TextureAllocator;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::settings::{AccumulationFormat, DepthSource};
@@ -98,8 +98,11 @@ impl AccumulationTarget {
         let mut textures = TextureAllocator { device, bytes: 0, storage: false };
         let mut create = |set, tiled| -> Arc<[_]> {
             textures.storage = tiled;
-            let mut texture = |format, label| textures.create_whole(label, format, size);
-            attachments(set).map(|row| texture(row.texture_format(key.format, tiled), row.label)).collect()
+            let mut texture = |row: &Attachment| {
+                let format = if tiled { row.tiled_format(key.format) } else { row.raster_format(key.format) };
+                textures.create_whole(row.label, format, size)
+            };
+            attachments(set).map(&mut texture).collect()
         };
         let attachments = create(key.attachments, key.tiled);
         // Layers are always counted by hardware blending.

@@ -81,7 +81,7 @@ pub(crate) fn attachments(set: AttachmentSet) -> impl Iterator<Item = &'static A
 
 /// Returns the formats that tile_accumulate writes.
 pub(crate) fn tiled_formats(set: AttachmentSet, format: AccumulationFormat) -> TiledFormats {
-    let mut used = attachments(set).map(|attachment| attachment.texture_format(format, true));
+    let mut used = attachments(set).map(|attachment| attachment.tiled_format(format));
     std::array::from_fn(|_| used.next().unwrap_or(PLACEHOLDER_FORMAT))
 }
 
@@ -94,14 +94,25 @@ pub(crate) fn attachment_constants(set: AttachmentSet) -> impl Iterator<Item = C
     std::iter::once(count).chain(ATTACHMENTS.iter().filter_map(slot))
 }
 
-impl Attachment {
-    /// Returns the texture's format. `format`: that of the settings. `tiled`: true if compute shaders write it.
-    pub fn texture_format(&self, format: AccumulationFormat, tiled: bool) -> wgpu::TextureFormat {
-        match (if tiled { self.tiled } else { self.raster }, format) {
-            (Format::Fixed(format), _) => format,
-            (Format::OfSettings, AccumulationFormat::Rgba16Float) => wgpu::TextureFormat::Rgba16Float,
-            (Format::OfSettings, AccumulationFormat::Rgba8Unorm) => wgpu::TextureFormat::Rgba8Unorm,
+impl Format {
+    fn resolve(self, of_settings: AccumulationFormat) -> wgpu::TextureFormat {
+        match (self, of_settings) {
+            (Self::Fixed(format), _) => format,
+            (Self::OfSettings, AccumulationFormat::Rgba16Float) => wgpu::TextureFormat::Rgba16Float,
+            (Self::OfSettings, AccumulationFormat::Rgba8Unorm) => wgpu::TextureFormat::Rgba8Unorm,
         }
+    }
+}
+
+impl Attachment {
+    /// Returns the texture's format if the hardware blends into it. `format`: that of the settings.
+    pub fn raster_format(&self, format: AccumulationFormat) -> wgpu::TextureFormat {
+        self.raster.resolve(format)
+    }
+
+    /// Returns the texture's format if compute shaders write it. `format`: that of the settings.
+    pub fn tiled_format(&self, format: AccumulationFormat) -> wgpu::TextureFormat {
+        self.tiled.resolve(format)
     }
 
     /// Returns the texture's blend state.
@@ -122,7 +133,7 @@ pub(crate) fn validate_attachments(
     set: AttachmentSet,
     format: AccumulationFormat,
 ) -> Result<(), FieldError> {
-    let rows = attachments(set).map(|attachment| (attachment.role, attachment.texture_format(format, false)));
+    let rows = attachments(set).map(|attachment| (attachment.role, attachment.raster_format(format)));
     validate_rows(index, rows)
 }
 

@@ -9,6 +9,10 @@ use super::inputs::{
 };
 
 pub fn formulas() -> Vec<Formula> {
+    [cube(), motif(), baked()].into_iter().flatten().collect()
+}
+
+fn cube() -> Vec<Formula> {
     vec![
         Formula {
             name: "cube_direction",
@@ -34,6 +38,11 @@ pub fn formulas() -> Vec<Formula> {
                 ("size.y >= size.z {", "size.y <= size.z {"),
             ],
         },
+    ]
+}
+
+fn motif() -> Vec<Formula> {
+    vec![
         Formula {
             name: "motif_normal",
             file: "lib/diffuse_bake.wgsl",
@@ -52,6 +61,11 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             mutants: &[("normal.z >= 0.0", "normal.z >= -2.0")],
         },
+    ]
+}
+
+fn baked() -> Vec<Formula> {
+    vec![
         Formula {
             name: "sample_baked",
             file: "lib/diffuse_bake.wgsl",

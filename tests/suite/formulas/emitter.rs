@@ -63,6 +63,10 @@ const WGSL_EMITTED: &str = wgsl_emitter!(
 );
 
 pub fn formulas() -> Vec<Formula> {
+    [functions(), births()].into_iter().flatten().collect()
+}
+
+fn functions() -> Vec<Formula> {
     vec![
         Formula {
             name: "unit_sphere",
@@ -101,6 +105,11 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: ARITHMETIC,
             mutants: &[("3.0 - 2.0 * s", "2.0 - s"), ("let s = saturate(x)", "let s = x")],
         },
+    ]
+}
+
+fn births() -> Vec<Formula> {
+    vec![
         Formula {
             name: "birth_offset",
             file: "lib/emitter.wgsl",

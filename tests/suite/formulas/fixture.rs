@@ -29,7 +29,7 @@ pub static COLOURS: LazyLock<Image<Vec4>> = LazyLock::new(|| {
     Image { size: SIZE, texels }
 });
 
-/// Textures of every role, all of them the test ramp.
+/// Textures of every role, all with the test ramp.
 static TEXTURES: LazyLock<AccumulatedTextures> = LazyLock::new(|| AttachmentRole::ALL.map(|_| Some(COLOURS.clone())));
 
 /// Red channel of the test ramp: the scene's depth buffer, and the reduced depth over the depth limit.

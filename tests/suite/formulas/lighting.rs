@@ -23,6 +23,10 @@ fn light(x: &[f32]) -> LightUniform {
 }
 
 pub fn formulas() -> Vec<Formula> {
+    [lights(), weights(), coverages(), specular_scatter()].into_iter().flatten().collect()
+}
+
+fn lights() -> Vec<Formula> {
     vec![
         Formula {
             name: "distance_attenuation",
@@ -88,6 +92,11 @@ pub fn formulas() -> Vec<Formula> {
                 ("LightSample(-light.direction", "LightSample(light.direction"),
             ],
         },
+    ]
+}
+
+fn weights() -> Vec<Formula> {
+    vec![
         Formula {
             name: "diffuse_coordinate",
             file: "lib/lighting.wgsl",
@@ -132,6 +141,11 @@ pub fn formulas() -> Vec<Formula> {
                 ("max(scatter_smooth, 1.0e-4)", "max(scatter_smooth - scatter_amount, 1.0e-4)"),
             ],
         },
+    ]
+}
+
+fn coverages() -> Vec<Formula> {
+    vec![
         Formula {
             name: "coverage",
             file: "lib/lighting.wgsl",
@@ -150,6 +164,11 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: 1e-5,
             mutants: &[("luminance(paint)", "paint.r"), ("srgb_from_linear(saturate", "(saturate")],
         },
+    ]
+}
+
+fn specular_scatter() -> Vec<Formula> {
+    vec![
         Formula {
             name: "specular_scatter_fade",
             file: "lib/lighting.wgsl",

@@ -42,10 +42,10 @@ fn changed(change: impl Fn(&mut Settings)) -> Settings {
 }
 
 pub fn formulas() -> Vec<Formula> {
-    [textures(), lights(), surfaces()].into_iter().flatten().collect()
+    [accumulated(), diffuse(), surfaces(), lit_surfaces(), specular_scatter()].into_iter().flatten().collect()
 }
 
-fn textures() -> Vec<Formula> {
+fn accumulated() -> Vec<Formula> {
     vec![
         Formula {
             name: "load_scene_depth",
@@ -117,19 +117,10 @@ fn textures() -> Vec<Formula> {
             tolerance: 1e-5,
             mutants: &[("-system.centre.z, view.orthographic", "1.0, view.orthographic")],
         },
-        Formula {
-            name: "light_visibility",
-            file: "specular_scatter.wgsl",
-            wgsl: "y(0, light_visibility(vec2f(x(0), x(1)), x(2), x(3)));",
-            reference: |x| vec![with_target(&DEFAULTS, |_| {}, |target| target.light_visibility(v2(x), x[2], x[3]))],
-            cases: random(100, &[(0.0, 8.0), (0.0, 4.0), (0.5, 3.0), (0.1, 0.6)]),
-            tolerance: 1e-5,
-            mutants: &[("pixel + visibility_tap(i, radius)", "pixel"), (">= light_depth", "< light_depth")],
-        },
     ]
 }
 
-fn lights() -> Vec<Formula> {
+fn diffuse() -> Vec<Formula> {
     vec![
         Formula {
             name: "diffuse_from_lights",
@@ -199,6 +190,11 @@ fn lights() -> Vec<Formula> {
                 ("linear_sampler, amount) * system.soft_scatter_intensity", "linear_sampler, amount)"),
             ],
         },
+    ]
+}
+
+fn surfaces() -> Vec<Formula> {
+    vec![
         Formula {
             name: "smoke_coverage",
             file: "lib/lit_smoke.wgsl",
@@ -214,17 +210,6 @@ fn lights() -> Vec<Formula> {
                 ("if COVERAGE_MODE == COVERAGE_MODE_RAMP", "if false"),
             ],
         },
-    ]
-}
-
-fn surfaces() -> Vec<Formula> {
-    // Modes of diffuse light that read no baked texture: ramp, painted motif and spherical harmonics.
-    let modes = |mut case: Vec<f32>| {
-        case[0] = [DiffuseMode::Ramp, DiffuseMode::PaintedMotif, DiffuseMode::SphericalHarmonics][case[0] as usize]
-            as u32 as f32;
-        case
-    };
-    vec![
         Formula {
             name: "surface_from_accumulation",
             file: "lib/lit_smoke.wgsl",
@@ -263,46 +248,66 @@ fn surfaces() -> Vec<Formula> {
                 ),
             ],
         },
-        Formula {
-            name: "diffuse",
-            file: "lib/lit_smoke.wgsl",
-            wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
+    ]
+}
+
+fn lit_surfaces() -> Vec<Formula> {
+    // Modes of diffuse light that read no baked texture: ramp, painted motif and spherical harmonics.
+    let modes = |mut case: Vec<f32>| {
+        case[0] = [DiffuseMode::Ramp, DiffuseMode::PaintedMotif, DiffuseMode::SphericalHarmonics][case[0] as usize]
+            as u32 as f32;
+        case
+    };
+    vec![Formula {
+        name: "diffuse",
+        file: "lib/lit_smoke.wgsl",
+        wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
                    for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
                    let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5))); \
                    y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",
-            reference: |x| {
-                let settings = changed(|s| {
-                    s.diffuse.mode = DiffuseMode::ALL[x[0] as usize];
-                    if x[8] > 0.8 {
-                        s.lighting = Lighting::SixWay;
-                    }
-                });
-                let change = |visible: &mut VisibleSystem<'_>| {
-                    visible.system.diffuse_intensity = 0.6;
-                    visible.system.spherical_harmonics =
-                        std::array::from_fn(|i| Vec4::new(0.3, 0.2, 0.1, 0.0) * i as f32);
-                };
-                let six_way = SixWay { positive: Vec3::new(0.2, 0.4, 0.6), negative: Vec3::new(0.1, 0.3, 0.5) };
-                let surface = Surface { normal: v3(&x[1..]), six_way };
-                with_target(&settings, change, |target| target.diffuse(&surface, x[4], v3(&x[5..])).to_array().to_vec())
-            },
-            cases: unit_vectors(
-                with_choices(3, &[SIDE, SIDE, SIDE, (0.0, 1.0), PLACE[0], PLACE[1], PLACE[2], (0.0, 1.0)])
-                    .into_iter()
-                    .map(modes)
-                    .collect(),
-                1,
-            ),
-            tolerance: TRANSCENDENTAL,
-            mutants: &[
-                ("return light * system.diffuse_intensity;", "return light;"),
-                ("motif_position(normal) * 0.5 + 0.5", "motif_position(normal)"),
-                (
-                    "diffuse_from_six_way(surface.six_way, position) * system.diffuse_intensity",
-                    "diffuse_from_six_way(surface.six_way, position)",
-                ),
-                ("coverage(amount, system.boost), position)", "amount, position)"),
-            ],
+        reference: |x| {
+            let settings = changed(|s| {
+                s.diffuse.mode = DiffuseMode::ALL[x[0] as usize];
+                if x[8] > 0.8 {
+                    s.lighting = Lighting::SixWay;
+                }
+            });
+            let change = |visible: &mut VisibleSystem<'_>| {
+                visible.system.diffuse_intensity = 0.6;
+                visible.system.spherical_harmonics = std::array::from_fn(|i| Vec4::new(0.3, 0.2, 0.1, 0.0) * i as f32);
+            };
+            let six_way = SixWay { positive: Vec3::new(0.2, 0.4, 0.6), negative: Vec3::new(0.1, 0.3, 0.5) };
+            let surface = Surface { normal: v3(&x[1..]), six_way };
+            with_target(&settings, change, |target| target.diffuse(&surface, x[4], v3(&x[5..])).to_array().to_vec())
         },
-    ]
+        cases: unit_vectors(
+            with_choices(3, &[SIDE, SIDE, SIDE, (0.0, 1.0), PLACE[0], PLACE[1], PLACE[2], (0.0, 1.0)])
+                .into_iter()
+                .map(modes)
+                .collect(),
+            1,
+        ),
+        tolerance: TRANSCENDENTAL,
+        mutants: &[
+            ("return light * system.diffuse_intensity;", "return light;"),
+            ("motif_position(normal) * 0.5 + 0.5", "motif_position(normal)"),
+            (
+                "diffuse_from_six_way(surface.six_way, position) * system.diffuse_intensity",
+                "diffuse_from_six_way(surface.six_way, position)",
+            ),
+            ("coverage(amount, system.boost), position)", "amount, position)"),
+        ],
+    }]
+}
+
+fn specular_scatter() -> Vec<Formula> {
+    vec![Formula {
+        name: "light_visibility",
+        file: "specular_scatter.wgsl",
+        wgsl: "y(0, light_visibility(vec2f(x(0), x(1)), x(2), x(3)));",
+        reference: |x| vec![with_target(&DEFAULTS, |_| {}, |target| target.light_visibility(v2(x), x[2], x[3]))],
+        cases: random(100, &[(0.0, 8.0), (0.0, 4.0), (0.5, 3.0), (0.1, 0.6)]),
+        tolerance: 1e-5,
+        mutants: &[("pixel + visibility_tap(i, radius)", "pixel"), (">= light_depth", "< light_depth")],
+    }]
 }

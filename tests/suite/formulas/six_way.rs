@@ -14,6 +14,10 @@ const SIX_WAY_AND_LIGHT: [(f32, f32); 10] = {
 };
 
 pub fn formulas() -> Vec<Formula> {
+    [responses(), rotations()].into_iter().flatten().collect()
+}
+
+fn responses() -> Vec<Formula> {
     vec![
         Formula {
             name: "six_way_from_texel",
@@ -60,6 +64,11 @@ pub fn formulas() -> Vec<Formula> {
                 ("to_light.z < 0.0", "to_light.z > 0.0"),
             ],
         },
+    ]
+}
+
+fn rotations() -> Vec<Formula> {
+    vec![
         Formula {
             name: "rotate_six_way",
             file: "lib/six_way.wgsl",

@@ -7,6 +7,10 @@ use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, with_choices};
 
 pub fn formulas() -> Vec<Formula> {
+    [curves(), fades()].into_iter().flatten().collect()
+}
+
+fn curves() -> Vec<Formula> {
     vec![
         Formula {
             name: "fade_linear",
@@ -58,6 +62,11 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: ARITHMETIC,
             mutants: &[("saturate(-distance", "saturate(distance"), ("1.0 - saturate", "saturate")],
         },
+    ]
+}
+
+fn fades() -> Vec<Formula> {
+    vec![
         Formula {
             name: "soft_fade",
             file: "lib/soft_fade.wgsl",

@@ -8,6 +8,10 @@ use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, test_sprite, v2, v3, with_choices};
 
 pub fn formulas() -> Vec<Formula> {
+    [frames(), textures(), levels(), corners()].into_iter().flatten().collect()
+}
+
+fn frames() -> Vec<Formula> {
     vec![
         Formula {
             name: "sprite_lod",
@@ -50,27 +54,6 @@ pub fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "sample_sprite",
-            file: "lib/sprite.wgsl",
-            wgsl: "let f = flipbook_frames(x(2), 3.0); \
-                   let v = sample_sprite(test_sprite, test_sampler, vec2f(x(0), x(1)), f, vec2f(x(4), x(5)), x(3)); \
-                   y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
-            reference: |x| {
-                let frames = sprite::flipbook_frames(x[2], 3.0);
-                sprite::sample_sprite(&test_sprite(), v2(x), frames, v2(&x[4..]), x[3]).to_array().to_vec()
-            },
-            cases: random(300, &[(0.0, 1.0), (0.0, 1.0), (0.0, 9.0), (0.0, 4.0), (-0.2, 0.2), (-0.2, 0.2)]),
-            tolerance: 1e-5,
-            mutants: &[
-                ("mix(texel, next, frames.blend)", "texel"),
-                ("mix(fine, coarse, level - base)", "fine"),
-                ("texel.rgb * 2.0 - 1.0", "texel.rgb"),
-                ("uv * vec2f(size) - 0.5", "uv * vec2f(size)"),
-                ("uv - motion * frames.blend", "uv + motion * frames.blend"),
-                ("motion * (1.0 - frames.blend)", "motion * frames.blend"),
-            ],
-        },
-        Formula {
             name: "offset_frames",
             file: "lib/sprite.wgsl",
             wgsl: "let f = offset_frames(flipbook_frames(x(0), 5.0), i32(x(1))); \
@@ -94,6 +77,32 @@ pub fn formulas() -> Vec<Formula> {
                 ("frame_count - 1.0);", "frame_count);"),
                 ("STILL: { return 0.0; }", "STILL: { return frame; }"),
                 ("return frame + 0.5;", "return frame;"),
+            ],
+        },
+    ]
+}
+
+fn textures() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "sample_sprite",
+            file: "lib/sprite.wgsl",
+            wgsl: "let f = flipbook_frames(x(2), 3.0); \
+                   let v = sample_sprite(test_sprite, test_sampler, vec2f(x(0), x(1)), f, vec2f(x(4), x(5)), x(3)); \
+                   y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
+            reference: |x| {
+                let frames = sprite::flipbook_frames(x[2], 3.0);
+                sprite::sample_sprite(&test_sprite(), v2(x), frames, v2(&x[4..]), x[3]).to_array().to_vec()
+            },
+            cases: random(300, &[(0.0, 1.0), (0.0, 1.0), (0.0, 9.0), (0.0, 4.0), (-0.2, 0.2), (-0.2, 0.2)]),
+            tolerance: 1e-5,
+            mutants: &[
+                ("mix(texel, next, frames.blend)", "texel"),
+                ("mix(fine, coarse, level - base)", "fine"),
+                ("texel.rgb * 2.0 - 1.0", "texel.rgb"),
+                ("uv * vec2f(size) - 0.5", "uv * vec2f(size)"),
+                ("uv - motion * frames.blend", "uv + motion * frames.blend"),
+                ("motion * (1.0 - frames.blend)", "motion * frames.blend"),
             ],
         },
         Formula {
@@ -135,6 +144,11 @@ pub fn formulas() -> Vec<Formula> {
                 ("mix(top, bottom, fraction.y)", "mix(bottom, top, fraction.y)"),
             ],
         },
+    ]
+}
+
+fn levels() -> Vec<Formula> {
+    vec![
         Formula {
             name: "last_level",
             file: "lib/sprite.wgsl",
@@ -167,15 +181,6 @@ pub fn formulas() -> Vec<Formula> {
             mutants: &[("min(level, last_level(sprite))", "0.0"), ("uv, frame, level);", "uv, frame, 0.0);")],
         },
         Formula {
-            name: "sprite_corner",
-            file: "lib/sprite.wgsl",
-            wgsl: "y2(0, sprite_corner(u32(x(0))));",
-            reference: |x| sprite::sprite_corner(x[0] as u32).to_array().to_vec(),
-            cases: (0..4_u8).map(|corner| vec![f32::from(corner)]).collect(),
-            tolerance: 0.0,
-            mutants: &[("f32(index >> 1u)", "f32(index & 1u)")],
-        },
-        Formula {
             name: "sample_flipbook",
             file: "lib/sprite.wgsl",
             wgsl: "let f = flipbook_frames(x(2), 3.0); \
@@ -191,6 +196,20 @@ pub fn formulas() -> Vec<Formula> {
                 ("uv + motion * (1.0 - frames.blend)", "uv + motion"),
                 ("mix(texel, next, frames.blend)", "texel"),
             ],
+        },
+    ]
+}
+
+fn corners() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "sprite_corner",
+            file: "lib/sprite.wgsl",
+            wgsl: "y2(0, sprite_corner(u32(x(0))));",
+            reference: |x| sprite::sprite_corner(x[0] as u32).to_array().to_vec(),
+            cases: (0..4_u8).map(|corner| vec![f32::from(corner)]).collect(),
+            tolerance: 0.0,
+            mutants: &[("f32(index >> 1u)", "f32(index & 1u)")],
         },
         Formula {
             name: "unrotate",

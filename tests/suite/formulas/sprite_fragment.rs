@@ -74,7 +74,7 @@ macro_rules! changes {
 }
 
 pub fn formulas() -> Vec<Formula> {
-    [depths(), texels(), techniques()].into_iter().flatten().collect()
+    [depths(), texels(), techniques(), spheres()].into_iter().flatten().collect()
 }
 
 fn depths() -> Vec<Formula> {
@@ -176,13 +176,14 @@ fn texels() -> Vec<Formula> {
     }]
 }
 
+/// Centre, radius, mip level, pixel and scene depth.
+const RANGES: [(f32, f32); 8] =
+    [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -1.0), (1.0, 2.5), (0.0, 1.0), (2.0, 6.0), (1.0, 3.0), (1.0, 7.0)];
+/// Centre, radius, mip level, entry and length of the interval on the ray, and scene depth.
+const MARCH: [(f32, f32); 8] =
+    [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -3.0), (1.0, 2.0), (0.0, 1.0), (1.5, 3.0), (0.5, 2.0), (1.0, 7.0)];
+
 fn techniques() -> Vec<Formula> {
-    /// Centre, radius, mip level, pixel and scene depth.
-    const RANGES: [(f32, f32); 8] =
-        [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -1.0), (1.0, 2.5), (0.0, 1.0), (2.0, 6.0), (1.0, 3.0), (1.0, 7.0)];
-    /// The ray of the second group: entry and length of the interval.
-    const MARCH: [(f32, f32); 8] =
-        [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -3.0), (1.0, 2.0), (0.0, 1.0), (1.5, 3.0), (0.5, 2.0), (1.0, 7.0)];
     let visible_fragment: fn(&[f32]) -> Vec<f32> = |x| {
         let settings = settings(x);
         let mut visible = visible_system(&settings);
@@ -191,15 +192,14 @@ fn techniques() -> Vec<Formula> {
         let fragment = visible.technique_fragment(&sprite, v2(&x[6..]), x[8]);
         fragment.map_or(vec![0.0; 4], |fragment| numbers(&fragment))
     };
-    vec![
-        Formula {
-            name: "technique_fragment",
-            file: "lib/sprite_fragment.wgsl",
-            // Squares: the position in the sprite, from the pixel. The reference leaves out pixels outside of it.
-            wgsl: concat!(
-                changes!(),
-                with_sprite!(
-                    "\
+    vec![Formula {
+        name: "technique_fragment",
+        file: "lib/sprite_fragment.wgsl",
+        // Squares: the position in the sprite, from the pixel. The reference leaves out pixels outside of it.
+        wgsl: concat!(
+            changes!(),
+            with_sprite!(
+                "\
                 let ray = ndc_from_pixel(vec2f(x(6), x(7)), view.size) * view.ray_scale + view.ray_offset; \
                 in.view_position = view_position(ray, 1.0, view.orthographic); \
                 let depth = max(-in.centre_radius.z, view.near); \
@@ -207,20 +207,24 @@ fn techniques() -> Vec<Formula> {
                 in.uv = sprite_uv(local); \
                 if !is_sphere() && any(abs(local) > vec2f(1.0)) { return; } \
                 let f = technique_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount);"
-                )
-            ),
-            reference: visible_fragment,
-            cases: with_choices(count(Technique::ALL), &RANGES),
-            tolerance: 1e-3,
-            mutants: &[
-                ("amount *= visible_slab_fraction(view_depth, radius, view.near);", ""),
-                ("fade = hard_fade(scene - texel_depth)", "fade = hard_fade(scene - view_depth)"),
-                ("default: { fade = fade_before(scene, texel_depth); }", "default: { fade = 1.0; }"),
-                ("fragment.amount *= amount * fade", "fragment.amount *= fade"),
-                ("system.density * fragment.amount * amount", "system.density * amount"),
-                ("depth_sprite_depth(view_depth, texel.x, radius)", "view_depth"),
-            ],
-        },
+            )
+        ),
+        reference: visible_fragment,
+        cases: with_choices(count(Technique::ALL), &RANGES),
+        tolerance: 1e-3,
+        mutants: &[
+            ("amount *= visible_slab_fraction(view_depth, radius, view.near);", ""),
+            ("fade = hard_fade(scene - texel_depth)", "fade = hard_fade(scene - view_depth)"),
+            ("default: { fade = fade_before(scene, texel_depth); }", "default: { fade = 1.0; }"),
+            ("fragment.amount *= amount * fade", "fragment.amount *= fade"),
+            ("system.density * fragment.amount * amount", "system.density * amount"),
+            ("depth_sprite_depth(view_depth, texel.x, radius)", "view_depth"),
+        ],
+    }]
+}
+
+fn spheres() -> Vec<Formula> {
+    vec![
         Formula {
             name: "sphere_fragment",
             file: "lib/sprite_fragment.wgsl",

@@ -62,7 +62,7 @@ fn centres() -> Vec<Vec<f32>> {
 }
 
 pub fn formulas() -> Vec<Formula> {
-    [techniques(), projection(), trimming()].into_iter().flatten().collect()
+    [techniques(), corners(), projection(), trimming()].into_iter().flatten().collect()
 }
 
 fn techniques() -> Vec<Formula> {
@@ -107,7 +107,7 @@ fn techniques() -> Vec<Formula> {
     ]
 }
 
-fn projection() -> Vec<Formula> {
+fn corners() -> Vec<Formula> {
     vec![
         Formula {
             name: "sprite_front",
@@ -145,6 +145,11 @@ fn projection() -> Vec<Formula> {
                 ),
             ],
         },
+    ]
+}
+
+fn projection() -> Vec<Formula> {
+    vec![
         Formula {
             name: "project_sprite",
             file: "lib/sprite_vertex.wgsl",

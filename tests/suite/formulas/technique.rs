@@ -7,6 +7,10 @@ use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v2, v3};
 
 pub fn formulas() -> Vec<Formula> {
+    [flat_sprites(), spheres(), volumes()].into_iter().flatten().collect()
+}
+
+fn flat_sprites() -> Vec<Formula> {
     vec![
         Formula {
             name: "hard_fade",
@@ -26,6 +30,11 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: ARITHMETIC,
             mutants: &[("- offset * radius", "+ offset * radius"), ("offset * radius", "offset")],
         },
+    ]
+}
+
+fn spheres() -> Vec<Formula> {
+    vec![
         Formula {
             name: "ray_sphere",
             file: "lib/technique.wgsl",
@@ -76,6 +85,30 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             mutants: &[("1.0 - axis_distance / max", "axis_distance / max"), ("max(stretch, 0.0)", "stretch")],
         },
+        Formula {
+            name: "sphere_axis_bounds",
+            file: "lib/technique.wgsl",
+            wgsl: "let v = sphere_axis_bounds(vec2f(x(0), x(1)), x(2), x(3)); y(0, v.x); y(1, v.y);",
+            reference: |x| technique::sphere_axis_bounds(v2(x), x[2], x[3]).to_array().to_vec(),
+            cases: {
+                let mut cases = random(300, &[(-3.0, 3.0), (0.3, 6.0), (0.05, 2.0), (0.1, 0.3)]);
+                // Spheres entirely nearer than the near plane are not drawn.
+                cases.retain(|x| x[1] + x[2] > x[3]);
+                cases
+            },
+            // Tangents that touch close to the near plane are steep and meet it far from the centre of the sphere.
+            tolerance: 2e-3,
+            mutants: &[
+                ("vec2f(centre.x - cut, centre.x + cut)", "vec2f(centre.x, centre.x)"),
+                ("cosine * centre.x - sine * centre.y", "cosine * centre.x + sine * centre.y"),
+                ("!clipped || upper.y", "upper.y < 0.0 || upper.y"),
+            ],
+        },
+    ]
+}
+
+fn volumes() -> Vec<Formula> {
+    vec![
         Formula {
             name: "density_thickness",
             file: "lib/technique.wgsl",
@@ -136,25 +169,6 @@ pub fn formulas() -> Vec<Formula> {
             cases: random(100, &[(-1.0, 1.0); 6]),
             tolerance: TRANSCENDENTAL,
             mutants: &[("place + 2.0 * gradient", "place - 2.0 * gradient"), ("max(normal.z, 0.1)", "normal.z")],
-        },
-        Formula {
-            name: "sphere_axis_bounds",
-            file: "lib/technique.wgsl",
-            wgsl: "let v = sphere_axis_bounds(vec2f(x(0), x(1)), x(2), x(3)); y(0, v.x); y(1, v.y);",
-            reference: |x| technique::sphere_axis_bounds(v2(x), x[2], x[3]).to_array().to_vec(),
-            cases: {
-                let mut cases = random(300, &[(-3.0, 3.0), (0.3, 6.0), (0.05, 2.0), (0.1, 0.3)]);
-                // Spheres entirely nearer than the near plane are not drawn.
-                cases.retain(|x| x[1] + x[2] > x[3]);
-                cases
-            },
-            // Tangents that touch close to the near plane are steep and meet it far from the centre of the sphere.
-            tolerance: 2e-3,
-            mutants: &[
-                ("vec2f(centre.x - cut, centre.x + cut)", "vec2f(centre.x, centre.x)"),
-                ("cosine * centre.x - sine * centre.y", "cosine * centre.x + sine * centre.y"),
-                ("!clipped || upper.y", "upper.y < 0.0 || upper.y"),
-            ],
         },
     ]
 }

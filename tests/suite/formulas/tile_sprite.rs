@@ -31,7 +31,7 @@ const SIDE: (f32, f32) = (-1.0, 1.0);
 const TEXEL: (f32, f32) = (0.0, 10.0);
 
 pub fn formulas() -> Vec<Formula> {
-    [packing(), cells::formulas(), places(), sprites()].into_iter().flatten().collect()
+    [packing(), cells::formulas(), squares(), texels(), sprites()].into_iter().flatten().collect()
 }
 
 fn packing() -> Vec<Formula> {
@@ -86,7 +86,7 @@ fn packing() -> Vec<Formula> {
     ]
 }
 
-fn places() -> Vec<Formula> {
+fn squares() -> Vec<Formula> {
     vec![
         Formula {
             name: "uv_in_square",
@@ -124,6 +124,11 @@ fn places() -> Vec<Formula> {
             tolerance: ARITHMETIC,
             mutants: &[("thickness * thickness", "thickness"), ("max(1.0 - dot(place, place), 0.0)", "1.0")],
         },
+    ]
+}
+
+fn texels() -> Vec<Formula> {
+    vec![
         Formula {
             name: "ray_through_texel",
             file: "lib/tile_sprite.wgsl",

@@ -30,7 +30,7 @@ const TILES: TilesUniform = TilesUniform {
 };
 
 pub fn formulas() -> Vec<Formula> {
-    [counts(), rectangles(), lists(), sort()].into_iter().flatten().collect()
+    [counts(), rectangles(), lists(), traversal(), sort()].into_iter().flatten().collect()
 }
 
 fn counts() -> Vec<Formula> {
@@ -189,6 +189,23 @@ fn lists() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "is_visible",
+            file: "tile_gather.wgsl",
+            wgsl: "SORTED = x(0) > 0.5; keys[3] = select(u32(x(1)), HIDDEN_KEY, x(1) > 5.0); y(0, f32(is_visible(3u)));",
+            reference: |x| {
+                let key = if x[1] > 5.0 { tiles::HIDDEN_KEY } else { x[1] as u32 };
+                flag(tiles::is_visible(x[0] > 0.5, key))
+            },
+            cases: random(50, &[(0.0, 1.0), (0.0, 10.0)]),
+            tolerance: 0.0,
+            mutants: &[("!SORTED || keys", "keys"), ("!SORTED || keys[at] != HIDDEN_KEY", "true")],
+        },
+    ]
+}
+
+fn traversal() -> Vec<Formula> {
+    vec![
+        Formula {
             name: "sprite_index",
             file: "tile_accumulate.wgsl",
             wgsl: "lists = array<u32, 16>(3u, 1u, 4u, 1u, 5u, 9u, 2u, 6u, 0x55555555u, 0x0f0f0f0fu, 0x12345678u, 8u, 9u, \
@@ -242,18 +259,6 @@ fn lists() -> Vec<Formula> {
             cases: random(200, &[(0.0, 1.0), (0.0, 0.002), (1.0, 5.0), (1.0, 5.0)]),
             tolerance: 0.0,
             mutants: &[("is_opaque(texel) || front", "front"), ("front > texel.end", "front > texel.scene")],
-        },
-        Formula {
-            name: "is_visible",
-            file: "tile_gather.wgsl",
-            wgsl: "SORTED = x(0) > 0.5; keys[3] = select(u32(x(1)), HIDDEN_KEY, x(1) > 5.0); y(0, f32(is_visible(3u)));",
-            reference: |x| {
-                let key = if x[1] > 5.0 { tiles::HIDDEN_KEY } else { x[1] as u32 };
-                flag(tiles::is_visible(x[0] > 0.5, key))
-            },
-            cases: random(50, &[(0.0, 1.0), (0.0, 10.0)]),
-            tolerance: 0.0,
-            mutants: &[("!SORTED || keys", "keys"), ("!SORTED || keys[at] != HIDDEN_KEY", "true")],
         },
     ]
 }

@@ -25,6 +25,10 @@ const WGSL_FITTED: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.
      y(0, fitted_value(f, 0.5).x);";
 
 pub fn formulas() -> Vec<Formula> {
+    [weights(), guided_fits()].into_iter().flatten().collect()
+}
+
+fn weights() -> Vec<Formula> {
     vec![
         Formula {
             name: "upsample_weights",
@@ -84,6 +88,11 @@ pub fn formulas() -> Vec<Formula> {
                 ("(2.0 / (SURFACE_DEPTH_TOLERANCE", "(1.0 / (SURFACE_DEPTH_TOLERANCE"),
             ],
         },
+    ]
+}
+
+fn guided_fits() -> Vec<Formula> {
+    vec![
         Formula {
             name: "add_texel",
             file: "lib/upsample.wgsl",

@@ -44,7 +44,8 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     let error = refusal(&mut host, &scene, Particles::Slice(&scene.particles)).to_string();
     assert_eq!(
         error,
-        "view.size: 161x91 from (0, 0) is not valid; expected the size of the scene depth, 160x90, or a part of it"
+        "view.size: 161x91 from (0, 0) is not inside the scene depth; expected the size of the scene depth, 160x90, \
+         or a part of it"
     );
     // Particles in a GPU buffer need explicit bounds.
     scene.view.size = SIZE;
@@ -61,5 +62,5 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     };
     assert!(refused(2, None).starts_with("systems[0].bounds: None"));
     let somewhere = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
-    assert!(refused(3, somewhere).starts_with("systems[0].particles: 64 bytes"));
+    assert!(refused(3, somewhere).starts_with("systems[0].particles: the buffer has 64 bytes"));
 }

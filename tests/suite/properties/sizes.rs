@@ -132,5 +132,5 @@ fn largest_light_count_matches_the_reference_and_one_more_light_is_rejected() {
     assert!(psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu()) >= MIN_PSNR);
     scene.lights.push(light(0));
     let Err(error) = scene.try_on_gpu(gpu()) else { panic!("129 lights were accepted") };
-    assert_eq!(error.to_string(), "lights: 129 lights is not valid; expected at most 128");
+    assert_eq!(error.to_string(), "lights: 129 lights are too many; expected at most 128");
 }

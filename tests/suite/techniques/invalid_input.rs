@@ -56,7 +56,7 @@ fn missing_or_mismatched_images_are_errors_that_name_the_field() {
     let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };
     two_frames.material.detail = Some(Sprite::from_image("two".as_ref(), &sheet, layout).unwrap());
     let error = two_frames.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
-    assert_eq!(error, "systems[0].material.detail: 2 frames is not valid; expected as many as the sprite has, 1");
+    assert_eq!(error, "systems[0].material.detail: the number of frames is 2; expected 1, as many as the sprite has");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-#![allow(clippy::float_cmp, reason = "positions are literals or halves of them, so results are exact")]
+#![allow(clippy::float_cmp, reason = "positions are literals or halves of literals, so results are exact")]
 
 use proptest::prelude::*;
 

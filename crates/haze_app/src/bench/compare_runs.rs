@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     if both.is_empty() {
         let size = |rows: &[Row]| rows.first().map_or("no rows".into(), |row| row.size.clone());
         let what = format!(
-            "no case of it is also in {} ({} against {}); expected runs of the same suite and size",
+            "no case of this run is also in {} ({} against {}); expected runs of the same suite and size",
             arguments.before.display(),
             size(&after.rows),
             size(&before.rows)

@@ -1,4 +1,4 @@
-//! Measures the shots of a group in turn, frame by frame, so that other load on the machine slows all of them alike.
+//! Measures the shots of a group in turn, frame by frame, so that other load on the machine slows all shots alike.
 
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};

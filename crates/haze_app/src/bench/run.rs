@@ -17,7 +17,7 @@ use super::particle_cpu_time;
 use super::report::{Report, VERSION};
 use super::suites::{Group, Suite, groups};
 use crate::interrupt;
-use crate::options::parse_size;
+use crate::options::{parse_size, whole_number};
 use crate::output::{Failures, FileChecks};
 use crate::progress::with_progress;
 
@@ -32,8 +32,8 @@ pub struct Arguments {
     quick: bool,
     /// Seconds of measurement, about; preparation and checks come on top. Default: 100 with --quick, else 360.
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u64).range(0..=86_400))]
-    seconds: Option<u64>,
+    #[arg(value_parser = whole_number(0..=86_400))]
+    seconds: Option<u32>,
     /// Image size in pixels. Default: 1280x720, or 640x360 on a software adapter.
     #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
     size: Option<UVec2>,
@@ -49,8 +49,8 @@ pub struct Arguments {
 }
 
 /// Default seconds of measurement of a run.
-const QUICK: u64 = 100;
-const THOROUGH: u64 = 360;
+const QUICK: u32 = 100;
+const THOROUGH: u32 = 360;
 /// Suites that render shots; the limits are measured before them.
 const SHOTS: [Suite; 8] = [
     Suite::Scale,
@@ -141,7 +141,7 @@ impl Arguments {
             .into_iter()
             .flatten()
             .collect();
-        let whole = Duration::from_secs(self.seconds.unwrap_or(if self.quick { QUICK } else { THOROUGH }));
+        let whole = Duration::from_secs(self.seconds.unwrap_or(if self.quick { QUICK } else { THOROUGH }).into());
         let started = Instant::now();
         for (index, group) in groups.iter().enumerate() {
             // Time that a group does not use goes to the later groups.

@@ -12,7 +12,7 @@ use haze::settings::{DepthSource, Technique};
 use haze_demo::shot::Shot;
 
 use crate::frame_timer::{FrameTimer, measure_interleaved, median_of};
-use crate::options::{Backend, RunArguments};
+use crate::options::{Backend, RunArguments, whole_number};
 use crate::output::{print_error, print_line};
 
 #[derive(Args)]
@@ -21,11 +21,11 @@ pub struct Arguments {
     run: RunArguments,
     /// Number of times that the sprites are drawn per frame.
     #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(value_parser = whole_number(1..=10_000))]
     loops: u32,
     /// Number of measurements of each technique.
     #[arg(long, value_name = "N", default_value = "5", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(value_parser = whole_number(1..=1000))]
     rounds: u32,
 }
 

@@ -149,8 +149,9 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
         return Err(FieldError::new("FILE", path.display(), "a name that ends in .json").into());
     }
     if path.symlink_metadata().is_ok() {
+        let problem = format!("{} exists already", path.display());
         return Err(
-            FieldError::new("FILE", path.display(), "a name that does not exist yet: no file is replaced").into()
+            FieldError::from_problem("FILE", problem, "a name that does not exist yet: no file is replaced").into()
         );
     }
     let mut preset = Preset::load(from)?;

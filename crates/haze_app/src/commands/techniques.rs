@@ -45,12 +45,8 @@ const ROUNDS_ON_CPU: u32 = 1;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     if let Some(technique) = arguments.shot.technique {
-        return Err(FieldError::new(
-            "--technique",
-            technique.name(),
-            "no --technique: the sheet shows every technique",
-        )
-        .into());
+        let problem = format!("{} is given, but the sheet shows every technique", technique.name());
+        return Err(FieldError::from_problem("--technique", problem, "no --technique").into());
     }
     let in_cells = |name: &str| arguments.cells.as_ref().map(|folder| folder.join(format!("{name}.png")));
     let cells = variants().filter_map(|variant| Some(("--cells", in_cells(variant.name)?)));

@@ -32,7 +32,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(500);
 /// Delay that gathers events of one moment into one check.
 const DEBOUNCE: Duration = Duration::from_millis(5);
 
-/// A set of files, and a thread that sleeps until one of them may have changed.
+/// A set of files, and a thread that sleeps until a file may have changed.
 pub struct Watcher {
     shared: Arc<Shared>,
 }

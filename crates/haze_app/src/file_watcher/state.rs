@@ -48,7 +48,7 @@ impl Shared {
         self.add(&mut self.lock(), Signal { paths_changed: true, rewatch_all });
     }
 
-    /// Signals that something has happened at these paths, if one of them matters.
+    /// Signals that something has happened at these paths, if one path matters.
     pub fn signal_at(&self, paths: &[PathBuf], paths_changed: bool) {
         let mut state = self.lock();
         let Some(path) = paths.iter().find(|path| state.places.contains(*path)) else { return };

@@ -1,5 +1,8 @@
 //! `haze tweak`: interactive window for lighting smoke.
 
+// Disk, clock and threads only in platform/, which a build for browsers replaces.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod document;
 mod files;
 mod panels;

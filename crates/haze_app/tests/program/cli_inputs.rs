@@ -127,8 +127,8 @@ fn images_have_a_limit_each_and_a_limit_in_total() {
     let four = ramps(&["diffuse_ramp", "soft_scatter_ramp", "specular_ramp", "motif"]);
     assert_eq!(
         preset(folder.path(), &[&five, &four]),
-        "haze: my.json: systems[1].material.motif: 1152 MiB of pictures is not valid; \
-         expected at most 1024 MiB for all pictures of the preset, each counted as often as it is named"
+        "haze: my.json: systems[1].material.motif: up to this one, the pictures of the preset take \
+         1152 MiB; expected at most 1024 MiB, each picture counted as often as it is named"
     );
 }
 

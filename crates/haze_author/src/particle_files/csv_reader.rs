@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(read("x,y,z\n1,\"2\"3,3"), at(2, 3, "text after a closing quote; expected the end of the cell"));
         assert_eq!(
             read(&format!("x,y,z\n{}", "1,2,3\n".repeat(5))),
-            at(6, 1, "more than 4 particles; expected at most that many in a frame")
+            at(6, 1, "more than 4 particles in a frame; expected at most 4")
         );
         assert_eq!(super::read(b"x,y,z\n1,2,\xff", 4), at(2, 1, "not UTF-8; expected UTF-8 text"));
         let twice = "id 7 is used twice; expected unique ids within a frame, or no id column";

@@ -31,7 +31,7 @@ impl ParseError {
         Self::after_text(
             line,
             "",
-            format!("more than {max_particles} particles; expected at most that many in a frame"),
+            format!("more than {max_particles} particles in a frame; expected at most {max_particles}"),
         )
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::particle_frames::{Limits, ParticleFrames};
 use haze::emitter::MAX_PARTICLES;
-use haze::error::{Error, FieldError};
+use haze::error::{Error, FieldError, one_line};
 use haze::preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};
 use haze::{EmitterSnapshot, Particle};
 
@@ -59,9 +59,9 @@ pub fn check_particle_files(
             if particles <= f64::from(MAX_PARTICLES) {
                 return Ok(frames);
             }
-            let expected =
-                format!("at most {MAX_PARTICLES} particles alive at once in all systems, not {particles:.0}");
-            Err(FieldError::new("cache.path", format!("{name:?}"), expected).into())
+            let name = one_line(name);
+            let problem = format!("with {name:?}, {particles:.0} particles of all systems are alive at once");
+            Err(FieldError::from_problem("cache.path", problem, format!("at most {MAX_PARTICLES}")).into())
         });
         match counted {
             Ok(frames) => loaded.push(Some(frames)),
@@ -146,7 +146,7 @@ mod tests {
         crowded.validate().unwrap();
         let said = load_particle_files(&crowded, Path::new("my.json"), &folders).unwrap_err().to_string();
         assert!(
-            said.ends_with("expected at most 1048576 particles alive at once in all systems, not 1048577"),
+            said.ends_with("1048577 particles of all systems are alive at once; expected at most 1048576"),
             "{said}"
         );
     }

@@ -59,9 +59,7 @@ fn frames_are_placed_in_time_by_their_numbers() {
         ParticleFrames::load(&folder.path().join("s_###.csv"), Limits { particles, bytes }).unwrap_err()
     };
     assert!(
-        few(2, 1 << 30)
-            .to_string()
-            .ends_with("s_012.csv:4:1: more than 2 particles; expected at most that many in a frame")
+        few(2, 1 << 30).to_string().ends_with("s_012.csv:4:1: more than 2 particles in a frame; expected at most 2")
     );
     assert!(
         few(9, 100).to_string().ends_with("s_008.csv: 1 MiB of particles up to this frame; expected at most 1 MiB")

@@ -1,8 +1,8 @@
 //! Participating media: optical properties of smoke.
 
-use glam::Vec3;
+use std::ops::RangeInclusive;
 
-use haze::settings::{FieldVisitor, Fields};
+use glam::Vec3;
 
 /// Optical properties of smoke.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,12 +15,13 @@ pub struct Medium {
     pub density: f32,
 }
 
-impl Fields for Medium {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.colour("albedo", &mut self.albedo, 0.0..=1.0);
-        visitor.number("g", &mut self.anisotropy, -0.95..=0.95, "");
-        visitor.number("density", &mut self.density, 0.1..=100.0, "per half side");
-    }
+impl Medium {
+    /// Range of a channel of the albedo.
+    pub const ALBEDO_RANGE: RangeInclusive<f32> = 0.0..=1.0;
+    /// Range of the anisotropy.
+    pub const ANISOTROPY_RANGE: RangeInclusive<f32> = -0.95..=0.95;
+    /// Range of the density.
+    pub const DENSITY_RANGE: RangeInclusive<f32> = 0.1..=100.0;
 }
 
 /// A medium with a name.

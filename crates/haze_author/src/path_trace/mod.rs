@@ -2,7 +2,7 @@
 //! compared with. An authoring tool, not used at run time.
 //!
 //! The view is orthographic from the front, as for a sprite. All lights share each path: at every vertex the path
-//! gathers direct light of all of them. (Woodcock et al., "Techniques used in the GEM code", 1965: delta tracking;
+//! gathers direct light of all lights. (Woodcock et al., "Techniques used in the GEM code", 1965: delta tracking;
 //! Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941)
 
 mod density_volume;

@@ -1,6 +1,6 @@
 //! Fits the stops of a ramp recipe to an image.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use glam::Vec3;
 use image::DynamicImage;
@@ -12,6 +12,9 @@ use haze::formula::colour::srgb_from_linear;
 
 /// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's colour.
 pub const DEFAULT_MAX_ERROR: f32 = 1.5;
+
+/// Range of error bounds, steps of 255: what stops of 8 bits per channel can meet, to what is useful.
+pub const MAX_ERROR_RANGE: RangeInclusive<f32> = 1.0..=64.0;
 
 /// Maximum number of stops. An image that needs more is not a gradient, and its recipe would exceed the size limit.
 const MAX_STOPS: usize = 50_000;
@@ -34,7 +37,7 @@ pub fn fit_image(picture: &DynamicImage, max_error: f32) -> Result<RampFit, Fiel
     validate_max_error(max_error)?;
     let pixels = picture.to_rgb16();
     if pixels.is_empty() {
-        return Err(FieldError::new("picture", "no pixels", "at least one pixel"));
+        return Err(FieldError::from_problem("picture", "has no pixels", "at least one pixel"));
     }
     let code = |channel: u16| f32::from(channel) / 257.0;
     let mut rows: Vec<Vec<Vec3>> =
@@ -61,7 +64,7 @@ pub fn fit_image(picture: &DynamicImage, max_error: f32) -> Result<RampFit, Fiel
     let count = recipe.rows.iter().map(|row| row.stops.len()).sum::<usize>();
     if count > MAX_STOPS {
         let expected = format!("at most {MAX_STOPS}: a picture of gradients, or a larger error");
-        return Err(FieldError::new("stops", count, expected));
+        return Err(FieldError::from_problem("stops", format!("the picture needs {count}"), expected));
     }
     let baked = recipe.bake()?.into_rgb16();
     let baked: Vec<Vec3> = baked.pixels().map(|pixel| Vec3::from(pixel.0.map(code))).collect();
@@ -82,7 +85,7 @@ fn curve_for(blend: Blend) -> Curve {
 
 /// Returns an error if the bound is below what stops of 8 bits per channel can meet, or too large to be useful.
 pub(super) fn validate_max_error(max_error: f32) -> Result<(), FieldError> {
-    let is_good = (1.0..=64.0).contains(&max_error);
+    let is_good = MAX_ERROR_RANGE.contains(&max_error);
     if is_good { Ok(()) } else { Err(FieldError::new("error", max_error, "1 to 64 steps of 255")) }
 }
 

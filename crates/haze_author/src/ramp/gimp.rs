@@ -64,24 +64,30 @@ fn segments(text: &str) -> Result<Vec<Segment>, GradientParseError> {
     let error = |line: usize, reason: &str| GradientParseError { line, reason: reason.into() };
     let mut lines = text.lines().zip(1..).peekable();
     if lines.next().is_none_or(|(line, _)| line.trim() != "GIMP Gradient") {
-        return Err(error(1, "expected \"GIMP Gradient\""));
+        return Err(error(1, "not a gradient of GIMP; expected \"GIMP Gradient\""));
     }
     lines.next_if(|(line, _)| line.starts_with("Name:"));
     let count =
         lines.next().and_then(|(line, at)| Some((line.trim().parse::<usize>().ok().filter(|&count| count > 0)?, at)));
-    let Some((count, counted)) = count else { return Err(error(3, "expected the number of segments")) };
+    let Some((count, counted)) = count else {
+        return Err(error(3, "no number of segments; expected a whole number, 1 or more"));
+    };
     let mut segments = Vec::new();
     for (line, at) in lines.take(count) {
         let [left, middle, right, r0, g0, b0, a0, r1, g1, b1, a1, blending, colours] =
             *parse_numbers(line).as_deref().and_then(<[f32]>::first_chunk).ok_or_else(|| {
-                error(at, "expected 13 numbers: left, middle, right, two colours of four, blending, colours")
+                let expected = "left, middle, right, two colours of four, blending, colours";
+                error(at, &format!("fewer than 13 numbers; expected {expected}"))
             })?;
         let in_order = 0.0 <= left && left <= middle && middle <= right && right <= 1.0;
         let known = (0.0..6.0).contains(&blending) && (0.0..3.0).contains(&colours);
-        if !in_order || !known {
-            let expected =
-                if in_order { "blending 0 to 5 and colours 0 to 2" } else { "left, middle and right in order, 0 to 1" };
-            return Err(error(at, &format!("expected {expected}")));
+        if !in_order {
+            let reason = format!("{left}, {middle}, {right}; expected left, middle and right in order, 0 to 1");
+            return Err(error(at, &reason));
+        }
+        if !known {
+            let reason = format!("blending {blending}, colours {colours}; expected 0 to 5 and 0 to 2, whole numbers");
+            return Err(error(at, &reason));
         }
         let (from, to) = (Vec4::new(r0, g0, b0, a0), Vec4::new(r1, g1, b1, a1));
         segments.push(Segment { left, middle, right, from, to, blending: blending as u32, colours: colours as u32 });

@@ -49,7 +49,7 @@ pub struct RampRow {
 #[serde(deny_unknown_fields)]
 pub struct RampStop {
     /// Position on the first axis, 0 to 1. Stops are sorted by it; stops at one position keep the order of the list.
-    /// The first of them ends the gradient below, the last begins the gradient above.
+    /// The first stop ends the gradient below, the last begins the gradient above.
     pub at: f32,
     /// sRGB, `#rrggbb`.
     pub colour: HexColour,
@@ -85,7 +85,11 @@ impl Fields for RampStop {
 
 /// Returns an error for an empty list.
 pub fn check_not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
-    if list.is_empty() { Err(FieldError::new(field, "[]", "at least one entry")) } else { Ok(()) }
+    if list.is_empty() {
+        Err(FieldError::from_problem(field, "the list is empty", "at least one entry"))
+    } else {
+        Ok(())
+    }
 }
 
 /// Rows prepared for sampling: sorted, with colours converted to the blend space.

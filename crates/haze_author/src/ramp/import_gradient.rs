@@ -11,7 +11,7 @@ use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit
 use super::ramp_recipe::{Blend, Curve, HexColour, RampStop};
 use haze::assets::bounded_read;
 use haze::assets::image::read_colour_png;
-use haze::error::{Error, FieldError};
+use haze::error::{Error, FieldError, one_line};
 
 /// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
@@ -35,9 +35,8 @@ pub fn import_gradient(path: &Path, max_error: f32) -> Result<RampFit, Error> {
         "tres" => |text, _| godot(text),
         "txt" => |text, _| blender(text),
         _ => {
-            return Err(
-                FieldError::new("file", path.display(), "one whose name ends in .png, .ggr, .tres or .txt").into()
-            );
+            let expected = "a name that ends in .png, .ggr, .tres or .txt";
+            return Err(FieldError::new("file", path.display(), expected).into());
         }
     };
     let refuse = |GradientParseError { line, reason }: GradientParseError| Error::Json {
@@ -74,13 +73,15 @@ fn godot(text: &str) -> Result<RampFit, GradientParseError> {
         Some((line, value)) => {
             let inside = value.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
             let numbers = inside.and_then(parse_numbers);
-            numbers.map(|numbers| (line, numbers)).ok_or_else(|| error(line, "expected a packed list of numbers"))
+            numbers
+                .map(|numbers| (line, numbers))
+                .ok_or_else(|| error(line, &format!("{name} is no list of numbers; expected a packed list of numbers")))
         }
     };
     let choice = |name: &str, max: usize| {
         let (line, value) = find(name).unwrap_or((0, "0"));
-        let value = value.parse().ok().filter(|value: &usize| *value <= max);
-        value.ok_or_else(|| GradientParseError { line: line + 1, reason: format!("{name}: expected 0 to {max}") })
+        let index = value.parse().ok().filter(|index: &usize| *index <= max);
+        index.ok_or_else(|| error(line, &format!("{name}: {} is not valid; expected 0 to {max}", one_line(value))))
     };
     let (_, offsets) = list("offsets", &[0.0, 1.0])?;
     let (line, colours) = list("colors", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])?;
@@ -104,7 +105,7 @@ fn blender(text: &str) -> Result<RampFit, GradientParseError> {
     let mut curve = Curve::Linear;
     let mut stops = Vec::new();
     for (line, text) in text.lines().enumerate() {
-        let refuse = |reason: &str| GradientParseError { line: line + 1, reason: reason.into() };
+        let refuse = |reason: String| GradientParseError { line: line + 1, reason };
         let text = text.split('#').next().unwrap_or_default();
         let words: Vec<_> = text
             .split(|c: char| c.is_whitespace() || "=:,()[]<>'\"".contains(c))
@@ -118,17 +119,27 @@ fn blender(text: &str) -> Result<RampFit, GradientParseError> {
                     "LINEAR" => Curve::Linear,
                     "EASE" => Curve::Ease,
                     "CARDINAL" | "B_SPLINE" => Curve::Monotone,
-                    _ => return Err(refuse("expected CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE")),
+                    _ => {
+                        let expected = "CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE";
+                        return Err(refuse(format!(
+                            "interpolation {} is not valid; expected {expected}",
+                            one_line(name)
+                        )));
+                    }
                 }
             }
             ["color_mode", ..] => {
-                return Err(refuse("expected the colour mode RGB: set it in Blender, or import a picture of the ramp"));
+                let expected = "RGB: set it in Blender, or import a picture of the ramp";
+                return Err(refuse(format!("the colour mode is not RGB; expected {expected}")));
             }
             _ => {
                 let (at, light) = match parse_numbers(&words.join(",")).as_deref() {
                     Some(&[at, r, g, b]) => (at, Vec4::new(r, g, b, 1.0)),
                     Some(&[at, r, g, b, a]) => (at, Vec4::new(r, g, b, a)),
-                    _ => return Err(refuse("expected a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)")),
+                    _ => {
+                        let expected = "a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)";
+                        return Err(refuse(format!("not a stop; expected {expected}")));
+                    }
                 };
                 let light = light.clamp(Vec4::ZERO, Vec4::ONE);
                 let code = (light.truncate() * light.w).map(srgb_from_linear);
@@ -178,8 +189,8 @@ mod tests {
         assert_eq!((plain.blend, stops(&plain).len()), (Blend::Srgb, 2));
         for (from, to, expected) in [
             ("0.25, 1)", "0.25)", "a.tres:6:1: 12 numbers; expected four for each of 2 offsets"),
-            ("0.25, 1)", "NaN, 1)", "a.tres:5:1: expected a packed list of numbers"),
-            ("mode = 1", "mode = 7", "a.tres:4:1: interpolation_mode: expected 0 to 2"),
+            ("0.25, 1)", "NaN, 1)", "a.tres:5:1: offsets is no list of numbers; expected a packed list of numbers"),
+            ("mode = 1", "mode = 7", "a.tres:4:1: interpolation_mode: 7 is not valid; expected 0 to 2"),
             ("Gradient", "Curve", "a.tres:1:1: no gradient; expected a Gradient saved by Godot as text"),
         ] {
             assert_eq!(import_text("a.tres", &GODOT.replace(from, to)).unwrap_err(), expected);
@@ -198,7 +209,10 @@ mod tests {
         let noise = image::RgbImage::from_fn(256, 256, |_, _| image::Rgb([random(), random(), random()]));
         noise.save(&path).unwrap();
         let error = import_gradient(&path, 1.0).unwrap_err().to_string();
-        assert!(error.contains("noise.png: stops: 6") && error.contains("expected at most 50000"), "{error}");
+        assert!(
+            error.contains("noise.png: stops: the picture needs 6") && error.contains("expected at most 50000"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -209,14 +223,19 @@ mod tests {
         let stop = |at: f32, colour: &str| (at, colour.to_owned(), Curve::Ease);
         assert_eq!(stops(&recipe), [stop(0.5, "#7f00ff"), stop(0.0, "#bcbcbc"), stop(1.0, "#000000")]);
         for (text, expected) in [
-            ("0.5 1 1", "a.txt:1:1: expected a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)"),
-            ("\ninterpolation X", "a.txt:2:1: expected CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE"),
+            ("0.5 1 1", "a.txt:1:1: not a stop; expected a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)"),
+            (
+                "\ninterpolation X",
+                "a.txt:2:1: interpolation X is not valid; expected CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE",
+            ),
             ("# nothing", "a.txt:1:1: no stops; expected lines of a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)"),
         ] {
             assert_eq!(import_text("a.txt", text).unwrap_err(), expected);
         }
-        assert!(import_text("a.txt", "color_mode HSV").unwrap_err().contains("expected the colour mode RGB"));
-        assert!(import_text("a.gradient", "").unwrap_err().contains("expected one whose name ends in .png, .ggr"));
+        assert!(
+            import_text("a.txt", "color_mode HSV").unwrap_err().contains("the colour mode is not RGB; expected RGB")
+        );
+        assert!(import_text("a.gradient", "").unwrap_err().contains("expected a name that ends in .png, .ggr"));
     }
 
     #[test]
@@ -246,19 +265,21 @@ mod tests {
             assert!(fitted.error <= 1.5 && count > 4 && count < 80, "{blend} {colour}: {count}, {}", fitted.error);
         }
         for (text, expected) in [
-            ("GIMP Palette\n", "a.ggr:1:1: expected \"GIMP Gradient\""),
+            ("GIMP Palette\n", "a.ggr:1:1: not a gradient of GIMP; expected \"GIMP Gradient\""),
             (
                 "GIMP Gradient\nName: A\n1\n0 0 1\n",
-                "a.ggr:4:1: expected 13 numbers: left, middle, right, two colours of four, blending, colours",
+                "a.ggr:4:1: fewer than 13 numbers; expected left, middle, right, two colours of four, blending, colours",
             ),
             ("GIMP Gradient\nName: A\n2\n", "a.ggr:3:1: 0 segments follow; expected 2"),
-            ("GIMP Gradient\nName: A\n", "a.ggr:3:1: expected the number of segments"),
+            ("GIMP Gradient\nName: A\n", "a.ggr:3:1: no number of segments; expected a whole number, 1 or more"),
         ] {
             assert_eq!(import_text("a.ggr", text).unwrap_err(), expected);
         }
         let turned = "0.5 0.2 0.0 0 0 0 1 1 1 1 1 0 0";
         assert!(
-            import_text("a.ggr", &ggr(&[turned])).unwrap_err().contains("expected left, middle and right in order")
+            import_text("a.ggr", &ggr(&[turned]))
+                .unwrap_err()
+                .contains("4:1: 0.5, 0.2, 0; expected left, middle and right in order")
         );
     }
 }

@@ -17,7 +17,7 @@ use haze::settings::{FieldVisitor, Fields, validate};
 /// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
 
-/// Maximum number of lights of a motif. Every texel sums all of them.
+/// Maximum number of lights of a motif. Every texel sums all lights.
 const MAX_LIGHTS: usize = 256;
 
 /// Recipe of a motif: the contents of a `*.motif.json`.
@@ -84,8 +84,8 @@ impl MotifRecipe {
     pub fn validate(&self) -> Result<(), FieldError> {
         validate(self, String::new)?;
         if self.lights.len() > MAX_LIGHTS {
-            let expected = format!("at most {MAX_LIGHTS} lights");
-            return Err(FieldError::new("lights", format!("{} lights", self.lights.len()), expected));
+            let problem = format!("{} lights are too many", self.lights.len());
+            return Err(FieldError::from_problem("lights", problem, format!("at most {MAX_LIGHTS}")));
         }
         Ok(())
     }
@@ -127,6 +127,6 @@ mod tests {
         };
         assert!(recipe(MAX_LIGHTS).bake().is_ok());
         let error = recipe(20_000).bake().unwrap_err().to_string();
-        assert_eq!(error, "lights: 20000 lights is not valid; expected at most 256 lights");
+        assert_eq!(error, "lights: 20000 lights are too many; expected at most 256");
     }
 }

@@ -50,9 +50,9 @@ const FUNCTIONS: &[Function] = &[
 impl Formula {
     /// Parses a formula. `field` is used only in errors.
     pub fn parse(field: &str, text: &str) -> Result<Self, FieldError> {
-        let refuse = |expected: &str| FieldError::new(field, format!("{text:?}"), expected);
         if text.len() > MAX_LENGTH {
-            return Err(refuse(&format!("at most {MAX_LENGTH} characters")));
+            let problem = format!("{} characters are too many", text.len());
+            return Err(FieldError::from_problem(field, problem, format!("at most {MAX_LENGTH}")));
         }
         let mut reader = Reader { rest: text.trim_start(), operations: Vec::new(), depth: 0 };
         let read = reader
@@ -61,7 +61,8 @@ impl Formula {
         read.map_err(|expected| {
             let rest = one_line(reader.rest.chars().take(20).collect::<String>());
             let place = if rest.is_empty() { "at its end".to_owned() } else { format!("before {rest:?}") };
-            refuse(&format!("{expected} {place}"))
+            let text = format!("{text:?}");
+            FieldError::from_problem(field, format!("{} is not valid {place}", one_line(text)), expected)
         })?;
         Ok(Self(reader.operations))
     }
@@ -147,7 +148,7 @@ impl Reader<'_> {
             (.., Some(function)) => Operation::Call(function),
             _ => {
                 let names: Vec<_> = FUNCTIONS.iter().map(|&(name, ..)| name).filter(|name| name.len() > 1).collect();
-                return Err(format!("a number, u, v, a bracket, or one of {} with its arguments,", names.join(", ")));
+                return Err(format!("a number, u, v, a bracket, or one of {} with its arguments", names.join(", ")));
             }
         };
         self.rest = rest.trim_start();
@@ -215,9 +216,10 @@ mod tests {
     #[test]
     fn malformed_formulas_are_refused_with_their_position() {
         let error = |text: &str| Formula::parse("place", text).unwrap_err().to_string();
-        assert_eq!(error("u v"), r#"place: "u v" is not valid; expected an operator, or the end before "v""#);
-        assert!(error("u +").ends_with("with its arguments, at its end"), "{}", error("u +"));
-        assert!(error("min(u)").ends_with(r#"expected "," before ")""#), "{}", error("min(u)"));
+        assert_eq!(error("u v"), r#"place: "u v" is not valid before "v"; expected an operator, or the end"#);
+        let cut = error("u +");
+        assert!(cut.starts_with(r#"place: "u +" is not valid at its end; expected a number, u, v,"#), "{cut}");
+        assert_eq!(error("min(u)"), r#"place: "min(u)" is not valid before ")"; expected ",""#);
         for text in ["", "1.2.3", "é", "sin(u)", "u(", "min", "min(u, v", "+", "u ** v", "1e5", "\u{1b}[2J"] {
             assert!(Formula::parse("place", text).is_err(), "{text}");
         }
@@ -225,6 +227,6 @@ mod tests {
             let error = error(&format!("{}u", deep.repeat(200)));
             assert!(error.contains("at most 64 nested brackets and signs"), "{error}");
         }
-        assert!(error(&"u+".repeat(600)).contains("at most 1000 characters"));
+        assert!(error(&"u+".repeat(600)).contains("1200 characters are too many; expected at most 1000"));
     }
 }

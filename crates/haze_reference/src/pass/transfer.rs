@@ -77,7 +77,7 @@ impl AccumulatedTarget<'_> {
         }
     }
 
-    /// Premultiplied light and coverage at a pixel, or a debug view of them; `None` without smoke.
+    /// Premultiplied light and coverage at a pixel, or their debug view; `None` without smoke.
     pub fn transfer_fragment(&self, debug_view: DebugView, pixel: Vec2) -> Option<Vec4> {
         let system = &self.visible.system;
         if debug_view == DebugView::ReducedDepth {

@@ -12,6 +12,7 @@ use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
 use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::bake_job::image_path;
 use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
+use crate::options::whole_number;
 use crate::output::{FileChecks, print_line};
 use crate::puff_error::print_ramp_error;
 use crate::puff_sheet::{ComparedImages, comparison_sheet};
@@ -26,10 +27,12 @@ pub struct Arguments {
     #[command(flatten)]
     quality: PathTraceArguments,
     /// Stops per row.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = FitShape::default().stops)]
+    #[arg(long, default_value_t = FitShape::default().stops, allow_hyphen_values = true)]
+    #[arg(value_parser = whole_number(2..=64))]
     stops: u32,
     /// Rows along the amount axis; 1 for a ramp of one axis.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = FitShape::default().rows)]
+    #[arg(long, default_value_t = FitShape::default().rows, allow_hyphen_values = true)]
+    #[arg(value_parser = whole_number(1..=16))]
     rows: u32,
     /// Recipe to write, with its PNG beside it: the ramp for light from all sides, or with --backlight only from the
     /// viewer's side.

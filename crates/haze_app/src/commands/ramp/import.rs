@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze_author::ramp::fit_stops::DEFAULT_MAX_ERROR;
+use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, MAX_ERROR_RANGE};
 use haze_author::ramp::import_gradient::import_gradient;
 
 use super::ramp_io::{check_recipe_output, write_recipe};
+use crate::options::number;
 use crate::output::{FileChecks, print_line};
 use crate::progress::with_progress;
 
@@ -20,6 +21,7 @@ pub struct Arguments {
     output: PathBuf,
     /// Greatest error of a channel, in steps of 1/255, at least 1. A larger error gives fewer stops.
     #[arg(long, value_name = "STEPS", default_value_t = DEFAULT_MAX_ERROR, allow_hyphen_values = true)]
+    #[arg(value_parser = number(MAX_ERROR_RANGE))]
     error: f32,
 }
 

@@ -43,7 +43,8 @@ pub fn run(Arguments { template, blank, output }: &Arguments) -> Result<(), Erro
     }
     // A template never replaces an existing file.
     if output.exists() {
-        return Err(FieldError::new("--output", output.display(), "a name that does not exist yet").into());
+        let problem = format!("{} exists already", output.display());
+        return Err(FieldError::from_problem("--output", problem, "a name that does not exist yet").into());
     }
     if let Some(role) = blank {
         return write_blank(output, *role);

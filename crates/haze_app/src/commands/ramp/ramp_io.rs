@@ -22,8 +22,9 @@ pub fn load_ramp_image(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>)
 /// Refuses another program's gradient, and names the command that converts it.
 pub fn refuse_gradient(path: &Path) -> Result<(), FieldError> {
     if ["ggr", "tres", "txt"].iter().any(|ending| has_extension(path, ending)) {
-        let expected = "a PNG or a *.ramp.json file; convert this gradient with `haze ramp import`";
-        return Err(FieldError::new("ramp", path.display(), expected));
+        let problem = format!("{} is a gradient of another program", path.display());
+        let expected = "a PNG or a *.ramp.json file; `haze ramp import` converts the gradient";
+        return Err(FieldError::from_problem("ramp", problem, expected));
     }
     Ok(())
 }

@@ -105,11 +105,11 @@ impl Arguments {
             add(name, Source::File(path.clone()));
         }
         if cells.is_empty() || cells.len() > MAX_SHEET_CELLS {
-            let folder = self.ramps.as_ref().map_or("the built-in ones".into(), |folder| folder.display().to_string());
+            let folder = self.ramps.as_ref().map_or("the built-in set".into(), |folder| folder.display().to_string());
             let named = "whose names begin with their role, such as diffuse_";
             let which = self.role.map_or(named.into(), |role| format!("for {}", role.name()));
-            let expected = format!("1 to {MAX_SHEET_CELLS} ramps {which}, not {}", cells.len());
-            return Err(FieldError::new("--ramps", folder, expected).into());
+            let problem = format!("{folder} has {} ramps {which}", cells.len());
+            return Err(FieldError::from_problem("--ramps", problem, format!("1 to {MAX_SHEET_CELLS}")).into());
         }
         Ok(cells)
     }

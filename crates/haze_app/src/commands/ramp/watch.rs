@@ -17,7 +17,7 @@ use crate::output::{Failures, FileChecks, print_error};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// `*.ramp.json` and `*.motif.json` files, and folders of them.
+    /// `*.ramp.json` and `*.motif.json` files, and folders with such files.
     #[arg(required = true)]
     recipes: Vec<PathBuf>,
 }

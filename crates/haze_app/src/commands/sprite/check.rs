@@ -12,6 +12,7 @@ use haze_author::sprite::lint::lint_sprite;
 
 use crate::file_kind::explain_wrong_kind;
 use crate::findings::report_findings;
+use crate::options::whole_number;
 use crate::output::Failures;
 
 #[derive(Args)]
@@ -20,10 +21,10 @@ pub struct Arguments {
     #[arg(required = true)]
     sprites: Vec<PathBuf>,
     /// Frames per row of the sheet. Default: from the recipe beside the PNG, else 1.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(long, allow_hyphen_values = true, value_parser = whole_number(1..=256))]
     columns: Option<u32>,
     /// Rows of frames. Default: from the recipe beside the PNG, else 1.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(long, allow_hyphen_values = true, value_parser = whole_number(1..=256))]
     rows: Option<u32>,
     /// Normals point down in green: the preset loads the sprites with `"y_down": true`.
     #[arg(long)]

@@ -11,7 +11,7 @@ use haze_author::sprite::import_sprite::{ImportSource, ImportedSprite, arrange_s
 use haze_author::sprite::y_direction::MIN_CONFIDENCE;
 
 use crate::bake_job::six_way_path;
-use crate::options::choices;
+use crate::options::{choices, number, whole_number};
 use crate::output::{FileChecks, print_line};
 
 #[derive(Args)]
@@ -27,22 +27,17 @@ pub struct Arguments {
     #[arg(long = "from", value_name = "SOURCE", value_parser = choices::<ImportSource>(), default_value = "normals")]
     source: ImportSource,
     /// Frames per row of the sheet.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(long, default_value_t = 1, allow_hyphen_values = true, value_parser = whole_number(1..=256))]
     columns: u32,
     /// Rows of frames of the sheet.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(long, default_value_t = 1, allow_hyphen_values = true, value_parser = whole_number(1..=256))]
     rows: u32,
     /// Green of the normals points down, true or false. Default: guessed from the image.
     #[arg(long, num_args = 0..=1, default_missing_value = "true", value_name = "IS_DOWN")]
     y_down: Option<bool>,
     /// Strength of the relief of normals made from heights, alpha or light maps.
-    #[arg(long, default_value_t = 1.0, value_parser = strength)]
+    #[arg(long, default_value_t = 1.0, allow_hyphen_values = true, value_parser = number(0.01..=100.0))]
     strength: f32,
-}
-
-fn strength(text: &str) -> Result<f32, String> {
-    let value = text.parse::<f32>().ok().filter(|value| (0.01..=100.0).contains(value));
-    value.ok_or_else(|| "expected a number from 0.01 to 100".into())
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
@@ -52,17 +47,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     if source.needs_two_images() {
         read.check_output("--output", &six_way_path(output), "png")?;
     }
-    let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
     if y_down.is_some() && *source != ImportSource::Normals {
-        return refuse(
-            "--y-down",
-            format!("--from {}", source.name()),
-            "--from normals: other sources have no green direction",
-        );
+        let problem = format!("has no effect with --from {}", source.name());
+        let expected = "--from normals: other sources have no green direction";
+        return Err(FieldError::from_problem("--y-down", problem, expected).into());
     }
     if files.len() > 1 && !source.needs_two_images() && (*columns, *rows) != (1, 1) {
+        let problem = format!("{columns}x{rows} is given for {} files", files.len());
         let expected = "1x1: each of several files is one frame";
-        return refuse("--columns and --rows", format!("{columns}x{rows} for {} files", files.len()), expected);
+        return Err(FieldError::from_problem("--columns and --rows", problem, expected).into());
     }
     let files = by_number(files);
     let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));

@@ -10,6 +10,7 @@ use haze_author::sprite::six_way::BakedSixWay;
 
 use crate::bake_job::{image_path, six_way_path};
 use crate::medium_options::{MediumNumbers, medium_names, sprite_recipe};
+use crate::options::whole_number;
 use crate::output::{FileChecks, print_line};
 use crate::progress::with_changing_progress;
 
@@ -22,7 +23,8 @@ pub struct SixWayArguments {
     #[command(flatten)]
     numbers: MediumNumbers,
     /// With --six-way: paths per pixel. The noise falls with their square root.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536), default_value_t = 64)]
+    #[arg(long, default_value_t = 64, allow_hyphen_values = true)]
+    #[arg(value_parser = whole_number(1..=65536))]
     samples: u32,
 }
 
@@ -34,7 +36,10 @@ impl SixWayArguments {
     pub fn check(&self, recipes: &[PathBuf]) -> Result<(), Error> {
         match &self.six_way {
             None => match self.numbers.first_given() {
-                Some(option) => Err(FieldError::new(option, "use without --six-way", "--six-way as well").into()),
+                Some(option) => {
+                    let problem = "has no effect without --six-way";
+                    Err(FieldError::from_problem(option, problem, "--six-way as well").into())
+                }
                 None => Ok(()),
             },
             Some(name) => {

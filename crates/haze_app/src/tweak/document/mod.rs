@@ -138,8 +138,8 @@ impl Document {
     /// Begins to save. [`Saving::write`] does the work, and [`Document::finish_saving`] must follow.
     pub fn begin_saving(&mut self) -> Result<Saving, Error> {
         if self.is_built_in() {
-            let expected = "another name: this preset is built in";
-            return Err(FieldError::new("save", self.path.display(), expected).into());
+            let problem = format!("{} is a built-in preset", self.path.display());
+            return Err(FieldError::from_problem("save", problem, "another name").into());
         }
         self.begin_saving_as(&self.path.clone())
     }

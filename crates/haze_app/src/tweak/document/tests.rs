@@ -37,7 +37,7 @@ fn a_change_modifies_one_line_of_the_file() {
     let mut document = Document::open(Path::new("column")).unwrap();
     assert!(document.is_built_in() && !document.is_dirty() && document.files(&AssetFolders::default()).is_empty());
     let refused = document.save().unwrap_err().to_string();
-    assert_eq!(refused, "save: column is not valid; expected another name: this preset is built in");
+    assert_eq!(refused, "save: column is a built-in preset; expected another name");
     let refused = document.save_as(&folder.path().join("shot")).unwrap_err().to_string();
     assert!(refused.ends_with("shot is not valid; expected a name that ends in .json"), "{refused}");
     let path = folder.path().join("shot.json");

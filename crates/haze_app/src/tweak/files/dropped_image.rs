@@ -31,9 +31,13 @@ impl DroppedImage {
     /// # Errors
     /// If the file lies elsewhere, cannot be read, or fits no role.
     pub fn read(path: &Path, folders: &AssetFolders, material: &MaterialNames) -> Result<Self, Error> {
-        let refuse = |expected: String| FieldError::new("dropped file", path.display(), expected).into();
+        let refuse = |problem: &str, expected: &str| {
+            let problem = format!("{} {problem}", path.display());
+            FieldError::from_problem("dropped file", problem, expected).into()
+        };
         let Some((folder, name)) = place_of(path, folders) else {
-            return Err(refuse("a picture in the preset's folder or a shared one, or a preset file".into()));
+            let expected = "a picture in the preset's folder or a shared one, or a preset file";
+            return Err(refuse("is not in a folder of the preset", expected));
         };
         if let Some(field) = field_of_name(path) {
             let (fields, doubt) = checked(field, &folder, &name, material)?;
@@ -50,7 +54,9 @@ impl DroppedImage {
             }
         }
         let (file, doubt) = (path.file_name().unwrap_or_default().display(), wrong.unwrap_or_default());
-        Err(refuse(format!("a ramp or a sprite, or a file name that tells the role, such as diffuse_{file}; {doubt}")))
+        let expected =
+            format!("a ramp or a sprite, or a file name that tells the role, such as diffuse_{file}; {doubt}");
+        Err(refuse("fits no role", &expected))
     }
 
     /// Assigns the image to a system and returns a message for the user.

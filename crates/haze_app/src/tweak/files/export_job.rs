@@ -153,7 +153,7 @@ impl ExportJob {
         });
     }
 
-    /// Closes the sheet, or else the export dialog. Returns true if one of them was open.
+    /// Closes the sheet, or else the export dialog. Returns true if either was open.
     pub fn dismiss(&mut self) -> bool {
         self.sheet.take().is_some() || std::mem::take(&mut self.is_open)
     }

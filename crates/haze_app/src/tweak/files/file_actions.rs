@@ -10,7 +10,7 @@ use haze::preset::AssetFolders;
 use super::dropped_image::DroppedImage;
 use crate::tweak::document::{Document, OnDisk, Saving};
 use crate::tweak::platform::asset_loading::{self, LoadedAssets};
-use crate::tweak::platform::clock::{Duration, Instant, sleep};
+use crate::tweak::platform::clock::{self, Duration};
 use crate::tweak::platform::file_dialog::{Answer, Dialogs, Purpose};
 use crate::tweak::platform::worker::Worker;
 use crate::tweak::session::Session;
@@ -164,9 +164,9 @@ impl FileActions {
 
     /// Waits at exit for pending writes, but no longer than [`MAX_EXIT_WAIT`].
     pub fn finish(&self) {
-        let begun = Instant::now();
+        let begun = clock::now();
         while self.worker.is_busy() && begun.elapsed() < MAX_EXIT_WAIT {
-            sleep(Duration::from_millis(5));
+            clock::sleep(Duration::from_millis(5));
         }
     }
 

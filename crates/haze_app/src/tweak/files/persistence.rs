@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::file_actions::FileActions;
 use crate::tweak::document::Document;
 use crate::tweak::document::recovery::{CrashedWork, RECOVERY_WRITE_INTERVAL, Recovery, find_crashed_work};
-use crate::tweak::platform::clock::{Duration, Instant};
+use crate::tweak::platform::clock::{self, Duration, Instant};
 use crate::tweak::platform::json_store;
 use crate::tweak::session::Session;
 
@@ -97,7 +97,7 @@ impl Persistence {
 
     /// Writes unsaved work every few seconds. Call once a frame.
     pub fn advance(&mut self, session: &mut Session, context: &egui::Context) {
-        if let Err(error) = self.recovery.write_periodically(&session.document, Instant::now()) {
+        if let Err(error) = self.recovery.write_periodically(&session.document, clock::now()) {
             session.messages.error("recovery", error);
         }
         if self.recovery.has_pending_write(&session.document) {
@@ -107,7 +107,7 @@ impl Persistence {
 
     /// Writes the layout if it has changed. Call once a frame.
     pub fn write_layout(&mut self, layout: &Layout, file_actions: &FileActions, context: &egui::Context) {
-        let now = Instant::now();
+        let now = clock::now();
         if let Some((written, at)) = &self.written {
             let left = LAYOUT_WRITE_INTERVAL.saturating_sub(now.saturating_duration_since(*at));
             if left > Duration::ZERO || written == layout {

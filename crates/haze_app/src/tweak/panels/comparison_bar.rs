@@ -9,7 +9,7 @@ use crate::tweak::session::comparison::{COMPARE_OPTIONS, CompareOption, CompareW
 /// Gap between buttons of one choice, points.
 const GAP: f32 = 2.0;
 
-/// Draws buttons if they fit into `room`, points. With less room, some of them are in the menu only.
+/// Draws buttons if they fit into `room`, points. With less room, some buttons are in the menu only.
 pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
     let row: f32 = COMPARE_OPTIONS.iter().map(|offer| width(ui, offer.short) + GAP).sum();
     let row = row + width(ui, "Compare") + ui.spacing().item_spacing.x;

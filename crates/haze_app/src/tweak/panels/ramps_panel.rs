@@ -1,4 +1,4 @@
-//! Ramps tab: the ramps in use, and the parts of them that this image samples.
+//! Ramps tab: the ramps in use, and the parts of the ramps that this image samples.
 
 use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
 use glam::UVec2;

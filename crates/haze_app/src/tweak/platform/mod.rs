@@ -1,5 +1,7 @@
 //! All access to disk, clock and threads. The rest of the tweaker has no dependency on the operating system.
 
+#![allow(clippy::disallowed_methods)]
+
 pub mod asset_loading;
 pub mod clock;
 pub mod file_dialog;

@@ -1,6 +1,6 @@
 //! Messages at the bottom of the window: one line each, and no duplicates.
 
-use crate::tweak::platform::clock::{Duration, Instant};
+use crate::tweak::platform::clock::{self, Duration, Instant};
 
 /// Message of one line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,7 +74,7 @@ impl Messages {
 
     fn push(&mut self, text: &str, is_error: bool, about: &'static str) {
         // Names in the text may contain control characters and have any length.
-        let message = Message { text: truncate_middle(text, MAX_CHARACTERS), is_error, about, since: Instant::now() };
+        let message = Message { text: truncate_middle(text, MAX_CHARACTERS), is_error, about, since: clock::now() };
         let is_same = |other: &Message| (&other.text, other.is_error, other.about) == (&message.text, is_error, about);
         if is_error && self.0.iter().any(is_same) {
             return;

@@ -87,7 +87,7 @@ fn plane(outlined: &OutlinedPainter<'_>, projection: &ScreenProjection, bounds: 
     label(outlined.0, projection.rect, lowest + vec2(4.0, -18.0), &format!("lit at {depth:.2} m"));
 }
 
-/// Draws particles, at most `most` of them.
+/// Draws at most `most` particles.
 fn points(painter: &Painter, projection: &ScreenProjection, particles: &[Particle], most: usize) {
     let mut mesh = Mesh::default();
     let step = particles.len().div_ceil(most.max(1)).max(1);

@@ -7,7 +7,7 @@ use haze::Error;
 use haze::image::Image;
 use haze_demo::shot::Shot;
 
-use crate::tweak::platform::clock::{Duration, Instant};
+use crate::tweak::platform::clock::{self, Duration, Instant};
 use crate::tweak::platform::worker::{Ticket, Worker};
 
 /// Time for which the view must not change before rendering begins.
@@ -41,7 +41,7 @@ pub enum CpuRenderState {
 impl CpuRenderJob {
     /// Returns the image of a shot, or its state. `wake` is called from the worker thread when the image is ready.
     pub fn poll_or_start(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> CpuRenderState {
-        let now = Instant::now();
+        let now = clock::now();
         if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.has_same_image(shot)) {
             self.wanted = Some((shot.clone(), now));
             (self.image, self.took) = (None, None);
@@ -67,7 +67,7 @@ impl CpuRenderJob {
             };
             let shot = shot.clone();
             self.ticket = Some(worker.submit(move |_| {
-                let begun = Instant::now();
+                let begun = clock::now();
                 shot.render_on_cpu().map(|picture| (picture, begun.elapsed()))
             }));
         }

@@ -1,4 +1,4 @@
-//! Renderer of the window's images, with measurements of them. Draws inside egui's paint callbacks.
+//! Renderer of the window's images, with their measurements. Draws inside egui's paint callbacks.
 
 pub mod adaptive_resolution;
 pub mod cached_render;

@@ -1,7 +1,7 @@
 //! Frame times while something moves.
 
 use super::adaptive_resolution::AdaptiveResolution;
-use crate::tweak::platform::clock::Instant;
+use crate::tweak::platform::clock::{self, Instant};
 
 /// Reports frame times to [`AdaptiveResolution`], for frames in which something moves and the image is drawn.
 #[derive(Default)]
@@ -16,7 +16,7 @@ pub struct MotionTimer {
 impl MotionTimer {
     /// Call at the beginning of a frame.
     pub fn begin_frame(&mut self, is_moving: bool) {
-        let last = self.last.replace(Instant::now());
+        let last = self.last.replace(clock::now());
         let drew = std::mem::take(&mut self.drew);
         if !is_moving {
             self.resolution.reset();

@@ -14,7 +14,7 @@ use super::cached_render::{CachedRender, Target, reduced, set_scale};
 use super::compared_side::ComparedSide;
 use super::comparison_image::{ComparisonImage, UploadedImage};
 use super::motion::MotionTimer;
-use crate::tweak::platform::clock::{Duration, Instant};
+use crate::tweak::platform::clock::{self, Duration, Instant};
 
 /// Content of the viewport.
 #[derive(Clone)]
@@ -327,7 +327,7 @@ impl RendererState {
         let may_wait =
             self.motion.is_moving() && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < MIN_STRIP_INTERVAL);
         if !may_wait && !self.strip.shows(&all) {
-            self.strip_drawn = Some(Instant::now());
+            self.strip_drawn = Some(clock::now());
             if self.strip.record(target, &all, DebugView::ALL) {
                 self.strip.tonemap_bindings = Default::default();
             }

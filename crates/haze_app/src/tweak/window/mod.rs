@@ -22,7 +22,7 @@ use crate::tweak::files::preset_thumbnails::PresetThumbnails;
 use crate::tweak::files::window_screenshot::Screenshot;
 use crate::tweak::panels;
 use crate::tweak::panels::debug_view_strip::{debug_view_strip, next_debug_view};
-use crate::tweak::platform::clock::Instant;
+use crate::tweak::platform::clock;
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{ACTIONS, Action};
 use crate::tweak::session::first_run_hints::WindowPart;
@@ -286,7 +286,7 @@ fn pasted(input: &egui::InputState) -> Vec<String> {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let acts = ui.input(|input| input.pointer.any_pressed() || !input.keys_down.is_empty());
-        if let Some(left) = self.session.messages.advance(Instant::now(), acts) {
+        if let Some(left) = self.session.messages.advance(clock::now(), acts) {
             ui.ctx().request_repaint_after(left);
         }
         self.keys(ui);

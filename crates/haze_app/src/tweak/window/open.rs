@@ -6,7 +6,7 @@ use haze::Error;
 use super::drag_end::split_events_at_release;
 use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
-use crate::tweak::platform::clock::{Duration, Instant};
+use crate::tweak::platform::clock::{self, Duration};
 use crate::tweak::viewport_renderer::ViewportRenderer;
 use crate::tweak::viewport_renderer::device_health::{DeviceHealth, destroy_device};
 
@@ -53,7 +53,7 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
                 None => opened,
             };
         }
-        let now = Instant::now();
+        let now = clock::now();
         if last_loss.replace(now).is_some_and(|last| now.saturating_duration_since(last) < MIN_TIME_BETWEEN_LOSSES) {
             return Err(write_recovery_and_fail(&mut kept, "it was lost twice within 10 seconds"));
         }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use eframe::egui_wgpu::{SurfaceErrorAction, WgpuConfiguration};
 use eframe::wgpu::CurrentSurfaceTexture;
 
-use crate::tweak::platform::clock::{Duration, Instant, sleep};
+use crate::tweak::platform::clock::{self, Duration, Instant};
 
 /// Least time between two answers.
 const MIN_FRAME_INTERVAL: Duration = Duration::from_millis(16);
@@ -20,8 +20,8 @@ pub fn paced_surface_handler() -> Arc<Answer> {
     Arc::new(move |status| {
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
         let passed = last.map(|last: Instant| last.elapsed());
-        sleep(passed.map_or(Duration::ZERO, |passed| MIN_FRAME_INTERVAL.saturating_sub(passed)));
-        *last = Some(Instant::now());
+        clock::sleep(passed.map_or(Duration::ZERO, |passed| MIN_FRAME_INTERVAL.saturating_sub(passed)));
+        *last = Some(clock::now());
         match status {
             // The frame is still needed, so this requests another.
             CurrentSurfaceTexture::Timeout => SurfaceErrorAction::Reconfigure,

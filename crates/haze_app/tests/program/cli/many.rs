@@ -90,7 +90,10 @@ fn each_frame_is_written_to_its_own_file() {
     let huge =
         ["render", "--size", "8000x8000", "--frames", "0..1", "--sheet", "64x64", "--backend", "cpu", "-o", "f.png"];
     let huge = refusal(folder.path(), &huge);
-    assert!(huge.contains("--sheet: 64x64 is not valid; expected at most 32768 pixels"), "{huge}");
+    assert!(
+        huge.contains("--sheet: 64x64 cells make a sheet of 512000x512000 pixels; expected at most 32768"),
+        "{huge}"
+    );
     assert!(line(&["missing/%d.png", "--frames", "0..1"]).contains("a folder that exists"));
     assert!(line(&["f.png", "--sheet", "3x3"]).contains("--frames"));
 }

@@ -21,8 +21,8 @@ fn unwritable_outputs_are_refused_before_rendering() {
     let folder = folder();
     fs::create_dir_all(folder.path().join("cells/soft.png")).unwrap();
     let line = |command: &[&str], more: &[&str]| refusal(folder.path(), &[command, more].concat());
-    assert!(line(&SMALL, &["a.png/"]).contains("a.png/ is not valid"));
-    assert!(line(&SMALL, &["a.png/."]).contains("a.png/. is not valid"));
+    assert!(line(&SMALL, &["a.png/"]).contains("a.png/ is not a file"));
+    assert!(line(&SMALL, &["a.png/."]).contains("a.png/. is not a file"));
     assert!(line(&SMALL, &["cells/soft.png"]).contains("expected a file, or a name that does not exist yet"));
     assert!(line(&SMALL, &[&format!("{}.png", "n".repeat(300))]).contains("expected a file that can be written"));
     let curves = line(&SHEET, &["a.png", "--curves", "missing/c.png"]);
@@ -44,7 +44,7 @@ fn folders_that_allow_no_new_file_are_refused_before_rendering() {
     for place in ["/proc/a.png", "link.png"] {
         std::os::unix::fs::symlink("missing/a.png", folder.path().join("link.png")).ok();
         let line = refusal(folder.path(), &[&SMALL[..], &[place]].concat());
-        assert!(line.contains(place) && line.contains("a file that can be written (No such file"), "{line}");
+        assert!(line.contains(place) && line.contains("cannot be written (No such file"), "{line}");
     }
 }
 
@@ -60,7 +60,7 @@ fn inputs_are_not_overwritten() {
     fs::hard_link(path("shots/my.json"), path("preset.png")).unwrap();
     let line = |output: &str| refusal(folder.path(), &[&SMALL[..], &[output, "shots/my.json"]].concat());
     for output in ["shots/mine.png", "shots/../shots/mine.png", "preset.png"] {
-        assert!(line(output).contains("expected a file that is not also an input"));
+        assert!(line(output).contains("is also an input; expected another file"));
     }
     assert_eq!(fs::read_to_string(path("shots/my.json")).unwrap(), text);
 
@@ -68,7 +68,9 @@ fn inputs_are_not_overwritten() {
     let ramp = format!(r#"{{"version": 1, "width": 32, "height": 1, "rows": [{{"stops": {stops}}}]}}"#);
     fs::write(path("fire.ramp.json"), &ramp).unwrap();
     fs::hard_link(path("fire.ramp.json"), path("fire.png")).unwrap();
-    assert!(refusal(folder.path(), &["ramp", "bake", "fire.ramp.json"]).contains("a file that is not also an input"));
+    assert!(
+        refusal(folder.path(), &["ramp", "bake", "fire.ramp.json"]).contains("is also an input; expected another file")
+    );
     assert_eq!(fs::read_to_string(path("fire.ramp.json")).unwrap(), ramp);
 }
 
@@ -78,7 +80,7 @@ fn two_outputs_must_not_be_the_same_file() {
     let sheet = |more: &[&str]| refusal(folder.path(), &[&SHEET[..], more].concat());
     assert!(
         sheet(&["a.png", "--curves", "./a.png"])
-            .contains("--curves: ./a.png is not valid; expected a different file for each output")
+            .contains("--curves: ./a.png is named for two outputs; expected a different file for each output")
     );
     assert!(sheet(&["hard.png", "--cells", "."]).contains("expected a different file for each output"));
     assert!(

@@ -91,7 +91,7 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
     let line = refusal(folder.path(), &["ramp", "import", "a.png", "-o", "a.ramp.json"]);
     assert_eq!(line, "haze: a.png: not a PNG file; export it as PNG\n");
     let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json", "--error=-1"]);
-    assert_eq!(line, "haze: error: -1 is not valid; expected 1 to 64 steps of 255\n");
+    assert_eq!(line, "haze: invalid value '-1' for '--error <STEPS>': expected a number, 1 to 64\n");
     assert_eq!(stdout_of(folder.path(), &["ramp", "bake", "a.ramp.json"]), "a.png: 256x1\n");
 }
 
@@ -123,7 +123,7 @@ fn ramp_check_reports_findings_and_exits_with_1() {
     fs::write(folder.path().join("a.ggr"), "GIMP Gradient\n").unwrap();
     for command in ["check", "show"] {
         let line = refusal(folder.path(), &["ramp", command, "a.ggr"]);
-        assert!(line.contains("convert this gradient with `haze ramp import`"), "{line}");
+        assert!(line.contains("`haze ramp import` converts the gradient"), "{line}");
     }
 }
 
@@ -140,7 +140,7 @@ fn a_ramp_is_shown_as_text_and_as_an_image() {
     assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
     assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
     let line = refusal(folder.path(), &["ramp", "show", "toon.png", "-o", "toon.png"]);
-    assert!(line.contains("expected a file that is not also an input"), "{line}");
+    assert!(line.contains("is also an input; expected another file"), "{line}");
 }
 
 /// Runs a command on a terminal and returns its output.
@@ -227,10 +227,10 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     assert!(line(&["--ramps", "gone", "-o", "a.png"]).starts_with("haze: gone: "));
     assert!(line(&["--ramps", "sheet.png", "-o", "a.png"]).contains("sheet.png is not valid; expected a folder"));
     let over = line(&["--ramps", "ramps", "--role", "diffuse", "-o", "ramps/mine.png"]);
-    assert!(over.contains("expected a file that is not also an input"), "{over}");
+    assert!(over.contains("is also an input; expected another file"), "{over}");
     fs::create_dir(folder.path().join("empty")).unwrap();
     let none = line(&["--ramps", "empty", "--role", "age", "-o", "a.png"]);
-    assert!(none.contains("--ramps: empty is not valid; expected 1 to 64 ramps for age, not 0"), "{none}");
+    assert!(none.contains("--ramps: empty has 0 ramps for age; expected 1 to 64"), "{none}");
 }
 
 #[test]
@@ -285,10 +285,20 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     let output = haze(folder.path(), &check);
     assert!(String::from_utf8(output.stdout).unwrap().starts_with("lit.png against dust: brightness "));
     let refused = |rest: &[&str]| refusal(folder.path(), &[&fit[..], &puff, rest].concat());
-    assert!(refused(&["--albedo", "1.5"]).contains("--albedo: 1.5 is not valid; expected 0 to 1"));
-    assert!(refused(&["--albedo", "1,2"]).contains("one number, or three: red, green and blue"));
-    assert!(refused(&["--g", "nan"]).contains("--g: NaN is not valid"));
-    assert!(refused(&["--density", "0"]).contains("--density: 0 is not valid; expected 0.1 to 100"));
+    assert!(
+        refused(&["--albedo", "1.5"]).contains("invalid value '1.5' for '--albedo <SHARE>': expected a number, 0 to 1")
+    );
+    assert!(
+        refused(&["--albedo", "0.5,0.25"])
+            .contains("--albedo: 2 numbers are given; expected one number, or three: red, green and blue")
+    );
+    assert!(
+        refused(&["--g", "nan"]).contains("invalid value 'nan' for '--g <COSINE>': expected a number, -0.95 to 0.95")
+    );
+    assert!(
+        refused(&["--density", "0"])
+            .contains("invalid value '0' for '--density <EXTINCTION>': expected a number, 0.1 to 100")
+    );
     assert!(refused(&["--sprite", "smoke"]).contains("--sprite: smoke is not valid; expected a *.sprite.json file"));
 }
 
@@ -300,6 +310,19 @@ fn sprite_light_path_traces_a_sprite() {
     assert_eq!(told.lines().count(), 17, "{told}");
     assert_eq!(haze::image::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
     let grid = fs::read(folder.path().join("ball.vol")).unwrap();
+    let refused = |option: &str, text: &str| refusal(folder.path(), &["sprite", "light", "-o", "b.png", option, text]);
+    for (option, text, range) in [
+        ("--size", "big", "a whole number, 8 to 256"),
+        ("--size", "-8", "a whole number, 8 to 256"),
+        ("--samples", "0", "a whole number, 1 to 65536"),
+        ("--seed", "x", "0 to 4294967295"),
+        ("--albedo", "white", "a number, 0 to 1"),
+        ("--g", "forward", "a number, -0.95 to 0.95"),
+        ("--density", "thick", "a number, 0.1 to 100"),
+    ] {
+        let line = refused(option, text);
+        assert!(line.contains(option) && line.ends_with(&format!("expected {range}\n")), "{line}");
+    }
     assert!(grid.starts_with(b"VOL\x03\x01\0\0\0\x10\0\0\0\x10\0\0\0"), "{:?}", &grid[..24]);
 }
 
@@ -312,19 +335,20 @@ fn a_file_of_another_kind_is_refused_with_the_right_command() {
     // Recognized by its name, although its content is broken.
     write("broken.sprite.json", "{");
     write("a.json", &haze::preset::Preset::load(Path::new("column")).unwrap().to_text(""));
-    for (command, file, is) in [
-        ("preset", "a.ramp.json", "a ramp recipe: use `haze ramp check`"),
-        ("preset", "recipe.json", "a ramp recipe: use `haze ramp check`"),
-        ("preset", "broken.sprite.json", "a sprite recipe: use `haze sprite bake`"),
-        ("ramp", "a.json", "a preset: use `haze preset check`"),
-        ("ramp", "broken.sprite.json", "a sprite recipe: use `haze sprite bake`"),
-        ("sprite", "a.ramp.json", "a ramp recipe: use `haze ramp check`"),
-        ("sprite", "a.json", "a preset: use `haze preset check`"),
-        ("sprite", "broken.sprite.json", "a sprite recipe: use `haze sprite bake`"),
+    for (command, file, is, other) in [
+        ("preset", "a.ramp.json", "a ramp recipe", "haze ramp check"),
+        ("preset", "recipe.json", "a ramp recipe", "haze ramp check"),
+        ("preset", "broken.sprite.json", "a sprite recipe", "haze sprite bake"),
+        ("ramp", "a.json", "a preset", "haze preset check"),
+        ("ramp", "broken.sprite.json", "a sprite recipe", "haze sprite bake"),
+        ("sprite", "a.ramp.json", "a ramp recipe", "haze ramp check"),
+        ("sprite", "a.json", "a preset", "haze preset check"),
+        ("sprite", "broken.sprite.json", "a sprite recipe", "haze sprite bake"),
     ] {
         let stdout_of = refusal(folder.path(), &[command, "check", file]);
         assert!(
-            stdout_of.contains(&format!("{file} is not valid; expected ")) && stdout_of.contains(is),
+            stdout_of.contains(&format!("{file} is {is}; expected "))
+                && stdout_of.contains(&format!(", or `{other}` for this file")),
             "{command} {file}: {stdout_of}"
         );
     }

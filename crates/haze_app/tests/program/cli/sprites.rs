@@ -102,14 +102,17 @@ fn images_of_other_kinds_are_imported_as_sprites() {
     // Options that would be ignored are refused.
     for (arguments, expected) in [
         (&["fire.png", "fire.png", "fire.png", "--from", "six_way_unity"][..], "3 sheets; expected 2"),
-        (&["fire.png", "--from", "alpha", "--y-down"], "expected --from normals"),
-        (&["smoke_0000.png", "smoke_0001.png", "--columns", "2"], "2x1 for 2 files is not valid; expected 1x1"),
+        (
+            &["fire.png", "--from", "alpha", "--y-down"],
+            "--y-down: has no effect with --from alpha; expected --from normals",
+        ),
+        (&["smoke_0000.png", "smoke_0001.png", "--columns", "2"], "2x1 is given for 2 files; expected 1x1"),
     ] {
         let text = refusal(folder.path(), &[&["sprite", "import", "-o", "a.png"], arguments].concat());
         assert!(text.contains(expected), "{text}");
     }
     let text = refusal(folder.path(), &["sprite", "import", "down.png", "-o", "down.png"]);
-    assert!(text.contains("expected a file that is not also an input"), "{text}");
+    assert!(text.contains("is also an input; expected another file"), "{text}");
 }
 
 /// Runs a command that must succeed, and returns its standard output.
@@ -192,17 +195,14 @@ fn six_way_options_and_files_that_do_not_fit_are_refused() {
     for (arguments, expected) in [
         (
             &["bake", "mine.sprite.json", "--albedo", "0.5"][..],
-            "--albedo: use without --six-way is not valid; expected --six-way as well",
+            "--albedo: has no effect without --six-way; expected --six-way as well",
         ),
         (&["bake", "streaks"], "expected a *.sprite.json or *.noise.json file"),
-        (&["bake", "mine.sprite.json", "--six-way", "--g", "2"], "--g: 2 is not valid"),
-        (
-            &["export", "mine.six_way.png", "-o", "mine.six_way.png", "b.png"],
-            "expected a file that is not also an input",
-        ),
+        (&["bake", "mine.sprite.json", "--six-way", "--g", "2"], "invalid value '2' for '--g <COSINE>'"),
+        (&["export", "mine.six_way.png", "-o", "mine.six_way.png", "b.png"], "is also an input; expected another file"),
         (
             &["import", "mine.png", "mine.png", "--from", "six_way_unity", "-o", "mine.png"],
-            "expected a file that is not also an input",
+            "is also an input; expected another file",
         ),
     ] {
         let text = refusal(folder.path(), &[&["sprite"], arguments].concat());

@@ -125,7 +125,7 @@ fn recipes_of_a_folder_are_followed_and_painted_images_are_kept() {
     fs::write(path("odd.ramp.json"), recipe(1)).unwrap();
     fs::create_dir(path("odd.png")).unwrap();
     let watching = Watching::new(folder.path(), &["."]);
-    watching.says("haze: output: ./odd.png is not valid", "a folder in place of the image");
+    watching.says("haze: output: ./odd.png is not a file", "a folder in place of the image");
     fs::write(path("new.ramp.json"), recipe(7)).unwrap();
     watching.says("./new.png: 2x1", "new");
     fs::write(path("ball.motif.json"), MOTIF).unwrap();

@@ -128,7 +128,9 @@ impl Header {
                     };
                     properties += 1;
                     if properties > MAX_COLUMNS {
-                        return Err(refuse(format!("more than {MAX_COLUMNS} properties; expected no more")));
+                        return Err(refuse(format!(
+                            "more than {MAX_COLUMNS} properties; expected at most {MAX_COLUMNS}"
+                        )));
                     }
                     element.properties.push(parse_property(words).map_err(refuse)?);
                 }
