@@ -9,7 +9,9 @@ use haze_demo::headless::Headless;
 use crate::test_scene::TestScene;
 
 pub(super) fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, sample_count: u32) -> wgpu::Texture {
-    let is_sampled = sample_count == 1 || format.has_depth_aspect();
+    // OpenGL cannot sample multisampled depth.
+    let reads_samples = format.has_depth_aspect() && haze::read_only_depth_is_supported(&gpu.device);
+    let is_sampled = sample_count == 1 || reads_samples;
     let sampled = if is_sampled { wgpu::TextureUsages::TEXTURE_BINDING } else { wgpu::TextureUsages::empty() };
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("host target"),

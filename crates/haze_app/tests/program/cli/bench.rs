@@ -23,10 +23,25 @@ fn rows(report: &Value) -> &Vec<Value> {
     report["rows"].as_array().unwrap()
 }
 
+// Three tests, so that they run side by side.
 #[test]
-fn every_suite_has_figures_and_says_what_it_left_out() {
+fn suites_of_the_target_have_figures_and_say_what_they_left_out() {
+    assert_suites_have_figures(&["scale", "overdraw", "upsample"]);
+}
+
+#[test]
+fn suites_of_the_look_have_figures_and_say_what_they_left_out() {
+    assert_suites_have_figures(&["lights", "soft", "presets"]);
+}
+
+#[test]
+fn suites_of_the_device_have_figures_and_say_what_they_left_out() {
+    assert_suites_have_figures(&["particles", "auto", "limits"]);
+}
+
+fn assert_suites_have_figures(suites: &[&str]) {
     let folder = folder();
-    for suite in ["scale", "overdraw", "lights", "soft", "upsample", "presets", "particles", "auto", "limits"] {
+    for &suite in suites {
         let report = run(folder.path(), suite, &[]);
         assert!(report["complete"] == true && report["version"] == 1, "{suite}");
         let rows = rows(&report);

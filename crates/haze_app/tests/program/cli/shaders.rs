@@ -23,7 +23,7 @@ fn a_broken_shader_gives_one_line_and_a_valid_one_changes_the_image() {
     };
     write(folder, COLOUR);
     let plain = picture();
-    write(folder, &COLOUR.replace("return bounded_light(light);", "return bounded_light(light * 0.5);"));
+    write(folder, &COLOUR.replace("return min(light,", "return min(light * 0.5,"));
     assert_ne!(picture(), plain);
 
     write(folder, &COLOUR.replace("saturate(light)", "saturat(light)"));

@@ -214,7 +214,7 @@ fn a_saved_shader_is_used_and_an_error_is_reported_with_its_line() {
     let expected = format!("colour.wgsl:{line}:17: no definition in scope for identifier: `saturat`");
     assert!(said.contains(&expected), "{said}");
     assert!((bench.shown() - before).abs() < 0.5, "the last good one stays");
-    write(&bench, &COLOUR.replace("return bounded_light(light);", "return bounded_light(light * 0.25);"));
+    write(&bench, &COLOUR.replace("return min(light,", "return min(light * 0.25,"));
     bench.until(|bench| bench.said().is_none());
     bench.rest();
     let dark = bench.shown();
@@ -258,7 +258,7 @@ fn exports_use_the_shaders_of_the_watched_folder() {
         picture.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
     };
     let before = export(&mut bench);
-    let dark = COLOUR.replace("return bounded_light(light);", "return bounded_light(light * 0.25);");
+    let dark = COLOUR.replace("return min(light,", "return min(light * 0.25,");
     fs::write(bench.path("shaders/lib/colour.wgsl"), dark).unwrap();
     let shaders = |bench: &mut Bench| format!("{:?}", bench.session().shaders).contains("light * 0.25");
     bench.until(shaders);
