@@ -113,21 +113,6 @@ fn corners(cell: IVec3, seed: u32) -> [[Vec3; 2]; 8] {
     std::array::from_fn(|index| lattice_gradients(cell.wrapping_add(corner(index)), seed))
 }
 
-/// Octaves of [`gradient_noise`]. Each has `lacunarity` times the frequency and `gain` times the weight of the one
-/// before.
-pub fn fractal_noise(position: Vec3, phase: Vec2, seed: u32, octaves: u32, lacunarity: f32, gain: f32) -> Noise {
-    let (mut frequency, mut weight) = (1.0, 1.0);
-    let mut sum = Noise { value: 0.0, gradient: Vec3::ZERO };
-    for octave in 0..octaves {
-        let noise = gradient_noise(position * frequency, phase, seed.wrapping_add(octave * 7919));
-        sum.value += noise.value * weight;
-        sum.gradient += noise.gradient * (weight * frequency);
-        frequency *= lacunarity;
-        weight *= gain;
-    }
-    sum
-}
-
 /// Divergence-free flow: the curl of three noise fields. Smoke that follows it swirls and does not bunch up. (Bridson,
 /// Hourihan and Nordenstam, "Curl-noise for procedural fluid flow", 2007)
 pub fn curl_noise(position: Vec3, phase: Vec2, seed: u32) -> Vec3 {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 use haze::builtin;
-use haze::image::read_png;
+use haze::image::{CompressionEffort, read_png, write_png};
 use haze::settings::CoverageMode;
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
@@ -106,6 +106,22 @@ fn committed_sprites_match_their_recipes() {
             "{}.detail.png differs from its recipe; bake it again",
             sprite.name
         );
+    }
+}
+
+#[test]
+fn committed_images_are_encoded_as_scripts_bake_encodes_them() {
+    let scratch = tempfile::tempdir().unwrap();
+    let written = scratch.path().join("written.png");
+    for folder in ["ramps", "sprites"] {
+        for entry in std::fs::read_dir(file(folder, "")).unwrap() {
+            let committed = entry.unwrap().path();
+            if committed.extension().is_some_and(|ending| ending == "png") {
+                write_png(&written, &read_png(&committed).unwrap(), CompressionEffort::Small).unwrap();
+                let is_same = std::fs::read(&written).unwrap() == std::fs::read(&committed).unwrap();
+                assert!(is_same, "{} has other bytes; run scripts/bake", committed.display());
+            }
+        }
     }
 }
 

@@ -2,8 +2,6 @@
 
 mod noise_volume;
 
-pub use crate::formula::gradient_noise::{
-    CachedGradientNoise, Noise, curl_noise, fractal_noise, gradient_noise, tiling_noise,
-};
+pub use crate::formula::gradient_noise::{CachedGradientNoise, Noise, curl_noise, gradient_noise, tiling_noise};
 pub use crate::formula::hash::{pcg3d, unit};
 pub use noise_volume::{MAX_SIZE, NoiseVolume};

@@ -15,9 +15,8 @@ use haze::assets::json;
 use haze::error::{Error, FieldError};
 use haze::settings::{FieldVisitor, Fields, validate};
 
-/// Recipe format version that this code writes. Version 1 is read too: rows of monotone curves in Oklab, 16 bits per
-/// channel.
-pub const RECIPE_VERSION: u32 = 2;
+/// Recipe format version that this code writes and reads.
+pub const RECIPE_VERSION: u32 = 1;
 
 /// Size limit of a recipe file, bytes. 100 rows of 1000 stops in the longest notation take 9 MB.
 const MAX_RECIPE: u64 = 16 << 20;
@@ -78,7 +77,7 @@ impl Default for RampRecipe {
 
 impl Fields for RampRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.integer("version", &mut self.version, 1..=RECIPE_VERSION, "");
+        visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
         visitor.integer("width", &mut self.width, 2..=MAX_SIDE, "texels");
         // The baked image (three channels of 16 bits) must stay within the size limit for reading.
         let most = MAX_BYTES as u32 / 6 / self.width.max(1);
@@ -152,27 +151,10 @@ impl RampRecipe {
         if ![8, 16].contains(&self.bits) {
             return Err(FieldError::new("bits", self.bits, "8 or 16"));
         }
-        if let Some(field) = self.first_version_2_field().filter(|_| self.version < 2) {
-            return Err(FieldError::new("version", self.version, format!("2, for the field `{field}`")));
-        }
         self.formula()?;
         check_not_empty("rows", &self.rows)?;
         let mut rows = self.rows.iter().enumerate();
         rows.try_for_each(|(index, row)| check_not_empty(format!("rows[{index}].stops"), &row.stops))
-    }
-
-    /// Returns the first used field that version 1 did not have.
-    fn first_version_2_field(&self) -> Option<&'static str> {
-        let mut curves = self.rows.iter().flat_map(|row| row.stops.iter().map(|stop| stop.curve).chain([row.curve]));
-        let has_curves = curves.any(|curve| curve != Curve::default());
-        let used = [
-            ("bits", !is_default_bits(&self.bits)),
-            ("blend", !self.blend.is_default()),
-            ("place", !self.place.is_empty()),
-            ("times", !self.times.is_empty()),
-            ("curve", has_curves),
-        ];
-        used.into_iter().find(|used| used.1).map(|used| used.0)
     }
 
     fn formula(&self) -> Result<Option<Formula>, FieldError> {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Ui};
 use egui_gradient::DisplayOptions;
-use haze_author::ramp::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
+use haze_author::ramp::{Blend, RampRecipe, RampRow};
 
 use super::rows::value_control;
 use crate::tweak::document::ramp_edits::RampOrigin;
@@ -61,11 +61,9 @@ pub fn editor(
         is_changed = true;
     }
     if is_changed {
-        // New features of the editor need the latest version of the format.
-        recipe.version = RECIPE_VERSION;
         let ramps = &mut session.document.recipes.ramps;
         // A recipe that equals the one on disk is no change, and no step.
-        if recipe == (RampRecipe { version: RECIPE_VERSION, ..read }) {
+        if recipe == read {
             ramps.forget(ramp.name);
         } else {
             ramps.set(ramp.name, recipe);

@@ -151,7 +151,7 @@ fn a_program_killed_during_a_write_keeps_the_old_file() {
             format!(r#"{{"at": {}, "stops": [{stops}]}}"#, f64::from(row) / 31.0)
         };
         let rows = (0..32).map(row).collect::<Vec<_>>().join(",");
-        format!(r#"{{"version": 2, "width": 64, "height": 32, "rows": [{rows}]}}"#)
+        format!(r#"{{"version": 1, "width": 64, "height": 32, "rows": [{rows}]}}"#)
     };
     let bake = |blocks: u64| {
         // At this file length, the system kills the program.

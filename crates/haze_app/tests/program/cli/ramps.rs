@@ -17,7 +17,7 @@ use super::{folder, haze, refusal, stderr};
 fn a_ramp_of_very_many_stops_bakes_quickly() {
     let folder = folder();
     let recipe = |rows: u32, stops: u32, height: u32| {
-        let mut text = format!(r#"{{"version": 2, "width": 256, "height": {height}, "rows": ["#);
+        let mut text = format!(r#"{{"version": 1, "width": 256, "height": {height}, "rows": ["#);
         for row in 0..rows {
             let _ =
                 write!(text, r#"{}{{"at": {}, "stops": ["#, if row > 0 { "," } else { "" }, row as f32 / rows as f32);

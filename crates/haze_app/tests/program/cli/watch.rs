@@ -60,7 +60,7 @@ impl Drop for Watching {
 
 fn recipe(colour: u32) -> String {
     format!(
-        r##"{{"version": 2, "width": 2, "height": 1, "rows": [{{"stops": [{{"at": 0, "colour": "#{colour:06x}"}}]}}]}}"##
+        r##"{{"version": 1, "width": 2, "height": 1, "rows": [{{"stops": [{{"at": 0, "colour": "#{colour:06x}"}}]}}]}}"##
     )
 }
 

@@ -1,4 +1,4 @@
-//! Erosion noise of recipe version 2, precomputed per voxel for all frames.
+//! Erosion noise, precomputed per voxel for all frames.
 
 use std::ops::Range;
 

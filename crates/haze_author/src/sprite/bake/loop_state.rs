@@ -1,4 +1,4 @@
-//! State of recipe version 2 at one moment of the loop: ball positions, and displacement by flow and warp.
+//! State at one moment of the loop: ball positions, and displacement by flow and warp.
 
 use glam::{IVec2, UVec2, UVec3, Vec2, Vec3};
 

@@ -1,4 +1,4 @@
-//! Ray marching of recipe version 2.
+//! Ray marching through a density volume.
 
 use glam::{UVec2, UVec3, Vec3};
 use image::Rgba;
@@ -35,7 +35,7 @@ pub(super) fn march(recipe: &SpriteRecipe, volume: &DensityVolume, y: u32, line:
             let [above, below, front, behind] = around[index].map(|row: &[f32]| row[x]);
             let along_x = here[x.saturating_sub(reach[index])] - here[(x + reach[index]).min(size - 1)];
             let along_z = (behind - front) * reach[index] as f32 / (deep[index] * ratio);
-            // As in version 1, z is clamped so that no normal faces away from the viewer.
+            // z is clamped so that no normal faces away from the viewer: normals of overlapping sprites must not cancel.
             Vec3::new(along_x, below - above, along_z.max(0.0)).normalize_or_zero()
         };
         for ((x, &density), ray) in here.iter().enumerate().zip(&mut rays) {

@@ -10,8 +10,7 @@ mod loop_state;
 mod march;
 pub(super) mod near_lossless;
 mod sprite_recipe;
-mod version_1;
-mod version_2;
+mod volume_baker;
 mod voxel_grid;
 
 use glam::{IVec2, UVec2};
@@ -27,7 +26,7 @@ use haze::sprite::Sprite;
 pub use baked_frame::BakedFrame;
 use near_lossless::{quantise_detail, quantise_frame};
 pub use sprite_recipe::{RECIPE_VERSION, SpriteRecipe};
-use version_2::VolumeBaker;
+use volume_baker::VolumeBaker;
 
 /// Images baked from a recipe.
 #[derive(Clone, Debug)]
@@ -80,18 +79,14 @@ impl SpriteRecipe {
 
     /// Returns the density volume of one moment of the loop.
     pub fn volume(&self, frame: f32) -> DensityVolume {
-        let time = frame / self.frame_count() as f32;
-        if self.version > 1 { VolumeBaker::new(self).volume(time) } else { version_1::volume(self, time) }
+        VolumeBaker::new(self).volume(frame / self.frame_count() as f32)
     }
 
     /// Returns a function that bakes a moment without shrinking. Data that all moments share is computed once.
     fn frame_baker(&self) -> impl Fn(f32) -> BakedFrame + '_ {
         let count = self.frame_count() as f32;
-        let slices = (self.version > 1).then(|| VolumeBaker::new(self));
-        move |frame| {
-            let time = frame / count;
-            slices.as_ref().map_or_else(|| version_1::frame(self, time), |slices| slices.frame(time))
-        }
+        let baker = VolumeBaker::new(self);
+        move |frame| baker.frame(frame / count)
     }
 
     fn quantise(&self, frame: &mut BakedFrame) {

@@ -80,7 +80,7 @@ mod tests {
     fn no_texel_moves_further_than_the_tolerance() {
         let recipe = include_str!("../../../../../tests/corpus/sprite/good_first");
         let recipe: SpriteRecipe = json::parse(Path::new("puff.sprite.json"), recipe).unwrap();
-        let recipe = SpriteRecipe { version: 2, size: 64, ..recipe };
+        let recipe = SpriteRecipe { size: 64, ..recipe };
         let baked = recipe.bake_frame(0.0).picture;
         let shrunk = SpriteRecipe { tolerance: 2, ..recipe }.bake_frame(0.0).picture;
         let mut moved = 0;

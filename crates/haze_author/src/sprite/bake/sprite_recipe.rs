@@ -9,15 +9,15 @@ use haze::builtin::{self, Builtin};
 use haze::error::Error;
 use haze::settings::{FieldHeading, FieldVisitor, Fields, validate};
 
-/// Newest recipe format version. This code reads version 1 too.
-pub const RECIPE_VERSION: u32 = 2;
+/// Recipe format version that this code writes and reads.
+pub const RECIPE_VERSION: u32 = 1;
 
 /// Recipe of a sprite: the contents of a `*.sprite.json`. Lengths are in half sides: the sprite extends from −1 to 1.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SpriteRecipe {
-    /// Format version: 1 is the original, slow baker; 2 is about fifty times as fast and has more options.
+    /// Format version.
     pub version: u32,
     /// Random seed: different seeds give different sprites of the same kind.
     pub seed: u32,
@@ -51,18 +51,17 @@ pub struct SpriteRecipe {
     pub extinction: f32,
     /// Weight of fine normals (one texel wide) relative to broad normals (a twelfth of the sprite wide).
     pub bump: f32,
-    /// Version 2: half length of the lines that balls are stretched to. 0 keeps balls; small radii give strands.
+    /// Half length of the lines that balls are stretched to. 0 keeps balls; small radii give strands.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub length: f32,
-    /// Version 2: direction of the lines. 0 is random, 1 upright, for streaks.
+    /// Direction of the lines. 0 is random, 1 upright, for streaks.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub upright: f32,
-    /// Version 2: shape of the noise. 0 is waves, 1 round lumps with sharp creases, like cauliflower.
+    /// Shape of the noise. 0 is waves, 1 round lumps with sharp creases, like cauliflower.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub lumps: f32,
-    /// Version 2: distance that balls and noise are carried along a swirling flow and back in one loop. Above 0 the
-    /// noise no longer changes in place: the smoke travels rather than boils. `sprite.motion` can follow values up to
-    /// about 0.2.
+    /// Distance that balls and noise are carried along a swirling flow and back in one loop. Above 0 the noise no
+    /// longer changes in place: the smoke travels rather than boils. `sprite.motion` can follow values up to about 0.2.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub travel: f32,
     /// Maximum change of a texel to make the file smaller. Normals in thin smoke may change up to four times as much,
@@ -78,10 +77,10 @@ fn is_unused<T: Default + PartialEq>(value: &T) -> bool {
 
 impl Fields for SpriteRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.integer("version", &mut self.version, 1..=RECIPE_VERSION, "");
+        visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
         visitor.seed("seed", &mut self.seed);
-        // Bounded because version 1 bakes a cube of this side per frame; the baked sheet must stay within the size
-        // limit for reading.
+        // Bounded because a frame has a quarter of the cube of its side in voxels; the baked sheet must stay within the
+        // size limit for reading.
         visitor.integer("size", &mut self.size, 8..=512, "pixels");
         let most = (MAX_SIDE / self.size.max(1)).min(16);
         visitor.integer("columns", &mut self.columns, 1..=most, "frames");
@@ -98,11 +97,10 @@ impl Fields for SpriteRecipe {
         visitor.number("warp", &mut self.warp, 0.0..=2.0, "");
         visitor.number("extinction", &mut self.extinction, 0.1..=200.0, "");
         visitor.number("bump", &mut self.bump, 0.0..=10.0, "");
-        let up_to = |most: f32| 0.0..=if self.version < 2 { 0.0 } else { most };
-        visitor.number("length", &mut self.length, up_to(1.0), "half sides");
-        visitor.number("upright", &mut self.upright, up_to(1.0), "");
-        visitor.number("lumps", &mut self.lumps, up_to(1.0), "");
-        visitor.number("travel", &mut self.travel, up_to(1.0), "half sides");
+        visitor.number("length", &mut self.length, 0.0..=1.0, "half sides");
+        visitor.number("upright", &mut self.upright, 0.0..=1.0, "");
+        visitor.number("lumps", &mut self.lumps, 0.0..=1.0, "");
+        visitor.number("travel", &mut self.travel, 0.0..=1.0, "half sides");
         visitor.integer("tolerance", &mut self.tolerance, 0..=8, "of 255");
     }
 
@@ -111,7 +109,7 @@ impl Fields for SpriteRecipe {
     }
 }
 
-/// Fields in order of display; a name starts a new group.
+/// Fields in order of display; a name starts a new group. `version` has one value and is not displayed.
 const HEADINGS: &[FieldHeading] = &[
     ("seed", Some("shape")),
     ("balls", None),
@@ -130,8 +128,7 @@ const HEADINGS: &[FieldHeading] = &[
     ("travel", None),
     ("extinction", Some("surface")),
     ("bump", None),
-    ("version", Some("sheet")),
-    ("size", None),
+    ("size", Some("sheet")),
     ("columns", None),
     ("rows", None),
     ("tolerance", None),

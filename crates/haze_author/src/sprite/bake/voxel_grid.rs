@@ -1,4 +1,4 @@
-//! Voxel grid of recipe version 2, a quarter as deep as wide.
+//! Voxel grid of a bake, a quarter as deep as wide.
 
 use glam::{UVec3, Vec3};
 

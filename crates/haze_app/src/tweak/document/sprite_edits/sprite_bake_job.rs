@@ -68,10 +68,8 @@ impl BakeOrder {
     }
 }
 
-/// Frame size in texels, and number of columns and rows, of a coarse bake, which takes some milliseconds. Version 1
-/// marches rays through a cube and needs a smaller size.
+/// Largest frame size in texels, and number of columns and rows, of a coarse bake, which takes some milliseconds.
 const COARSE: [u32; 2] = [64, 2];
-const COARSE_FIRST: [u32; 2] = [32, 2];
 
 impl SpriteBakeJob {
     /// `wake` is called from other threads when a job is done. Returns `None` if the system cannot start another
@@ -97,7 +95,7 @@ impl SpriteBakeJob {
     pub fn coarse(&mut self, recipe: SpriteRecipe) -> u64 {
         let job = self.number();
         self.coarse.submit(move |_| {
-            let [size, frames] = if recipe.version < 2 { COARSE_FIRST } else { COARSE };
+            let [size, frames] = COARSE;
             let (columns, rows) = (recipe.columns.min(frames), recipe.rows.min(frames));
             let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
             let baked = small.bake(|_| Ok::<_, FieldError>(())).map_err(Error::from);

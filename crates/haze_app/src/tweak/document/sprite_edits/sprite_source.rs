@@ -100,12 +100,6 @@ fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
     if sheet.dimensions() != (recipe.size * recipe.columns, recipe.size * recipe.rows) {
         return false;
     }
-    if recipe.version < 2 {
-        // Version 1 takes about a minute to bake, so only the first frame is compared.
-        let frame = recipe.bake_frame(0.0).picture;
-        let size = frame.size.x as usize;
-        return frame.texels.chunks(size).zip(sheet.rows()).all(|(ours, theirs)| ours.iter().eq(theirs.take(size)));
-    }
     recipe.bake(|_| Ok::<_, FieldError>(())).is_ok_and(|baked| baked.picture == *sheet)
 }
 

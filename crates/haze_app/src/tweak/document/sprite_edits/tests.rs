@@ -26,7 +26,7 @@ const LONG: Duration = Duration::from_secs(30);
 struct Folder(tempfile::TempDir);
 
 fn small() -> SpriteRecipe {
-    SpriteRecipe { version: 2, size: 96, columns: 2, rows: 1, ..recipe_of_built_in("puff").unwrap() }
+    SpriteRecipe { size: 96, columns: 2, rows: 1, ..recipe_of_built_in("puff").unwrap() }
 }
 
 fn baked(recipe: &SpriteRecipe) -> BakedSprite {
@@ -197,11 +197,6 @@ fn dependent_numbers_are_clamped_to_their_new_ranges() {
     set(&mut harness, "ball radius min", 0.8);
     until(&mut harness, |_| (folder.recipe().ball_radius_min - 0.8).abs() < 1e-6);
     assert!((folder.recipe().ball_radius_max - 0.8).abs() < 1e-6);
-    set(&mut harness, "version", 1.0);
-    assert!(slider(&harness, "travel").accesskit_node().is_disabled());
-    harness.get_by_label("Convert to version 2").click();
-    harness.run_steps(3);
-    assert!(!slider(&harness, "travel").accesskit_node().is_disabled());
 }
 
 #[test]

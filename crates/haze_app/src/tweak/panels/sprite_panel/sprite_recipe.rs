@@ -104,10 +104,8 @@ fn templates(ui: &mut Ui, session: &mut Session) {
 
 /// Draws the fields of a recipe by its table. `locked`: the reason why none can be changed.
 fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
-    let (mut edited, mut within) = (recipe.clone(), RangeClamp::default());
-    edited.visit(&mut within);
-    let reason_without_effect =
-        |path: &str| locked.or(within.zero.contains(path).then_some("recipe version 1 does not support it"));
+    let mut edited = recipe.clone();
+    let reason_without_effect = |_: &str| locked;
     let (unchanged, requests) = (HashSet::new(), Vec::new());
     let mut context = RowContext {
         tooltips: &TOOLTIPS,
@@ -120,19 +118,10 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
         refused: None,
         searched_path: None,
     };
-    if locked.is_none() && edited.version < 2 {
-        let about = "Bakes about fifty times as fast and has more settings; the picture changes a little";
-        ui.horizontal(|ui| {
-            ui.weak("Version 1 is slow to bake.");
-            if ui.button("Convert to version 2").on_hover_text(about).clicked() {
-                edited.version = 2;
-            }
-        });
-    }
     setting_rows::show(ui, &mut context, &[], &mut edited);
     let refused = context.refused;
     // Ranges may depend on the values that were changed.
-    edited.visit(&mut RangeClamp::default());
+    edited.visit(&mut RangeClamp);
     if edited != *recipe {
         set_recipe(&mut session.document, name, edited);
         session.messages.clear("sprite");
@@ -142,17 +131,11 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
     }
 }
 
-/// Clamps numbers to their ranges, and records those whose range is 0 only.
-#[derive(Default)]
-struct RangeClamp {
-    zero: HashSet<&'static str>,
-}
+/// Clamps numbers to their ranges.
+struct RangeClamp;
 
 impl RangeClamp {
-    fn see<T: PartialOrd + Copy + Default>(&mut self, name: &'static str, value: &mut T, range: &RangeInclusive<T>) {
-        if *range.end() <= T::default() {
-            self.zero.insert(name);
-        }
+    fn clamp<T: PartialOrd + Copy>(value: &mut T, range: &RangeInclusive<T>) {
         if *value > *range.end() {
             *value = *range.end();
         }
@@ -163,12 +146,12 @@ impl RangeClamp {
 }
 
 impl FieldVisitor for RangeClamp {
-    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
-        self.see(name, value, &range);
+    fn number(&mut self, _: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
+        Self::clamp(value, &range);
     }
 
-    fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
-        self.see(name, value, &range);
+    fn integer(&mut self, _: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
+        Self::clamp(value, &range);
     }
 
     fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}

@@ -97,9 +97,9 @@ fn a_built_in_preset_must_be_saved_before_a_ramp_is_copied() {
 }
 
 #[test]
-fn a_version_1_recipe_accepts_new_features() {
+fn a_curve_and_a_blend_space_are_chosen_and_undone() {
     let folder = Folder::new();
-    let recipe = RampRecipe { version: 1, ..Template::find("neutral").unwrap().recipe() };
+    let recipe = Template::find("neutral").unwrap().recipe();
     std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
     write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
@@ -113,7 +113,7 @@ fn a_version_1_recipe_accepts_new_features() {
     choose(&mut harness, "then", "constant");
     assert_eq!(folder.recipe().rows[0].stops[0].curve, Curve::Constant);
     choose(&mut harness, "blended in", "hsv far");
-    assert_eq!((folder.recipe().blend, folder.recipe().version), (Blend::HsvFar, 2));
+    assert_eq!(folder.recipe().blend, Blend::HsvFar);
     assert!(folder.is_baked());
     assert!(harness.state().session.messages.latest().is_none_or(|message| !message.is_error));
     for _ in 0..2 {

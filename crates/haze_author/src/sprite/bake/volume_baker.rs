@@ -1,6 +1,6 @@
-//! Recipe version 2: a box of voxels a quarter as deep as wide. Data that all frames share is computed once, and slowly
-//! varying data on a coarse grid. Uses only `deterministic_math.rs` and plain arithmetic, so bakes are bit-identical
-//! on every machine.
+//! Volume baker: fills a box of voxels with density, and marches rays through it. Data that all frames share is computed
+//! once, and slowly varying data on a coarse grid. Uses only `deterministic_math.rs` and plain arithmetic, so bakes are
+//! bit-identical on every machine.
 
 use glam::{IVec2, UVec2, UVec3, Vec3};
 use image::Rgba;
@@ -134,7 +134,8 @@ impl<'a> VolumeBaker<'a> {
             for (lane, density) in run.iter_mut().enumerate() {
                 let body = 1.0 - fast_exp_neg(2.0 * field[lane]);
                 // Noise erodes less where the body is dense.
-                let eaten = recipe.erosion * (0.4 + noise[lane]) * (1.0 - 0.7 * body);
+                // Where noise is negative it adds density, at most as much as the body has: none outside.
+                let eaten = (recipe.erosion * (0.4 + noise[lane]) * (1.0 - 0.7 * body)).max(-body);
                 *density = (body - eaten).max(0.0) * window[lane] * window[lane] * (3.0 - 2.0 * window[lane]);
             }
         }
