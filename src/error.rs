@@ -124,7 +124,8 @@ pub enum Error {
     Io {
         /// File.
         path: PathBuf,
-        /// Error of the operating system.
+        /// Error of the operating system; also the [`source`](std::error::Error::source).
+        #[source]
         error: std::io::Error,
     },
 

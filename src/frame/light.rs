@@ -23,7 +23,8 @@ choice! {
 }
 
 settings! {
-    /// One light.
+    /// One light. A white, unshadowed texel of a diffuse ramp sends `colour · intensity / distance²` to the viewer, or
+    /// `colour · intensity` under a directional light: candela or lux, divided by π, light smoke as a white matte surface.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Light {
         /// Type of the light.
