@@ -3,7 +3,7 @@
 use crate::assets::material_assets::MaterialInfo;
 
 /// Ramps and sprite images on the GPU. Cheap to clone and to share between systems, renderers and frames.
-/// [`Renderer::create_material`](crate::Renderer::create_material) creates it.
+/// [`Context::create_material`](crate::Context::create_material) creates it.
 #[derive(Clone, Debug)]
 pub struct Material {
     /// Number of the context that created it.

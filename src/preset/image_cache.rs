@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
 
-use super::asset_folders::AssetFolders;
+use super::image_source::ImageSource;
 use crate::assets::noise::NoiseVolume;
 use crate::assets::ramp::Ramp;
 use crate::assets::sprite::{Sprite, SpriteLayout};
@@ -15,26 +15,27 @@ use crate::error::{Error, FieldError};
 pub const MAX_IMAGE_BYTES: u64 = 1 << 30;
 
 /// Images loaded so far, by file.
-pub struct ImageCache {
-    folders: AssetFolders,
+pub struct ImageCache<'a> {
+    source: ImageSource<'a>,
     ramps: HashMap<PathBuf, Ramp>,
     sprites: HashMap<(PathBuf, SpriteLayout), Sprite>,
     noises: HashMap<PathBuf, NoiseVolume>,
     bytes: u64,
 }
 
-impl ImageCache {
-    /// Nothing loaded yet; files are looked for in `folders`.
-    pub fn new(folders: AssetFolders) -> Self {
+impl<'a> ImageCache<'a> {
+    /// Nothing loaded yet.
+    pub fn new(source: ImageSource<'a>) -> Self {
         let (ramps, sprites, noises) = Default::default();
-        Self { folders, ramps, sprites, noises, bytes: 0 }
+        Self { source, ramps, sprites, noises, bytes: 0 }
     }
 
     /// Loads the ramp of this file, for a field of the material.
     pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, Error> {
         self.count(field, 0)?;
-        let folders = &self.folders;
-        let ramp = get_or_load(&mut self.ramps, file.into(), |file: &PathBuf| Ramp::load(&folders.find(file)?));
+        let source = &mut self.source;
+        let load = |file: &PathBuf| source.read(file).and_then(|(path, bytes)| Ramp::decode(&path, &bytes));
+        let ramp = get_or_load(&mut self.ramps, file.into(), load);
         let ramp = ramp.map_err(|error| named_by(field, error))?;
         self.count(field, ramp.memory())?;
         Ok(ramp)
@@ -43,8 +44,10 @@ impl ImageCache {
     /// Loads the sprite of this file.
     pub fn sprite(&mut self, field: &str, file: &Path, layout: SpriteLayout) -> Result<Sprite, Error> {
         self.count(field, 0)?;
-        let folders = &self.folders;
-        let load = |(file, layout): &(PathBuf, SpriteLayout)| Sprite::load(&folders.find(file)?, *layout);
+        let source = &mut self.source;
+        let load = |(file, layout): &(PathBuf, SpriteLayout)| {
+            source.read(file).and_then(|(path, bytes)| Sprite::decode(&path, &bytes, *layout))
+        };
         let sprite =
             get_or_load(&mut self.sprites, (file.into(), layout), load).map_err(|error| named_by(field, error))?;
         self.count(field, sprite.memory())?;
@@ -54,9 +57,9 @@ impl ImageCache {
     /// Loads the noise of this file.
     pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, Error> {
         self.count(field, 0)?;
-        let folders = &self.folders;
-        let noise =
-            get_or_load(&mut self.noises, file.into(), |file: &PathBuf| NoiseVolume::load(&folders.find(file)?));
+        let source = &mut self.source;
+        let load = |file: &PathBuf| source.read(file).and_then(|(path, bytes)| NoiseVolume::decode(&path, &bytes));
+        let noise = get_or_load(&mut self.noises, file.into(), load);
         let noise = noise.map_err(|error| named_by(field, error))?;
         self.count(field, noise.memory())?;
         Ok(noise)
@@ -96,6 +99,7 @@ fn named_by(field: &str, error: Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::preset::asset_folders::AssetFolders;
 
     #[test]
     fn a_file_is_read_once() {
@@ -104,7 +108,7 @@ mod tests {
         let path = folder.path().join(file);
         let layout = SpriteLayout::default();
         image::RgbaImage::new(1, 1).save(&path).unwrap();
-        let mut pictures = ImageCache::new(AssetFolders::at(folder.path()));
+        let mut pictures = ImageCache::new(ImageSource::Folders(AssetFolders::at(folder.path())));
         let ramp = pictures.ramp("motif", file).unwrap();
         let noise = pictures.noise("noise", file).unwrap();
         let sprite = pictures.sprite("sprite", file, layout).unwrap();

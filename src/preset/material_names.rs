@@ -1,9 +1,11 @@
 //! Names of the images of a preset, and their loading.
 
+use std::io;
 use std::path::{Component, Path};
 
 use super::asset_folders::{AssetFolders, MIN_SIMILARITY};
 use super::image_cache::ImageCache;
+use super::image_source::ImageSource;
 use crate::assets::builtin::{self, Builtin};
 use crate::assets::material_assets::MaterialAssets;
 use crate::assets::sprite::{Sprite, SpriteLayout, six_way_layout};
@@ -58,13 +60,26 @@ impl MaterialNames {
     /// [`Error::Asset`] with the field and the file, or [`Error::Field`] for a name that is neither built in nor a
     /// file inside the folder, and for more than [`MAX_IMAGE_BYTES`](super::MAX_IMAGE_BYTES).
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
-        let loaded = self.load_from(&mut ImageCache::new(AssetFolders::at(folder)));
+        self.load_images(ImageSource::Folders(AssetFolders::at(folder)))
+    }
+
+    /// As [`MaterialNames::load`], with the files that `read` returns for their names: for packed files, asset servers
+    /// and web pages. Built-in images are not read.
+    ///
+    /// # Errors
+    /// As [`MaterialNames::load`].
+    pub fn load_with(&self, mut read: impl FnMut(&Path) -> io::Result<Vec<u8>>) -> Result<MaterialAssets, Error> {
+        self.load_images(ImageSource::Reader(&mut read))
+    }
+
+    fn load_images(&self, source: ImageSource<'_>) -> Result<MaterialAssets, Error> {
+        let loaded = self.load_from(&mut ImageCache::new(source));
         loaded.map_err(|mut errors| errors.swap_remove(0).1)
     }
 
     /// As [`MaterialNames::load`], with the images that other systems have loaded already. The errors are those of all
     /// fields in order, at least one, each with its field. Images that belong to the sprite report under `sprite`.
-    pub fn load_from(&self, pictures: &mut ImageCache) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
+    pub fn load_from(&self, pictures: &mut ImageCache<'_>) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
         let sprite = ok_or_record("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
@@ -137,7 +152,7 @@ impl MaterialNames {
         names
     }
 
-    fn load_sprite(&self, pictures: &mut ImageCache) -> Result<SpriteImages, Error> {
+    fn load_sprite(&self, pictures: &mut ImageCache<'_>) -> Result<SpriteImages, Error> {
         let ((sprite, detail), layout) = match builtin::find(builtin::SPRITES, &self.sprite) {
             Some(builtin) => (self.load_builtin(builtin)?, builtin.sprite_layout()?),
             None => {
@@ -171,7 +186,7 @@ impl MaterialNames {
 
 /// Loads an image that accompanies a sprite, if one is named.
 fn load_companion(
-    pictures: &mut ImageCache,
+    pictures: &mut ImageCache<'_>,
     field: &'static str,
     name: &str,
     layout: SpriteLayout,
@@ -249,6 +264,27 @@ mod tests {
         let mut roles = Roles(Vec::new());
         MaterialNames::default().visit(&mut roles);
         assert_eq!(roles.0.len(), RampRole::ALL.len());
+    }
+
+    #[test]
+    fn images_can_come_from_a_host() {
+        let mut png = Vec::new();
+        image::RgbImage::new(2, 1).write_to(&mut io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
+        let names = MaterialNames { diffuse_ramp: "packed/own.png".to_owned(), ..MaterialNames::default() };
+        let mut asked = Vec::new();
+        let loaded = names.load_with(|name| {
+            asked.push(name.to_owned());
+            Ok(png.clone())
+        });
+        // Built-in images are not asked for.
+        assert_eq!(asked, [Path::new("packed/own.png")]);
+        assert_eq!(loaded.unwrap().diffuse_ramp.size(), glam::UVec2::new(2, 1));
+        let absent = names.load_with(|_| Err(io::ErrorKind::NotFound.into())).unwrap_err().to_string();
+        assert!(absent.starts_with("material.diffuse_ramp: packed/own.png: "), "{absent}");
+        let broken = names.load_with(|_| Ok(b"no picture".to_vec())).unwrap_err().to_string();
+        assert!(broken.starts_with("material.diffuse_ramp: packed/own.png: "), "{broken}");
+        let large = names.load_with(|_| Ok(vec![0; (64 << 20) + 1])).unwrap_err().to_string();
+        assert!(large.contains("at most 64 MiB"), "{large}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod asset_folders;
 mod camera;
 mod environment;
 mod image_cache;
+mod image_source;
 mod json_writer;
 mod material_names;
 mod particle_source;
@@ -14,6 +15,7 @@ pub use asset_folders::AssetFolders;
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};
 pub use image_cache::{ImageCache, MAX_IMAGE_BYTES};
+pub use image_source::ImageSource;
 pub use material_names::{MaterialNames, image_file_path};
 pub use particle_source::{EndBehaviour, ParticleFiles, UpAxis, particle_file_path};
 #[doc(hidden)]

@@ -1,11 +1,13 @@
 //! Preset: camera, lights and particle systems of a shot.
 
+use std::io;
 use std::path::Path;
 
 use super::asset_folders::AssetFolders;
 use super::camera::Camera;
 use super::environment::Environment;
 use super::image_cache::ImageCache;
+use super::image_source::ImageSource;
 use super::material_names::MaterialNames;
 use super::particle_source::ParticleFiles;
 use crate::assets::material_assets::MaterialAssets;
@@ -179,7 +181,24 @@ impl Preset {
     /// # Errors
     /// As [`Preset::load_materials`].
     pub fn load_materials_from(&self, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
-        let mut pictures = ImageCache::new(folders.clone());
+        self.load_images(path, ImageSource::Folders(folders.clone()))
+    }
+
+    /// As [`Preset::load_materials`], with the files that `read` returns for their names: for packed files, asset
+    /// servers and web pages. `path`, the preset's file, is only named in errors.
+    ///
+    /// # Errors
+    /// As [`Preset::load_materials`].
+    pub fn load_materials_with(
+        &self,
+        path: &Path,
+        mut read: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    ) -> Result<Vec<MaterialAssets>, Error> {
+        self.load_images(path, ImageSource::Reader(&mut read))
+    }
+
+    fn load_images(&self, path: &Path, source: ImageSource<'_>) -> Result<Vec<MaterialAssets>, Error> {
+        let mut pictures = ImageCache::new(source);
         let load = |(index, system): (usize, &PresetSystem)| {
             let loaded = system.material.load_from(&mut pictures);
             loaded.map_err(|mut errors| with_system_context(path, index, errors.swap_remove(0).1))

@@ -6,9 +6,8 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 use image::{DynamicImage, ImageBuffer, Rgba};
 
 use super::icc_profile::is_srgb;
-use super::png::{MAX_BYTES, decode_with_profile, is_png};
+use super::png::{decode_with_profile, is_png, read_file};
 use super::png_chunks::{ColourTags, colour_tags};
-use crate::assets::bounded_read;
 use crate::error::{Error, display_path};
 use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 
@@ -43,7 +42,7 @@ pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Erro
 /// # Errors
 /// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_colour_png`].
 pub fn read_colour_png(path: &Path) -> Result<DynamicImage, Error> {
-    decode_colour_png(path, &bounded_read::read(path, "PNG file", MAX_BYTES)?)
+    decode_colour_png(path, &read_file(path)?)
 }
 
 /// Returns notes about the conversions that [`decode_colour_png`] applies to a file, or why it refuses the file. Empty
@@ -52,7 +51,7 @@ pub fn read_colour_png(path: &Path) -> Result<DynamicImage, Error> {
 /// # Errors
 /// As [`read_colour_png`], except that an unsupported colour space is a note.
 pub fn colour_conversion_notes(path: &Path) -> Result<Vec<String>, Error> {
-    let bytes = bounded_read::read(path, "PNG file", MAX_BYTES)?;
+    let bytes = read_file(path)?;
     let (picture, profile) = decode_with_profile(path, &bytes)?;
     let mut notes = Vec::new();
     match colour_tags(&bytes).unwrap_or_default().space(profile.as_deref()) {

@@ -9,7 +9,7 @@ mod png_chunks;
 pub use atomic_write::{FileIdentity, check_writable, write_file};
 pub use colour_space::{colour_conversion_notes, decode_colour_png, read_colour_png};
 pub use png::is_png;
-pub use png::{CompressionEffort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
+pub use png::{CompressionEffort, MAX_BYTES, MAX_SIDE, decode_png, read_file, read_png, write_png};
 
 use glam::{IVec2, UVec2, Vec3, Vec4};
 

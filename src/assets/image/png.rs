@@ -85,12 +85,20 @@ fn describe_decode_error(error: Option<&ImageError>) -> String {
     }
 }
 
+/// Reads a PNG file of at most 64 MiB, without decoding it.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read or is larger.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, Error> {
+    bounded_read::read(path, "PNG file", MAX_BYTES)
+}
+
 /// Reads and decodes a PNG file.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_png`].
 pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
-    decode_png(path, &bounded_read::read(path, "PNG file", MAX_BYTES)?)
+    decode_png(path, &read_file(path)?)
 }
 
 /// Compression effort.

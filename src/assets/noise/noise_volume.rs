@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{UVec3, Vec4};
 use image::RgbaImage;
 
-use crate::assets::image::read_png;
+use crate::assets::image::{decode_png, read_file};
 use crate::error::Error;
 use crate::formula::texture::Texture3d;
 
@@ -45,12 +45,20 @@ impl NoiseVolume {
         Ok(Self { size, texels: picture.pixels().map(|pixel| pixel.0).collect() })
     }
 
-    /// Loads a PNG.
+    /// Loads a PNG file.
     ///
     /// # Errors
-    /// As [`read_png`] and [`NoiseVolume::from_image`].
+    /// As [`read_png`](crate::image::read_png) and [`NoiseVolume::from_image`].
     pub fn load(path: &Path) -> Result<Self, Error> {
-        Self::from_image(path, &read_png(path)?.to_rgba8())
+        Self::decode(path, &read_file(path)?)
+    }
+
+    /// Decodes the bytes of a PNG file. `path` is only named in errors.
+    ///
+    /// # Errors
+    /// As [`decode_png`] and [`NoiseVolume::from_image`].
+    pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        Self::from_image(path, &decode_png(path, bytes)?.to_rgba8())
     }
 
     /// Returns the number of voxels along each side.

@@ -12,7 +12,7 @@ use glam::{UVec2, Vec3, Vec4};
 use half::f16;
 use image::DynamicImage;
 
-use crate::assets::image::read_colour_png;
+use crate::assets::image::{decode_colour_png, read_file};
 use crate::error::Error;
 use crate::formula::colour::linear_from_srgb;
 use crate::formula::texture::Texture2d;
@@ -41,7 +41,7 @@ impl Ramp {
     }
 
     /// Converts an sRGB image of 8 or 16 bits per channel. Alpha is ignored;
-    /// [`decode_colour_png`](crate::image::decode_colour_png) applies it. The bottom row is 0 on the second axis.
+    /// [`decode_colour_png`] applies it. The bottom row is 0 on the second axis.
     pub fn from_image(picture: &DynamicImage) -> Self {
         let pixels = picture.to_rgb16();
         let size = UVec2::new(pixels.width(), pixels.height());
@@ -50,12 +50,20 @@ impl Ramp {
         Self::from_linear(size, colours)
     }
 
-    /// Loads a PNG.
+    /// Loads a PNG file.
     ///
     /// # Errors
-    /// As [`read_colour_png`].
+    /// As [`read_colour_png`](crate::image::read_colour_png).
     pub fn load(path: &Path) -> Result<Self, Error> {
-        Ok(Self::from_image(&read_colour_png(path)?))
+        Self::decode(path, &read_file(path)?)
+    }
+
+    /// Decodes the bytes of a PNG file. `path` is only named in errors.
+    ///
+    /// # Errors
+    /// As [`decode_colour_png`].
+    pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        Ok(Self::from_image(&decode_colour_png(path, bytes)?))
     }
 
     /// Returns the size, texels.

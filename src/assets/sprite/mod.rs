@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
 
-use crate::assets::image::{Image, read_png};
+use crate::assets::image::{Image, decode_png, read_file};
 use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
 
@@ -90,12 +90,20 @@ impl Sprite {
         Ok(Self::with_levels(size, columns * rows, texels))
     }
 
-    /// Loads a PNG.
+    /// Loads a PNG file.
     ///
     /// # Errors
-    /// As [`read_png`] and [`Sprite::from_image`].
+    /// As [`read_png`](crate::image::read_png) and [`Sprite::from_image`].
     pub fn load(path: &Path, layout: SpriteLayout) -> Result<Self, Error> {
-        Self::from_image(path, &read_png(path)?.to_rgba8(), layout)
+        Self::decode(path, &read_file(path)?, layout)
+    }
+
+    /// Decodes the bytes of a PNG file. `path` is only named in errors.
+    ///
+    /// # Errors
+    /// As [`decode_png`] and [`Sprite::from_image`].
+    pub fn decode(path: &Path, bytes: &[u8], layout: SpriteLayout) -> Result<Self, Error> {
+        Self::from_image(path, &decode_png(path, bytes)?.to_rgba8(), layout)
     }
 
     /// Builds the mip levels of frames below each other, `size` texels a side each.

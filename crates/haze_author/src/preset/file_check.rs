@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze::preset::{AssetFolders, ImageCache, MaterialNames, Preset, with_system_context};
+use haze::preset::{AssetFolders, ImageCache, ImageSource, MaterialNames, Preset, with_system_context};
 
 use super::role_check::role_warnings;
 use crate::particle_files::check_particle_files;
@@ -12,7 +12,7 @@ use haze::error::Error;
 /// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
 /// file, is only named in errors.
 pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
-    let mut pictures = ImageCache::new(folders.clone());
+    let mut pictures = ImageCache::new(ImageSource::Folders(folders.clone()));
     let (mut errors, mut warnings) = (Vec::new(), Vec::new());
     for (index, system) in preset.systems.iter().enumerate() {
         let found = match system.material.load_from(&mut pictures) {
@@ -37,7 +37,7 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
 /// Warnings about the images of all fields but some.
 fn role_warnings_except(names: &MaterialNames, fields: &[&str], folders: &AssetFolders) -> Vec<(&'static str, String)> {
     let others = names.with_defaults_for(fields);
-    let loaded = others.load_from(&mut ImageCache::new(folders.clone()));
+    let loaded = others.load_from(&mut ImageCache::new(ImageSource::Folders(folders.clone())));
     loaded.map(|material| role_warnings(&others, &material)).unwrap_or_default()
 }
 

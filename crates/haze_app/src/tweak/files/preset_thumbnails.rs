@@ -21,7 +21,7 @@ const MAX_PRESETS: usize = 200;
 
 /// List of presets that the user can open.
 pub struct PresetThumbnails {
-    worker: Worker<(PathBuf, Result<Drawn, Error>)>,
+    worker: Worker<(PathBuf, Result<RenderedPreset, Error>)>,
     pub entries: Vec<PresetEntry>,
     tickets: Vec<Ticket>,
 }
@@ -43,7 +43,7 @@ pub struct PresetThumbnail {
     pub picture: egui::TextureHandle,
 }
 
-struct Drawn {
+struct RenderedPreset {
     name: String,
     description: String,
     picture: RgbImage,
@@ -111,9 +111,9 @@ impl PresetThumbnails {
     }
 }
 
-fn draw(path: &Path, assets: Option<PathBuf>) -> Result<Drawn, Error> {
+fn draw(path: &Path, assets: Option<PathBuf>) -> Result<RenderedPreset, Error> {
     let folders = AssetFolders::beside(path).with_shared(assets);
     let shot = asset_loading::shot(path, &folders, SIZE)?;
     let picture = tonemap(&shot.render_on_cpu()?, &shot);
-    Ok(Drawn { picture, name: shot.preset.name, description: shot.preset.description })
+    Ok(RenderedPreset { picture, name: shot.preset.name, description: shot.preset.description })
 }

@@ -25,7 +25,7 @@ impl PsnrJob {
         if let Some(comparison) = renderer.take_comparison() {
             // If no thread can be started, no figures are shown.
             let wake = wake.clone();
-            let worker = self.worker.take().or_else(|| Worker::new("gauge", move || wake.call()).ok());
+            let worker = self.worker.take().or_else(|| Worker::new("psnr", move || wake.call()).ok());
             if let Some(worker) = &worker {
                 worker.submit(move |_| comparison.read());
             }
