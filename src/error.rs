@@ -21,10 +21,16 @@ pub fn display_path(path: &Path) -> String {
     escape(path.to_string_lossy().chars())
 }
 
+/// True for characters that would change what a terminal shows of a line: control characters, line and paragraph
+/// separators, and characters that reverse text.
+pub fn alters_line(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
 fn escape(text: impl Iterator<Item = char>) -> String {
     let mut line = String::new();
     for c in text {
-        if c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}') {
+        if alters_line(c) {
             line.extend(c.escape_default());
         } else {
             line.push(c);

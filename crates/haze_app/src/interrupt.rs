@@ -1,20 +1,22 @@
-//! Ctrl-C during long work: the first one stops the work at a point where all files are complete, a second one ends the
-//! program.
+//! Requests to stop during long work, by Ctrl-C, SIGTERM or SIGHUP: the first one stops the work at a point where all files
+//! are complete, a second one ends the program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// Returns true if Ctrl-C was pressed since [`catch`].
+/// Returns true if a stop was requested since [`catch`].
 pub fn is_requested() -> bool {
     IS_REQUESTED.load(Ordering::Relaxed)
 }
 
-/// From now on the first Ctrl-C only sets a flag.
+/// From now on the first request of each kind only sets a flag.
 #[cfg(unix)]
 #[allow(unsafe_code, reason = "the standard library has no signal handlers")]
 pub fn catch() {
+    const SIGHUP: i32 = 1;
     const SIGINT: i32 = 2;
+    const SIGTERM: i32 = 15;
     const DEFAULT: usize = 0;
     unsafe extern "C" {
         fn signal(number: i32, handler: usize) -> usize;
@@ -25,8 +27,10 @@ pub fn catch() {
         unsafe { signal(number, DEFAULT) };
     }
     let note: extern "C" fn(i32) = note;
-    // SAFETY: the handler only writes an atomic and calls `signal`, both async-signal-safe.
-    unsafe { signal(SIGINT, note as usize) };
+    for number in [SIGINT, SIGTERM, SIGHUP] {
+        // SAFETY: the handler only writes an atomic and calls `signal`, both async-signal-safe.
+        unsafe { signal(number, note as usize) };
+    }
 }
 
 /// On other systems Ctrl-C ends the program; a file is written completely or not at all.

@@ -4,6 +4,7 @@ use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
+use haze::error::alters_line;
 use haze::image::{FileIdentity, check_writable};
 use haze::{Error, FieldError};
 
@@ -34,7 +35,7 @@ pub fn print_error(line: impl Display) {
 
 /// Escapes control characters, which may come from file names.
 pub fn one_line(text: impl Display) -> String {
-    let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    let escape = |c: char| if alters_line(c) { c.escape_default().collect() } else { String::from(c) };
     text.to_string().chars().map(escape).collect()
 }
 

@@ -48,8 +48,10 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
     if width.max(height) > MAX_SIDE {
         return refuse(format!("{width}x{height} pixels; expected at most {MAX_SIDE}x{MAX_SIDE}"));
     }
-    if colour_tags(bytes).is_none() {
-        return refuse(describe_decode_error(None));
+    let Some(tags) = colour_tags(bytes) else { return refuse(describe_decode_error(None)) };
+    // The decoder panics on such a palette (png 0.18.1, `Decoder::read_info`).
+    if let Some(palette) = tags.palette_bytes.filter(|&palette| palette == 0 || palette % 3 != 0 || palette > 768) {
+        return refuse(format!("a palette of {palette} bytes; expected 3 bytes for each of 1 to 256 colours"));
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_BYTES);
@@ -153,6 +155,33 @@ mod tests {
         huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
         huge[20..24].copy_from_slice(&100_000_u32.to_be_bytes());
         assert!(message(&huge).contains("4096x4096"), "{}", message(&huge));
+    }
+
+    #[test]
+    fn a_palette_of_broken_length_is_refused() {
+        /// Checksum of a chunk's kind and data. (PNG 3, annex D)
+        fn crc(bytes: &[u8]) -> u32 {
+            !bytes.iter().fold(u32::MAX, |crc, &byte| {
+                (0..8)
+                    .fold(crc ^ u32::from(byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
+            })
+        }
+        let chunk = |kind: &[u8; 4], data: &[u8]| {
+            let body = [&kind[..], data].concat();
+            [&(data.len() as u32).to_be_bytes()[..], &body, &crc(&body).to_be_bytes()].concat()
+        };
+        let header = [&1_u32.to_be_bytes()[..], &1_u32.to_be_bytes(), &[8, 3, 0, 0, 0]].concat();
+        // One row: no filter, index 0; stored without compression, with its Adler-32 checksum.
+        let pixels = [0x78, 0x01, 0x01, 2, 0, 0xfd, 0xff, 0, 0, 0, 2, 0, 1];
+        let png = |palette: usize| {
+            let chunks = [chunk(b"IHDR", &header), chunk(b"PLTE", &vec![7; palette]), chunk(b"IDAT", &pixels)];
+            [SIGNATURE, &chunks.concat(), &chunk(b"IEND", &[])].concat()
+        };
+        assert_eq!(decode_png(Path::new("a.png"), &png(3)).unwrap().into_rgb8().get_pixel(0, 0).0, [7; 3]);
+        for length in [0, 1, 4, 5, 767, 769, 771] {
+            let error = decode_png(Path::new("a.png"), &png(length)).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("a.png: a palette of {length} bytes; expected 3 bytes")), "{error}");
+        }
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub struct ColourTags {
     pub srgb: bool,
     /// gAMA: the encoding exponent, times 100000.
     pub gamma: Option<u32>,
+    /// PLTE: bytes of the palette.
+    pub palette_bytes: Option<usize>,
     /// cHRM: x and y of white, red, green and blue, times 100000.
     pub primaries: Option<[[u32; 2]; 4]>,
 }
@@ -35,6 +37,7 @@ pub fn colour_tags(bytes: &[u8]) -> Option<ColourTags> {
             b"IDAT" => has_pixels = true,
             // Colour chunks are only valid before the pixels.
             _ if has_pixels => {}
+            b"PLTE" => tags.palette_bytes = Some(data.len()),
             b"cICP" => tags.cicp = tags.cicp.or(data.try_into().ok()),
             b"sRGB" => tags.srgb = true,
             b"gAMA" => tags.gamma = tags.gamma.or(numbers(data).map(|[gamma]| gamma)),

@@ -16,6 +16,8 @@ mod outputs;
 mod particles;
 #[path = "cli/presets.rs"]
 mod presets;
+#[path = "cli/ramp_sheet.rs"]
+mod ramp_sheet;
 #[path = "cli/ramps.rs"]
 mod ramps;
 #[path = "cli/shaders.rs"]

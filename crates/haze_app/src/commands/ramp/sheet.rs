@@ -89,11 +89,14 @@ impl Arguments {
     /// Returns the requested ramps: built-in ones, then files, sorted by name.
     fn cells(&self) -> Result<Vec<Cell>, Error> {
         let mut cells = Vec::new();
+        let mut unnamed = Vec::new();
         let mut add = |name: &str, source| {
             // A motif is another kind of image.
             let named = RampRole::of_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
             if let Some(role) = named.filter(|role| self.role.is_none_or(|wanted| wanted == *role)) {
                 cells.push(Cell { name: name.into(), role, source });
+            } else if let (None, false, Source::File(path)) = (named, name.starts_with("motif_"), source) {
+                unnamed.push(path);
             }
         };
         if self.ramps.is_none() || self.builtin {
@@ -103,6 +106,14 @@ impl Arguments {
             let name = path.file_name().map(OsStr::to_string_lossy).unwrap_or_default();
             let name = name.split('.').next().unwrap_or_default();
             add(name, Source::File(path.clone()));
+        }
+        for path in &unnamed {
+            let roles: Vec<_> = RampRole::ALL.iter().map(|role| format!("{}_", role.name())).collect();
+            print_error(format!(
+                "{}: left out, because its name tells no role of a ramp; expected a name that begins with {}, or --role",
+                path.display(),
+                roles.join(", ")
+            ));
         }
         if cells.is_empty() || cells.len() > MAX_SHEET_CELLS {
             let folder = self.ramps.as_ref().map_or("the built-in set".into(), |folder| folder.display().to_string());

@@ -120,25 +120,31 @@ fn the_page_fits_browser_windows_of_any_width() {
 }
 
 #[test]
-fn ctrl_c_writes_a_partial_report() {
-    let folder = folder();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_haze"))
-        .args(["bench", "scale", "--quick", "--seconds", "600", "--size", "64x36", "--json", "run.json"])
-        .current_dir(folder.path())
-        .env("XDG_RUNTIME_DIR", folder.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // By then the run is measuring.
-    std::thread::sleep(Duration::from_secs(6));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let asked = Instant::now();
-    let code = child.wait().unwrap().code();
-    assert!(asked.elapsed() < Duration::from_secs(20), "{:?}", asked.elapsed());
-    assert_eq!(code, Some(1));
-    let report: Value = serde_json::from_slice(&fs::read(folder.path().join("run.json")).unwrap()).unwrap();
-    assert_eq!(report["complete"], false);
+fn a_request_to_stop_writes_a_partial_report() {
+    let runs = ["INT", "TERM", "HUP"].map(|signal| {
+        let folder = folder();
+        let child = Command::new(env!("CARGO_BIN_EXE_haze"))
+            .args(["bench", "scale", "--quick", "--seconds", "600", "--size", "64x36", "--json", "run.json"])
+            .current_dir(folder.path())
+            .env("XDG_RUNTIME_DIR", folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        (signal, folder, child)
+    });
+    // By then the runs are measuring.
+    std::thread::sleep(Duration::from_secs(10));
+    for (signal, folder, mut child) in runs {
+        let arguments = [&format!("-{signal}"), &child.id().to_string()];
+        assert!(Command::new("kill").args(arguments).status().unwrap().success());
+        let asked = Instant::now();
+        let code = child.wait().unwrap().code();
+        assert!(asked.elapsed() < Duration::from_secs(20), "{signal}: {:?}", asked.elapsed());
+        assert_eq!(code, Some(1), "{signal}");
+        let report: Value = serde_json::from_slice(&fs::read(folder.path().join("run.json")).unwrap()).unwrap();
+        assert_eq!(report["complete"], false, "{signal}");
+    }
 }
 
 #[test]
