@@ -4,8 +4,10 @@
 //! ```text
 //! host:                opaque scene ─► scene colour (HDR) + scene depth
 //!                                                              │ sampled
-//! Renderer::prepare    depth_downsample   scene depth ─► reduced depth, linear view metres
-//!   (host's encoder)   sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU)
+//! Renderer::prepare    depth_resolve      multisampled scene depth ─► farthest sample of each pixel
+//!   (host's encoder)   measure            extent of particles in a host's buffer
+//!                      depth_downsample   scene depth ─► reduced depth, linear view metres
+//!                      sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU)
 //!                      diffuse_bake       lights ─► cubemap or motif, if a system uses one
 //!                      accumulate         sprites × normal map × soft fade ─► premultiplied normal, amount
 //! Renderer::render     transfer           the system's bounding box: decode, light, upsample, blend on the scene

@@ -6,12 +6,11 @@ use super::context::Shared;
 use super::gpu::error_scopes::with_error_scopes;
 use super::layouts::bind_textures;
 use super::pass::depth_resolve::{DepthResolve, DepthResolveKey, RESOLVED_DEPTH_FORMAT};
-use super::targets::depth_target;
+use super::targets::single_target;
 use crate::error::FieldError;
 use crate::view_setup::ViewGeometry;
 
-/// Resolved depth, and the bind group of the buffer that it is resolved from. Both are kept while the host passes the
-/// same buffer.
+/// Resolved depth, and the bind group of the buffer that it is resolved from.
 #[derive(Debug)]
 pub(crate) struct ResolvedDepth {
     samples: wgpu::TextureView,
@@ -20,15 +19,21 @@ pub(crate) struct ResolvedDepth {
 }
 
 impl ResolvedDepth {
-    /// Returns `kept` if it belongs to this buffer; otherwise creates the target and the bind group.
+    /// Returns the resolved depth of a buffer. What `kept` holds is used again: all of it for the same view, its target for
+    /// another view of the same size, because hosts may create a view each frame.
     ///
     /// # Errors
     /// Names the field `scene_depth` if the view cannot be bound.
     pub fn ensure(kept: Option<Self>, shared: &Shared, samples: &wgpu::TextureView) -> Result<Self, FieldError> {
-        if let Some(kept) = kept.filter(|kept| kept.samples == *samples) {
-            return Ok(kept);
-        }
         let texture = samples.texture();
+        let kept = kept.filter(|kept| {
+            let target = kept.target.texture();
+            (target.width(), target.height()) == (texture.width(), texture.height())
+        });
+        let kept = match kept {
+            Some(kept) if kept.samples == *samples => return Ok(kept),
+            kept => kept,
+        };
         let device = &shared.device;
         let bind = || bind_textures(device, "haze depth samples", &shared.layouts.depth_resolve, [samples]);
         let bound = with_error_scopes(device, bind).map_err(|reason| {
@@ -37,8 +42,9 @@ impl ResolvedDepth {
             FieldError::new("scene_depth", format!("a view of a {:?}", texture.format()), expected)
         })?;
         let size = UVec2::new(texture.width(), texture.height());
-        let target = depth_target(device, "haze resolved depth", RESOLVED_DEPTH_FORMAT, size);
-        Ok(Self { samples: samples.clone(), bound, target })
+        let written = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let create = || single_target(device, "haze resolved depth", RESOLVED_DEPTH_FORMAT, size, written);
+        Ok(Self { samples: samples.clone(), bound, target: kept.map_or_else(create, |kept| kept.target) })
     }
 
     /// Returns the pass that resolves the part of the buffer that a view covers.

@@ -43,11 +43,7 @@ impl SystemParticles {
         if let Particles::Emitter(emission) = system.particles {
             emission.sample(&mut self.sample);
         }
-        let known = match system.particles {
-            Particles::Slice(particles) => particles,
-            Particles::Emitter(_) => &self.sample,
-            Particles::Buffer { .. } => &[],
-        };
+        let (known, _) = known_particles(system.particles, &self.sample).unwrap_or((&[], 1));
         self.measures.measure(space, view.depth.near, known, settings);
         match (system.bounds, system.particles) {
             (Some(bounds), _) => space.world_bounds(&bounds),
@@ -62,11 +58,7 @@ impl SystemParticles {
     /// Returns the particles that the CPU knows, and the number of particles that each represents. `None` for a host's
     /// buffer.
     pub fn known<'a>(&'a self, particles: Particles<'a>) -> Option<(&'a [Particle], u32)> {
-        match particles {
-            Particles::Slice(particles) => Some((particles, 1)),
-            Particles::Buffer { .. } => None,
-            Particles::Emitter(emission) => Some((&self.sample, emission.step)),
-        }
+        known_particles(particles, &self.sample)
     }
 
     /// Returns the drawn particles that the CPU knows, and the number of particles that each represents. `sampled`:
@@ -144,5 +136,14 @@ impl SystemParticles {
     pub fn tiled_memory(&self) -> TiledMemory {
         let emitted = self.emitted.bytes() + self.measured.bytes();
         TiledMemory { emitted, ..TiledMemory::default() } + self.depth_sorted.memory()
+    }
+}
+
+/// See [`SystemParticles::known`].
+fn known_particles<'a>(particles: Particles<'a>, sample: &'a [Particle]) -> Option<(&'a [Particle], u32)> {
+    match particles {
+        Particles::Slice(particles) => Some((particles, 1)),
+        Particles::Buffer { .. } => None,
+        Particles::Emitter(emission) => Some((sample, emission.step)),
     }
 }

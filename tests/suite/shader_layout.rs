@@ -1,6 +1,8 @@
 //! Compares definitions that exist in both Rust and WGSL: struct layouts, constants, and the numbers of setting enums.
 
-use haze::formula::uniforms::{EmitterUniform, LightUniform, SystemUniform, TilesUniform, UniformField, ViewUniform};
+use haze::formula::uniforms::{
+    EmitterUniform, LightUniform, MeasureUniform, SystemUniform, TilesUniform, UniformField, ViewUniform,
+};
 use haze::{Particle, formula, frame, settings, shader, view_setup};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -108,6 +110,17 @@ fn wgsl_structs_match_rust() {
     assert_layout(&module, "System", SystemUniform::FIELDS, size_of::<SystemUniform>());
     assert_layout(&composed("lib/tiles.wgsl"), "Tiles", TilesUniform::FIELDS, size_of::<TilesUniform>());
     assert_layout(&composed("lib/emitter.wgsl"), "Emitter", EmitterUniform::FIELDS, size_of::<EmitterUniform>());
+    assert_layout(&composed("measure.wgsl"), "Measure", MeasureUniform::FIELDS, size_of::<MeasureUniform>());
+}
+
+#[test]
+fn measured_extent_is_laid_out_as_in_the_systems_uniforms() {
+    let (measured, _) = wgsl_struct(&composed("measure.wgsl"), "MeasuredExtent");
+    let first = std::mem::offset_of!(SystemUniform, centre);
+    for (name, offset) in &measured[..4] {
+        let field = SystemUniform::FIELDS.iter().find(|(field, ..)| field == name).unwrap();
+        assert_eq!(field.1 - first, *offset as usize, "{name}");
+    }
 }
 
 #[test]

@@ -25,8 +25,8 @@ const READ_BACKS: usize = 4;
 /// [`resolve`](Self::resolve) at the end of the frame's last encoder. Results arrive some frames later, without
 /// blocking: the first submission after the GPU has finished delivers them.
 ///
-/// Passes that haze begins itself (`depth_downsample`, `diffuse_bake`, `accumulate`, `light_target`, and those of the
-/// path `tiled`) are always measured. Passes that haze records into the host's pass (`transfer`, `specular_scatter`,
+/// Passes that haze begins itself (`depth_resolve`, `measure`, `emit`, `sort`, `depth_downsample`, `diffuse_bake`,
+/// `accumulate`, `light_target`, and those of the path `tiled`) are always measured. Passes that haze records into the host's pass (`transfer`, `specular_scatter`,
 /// `forward`) are measured if the device has `Features::TIMESTAMP_QUERY_INSIDE_PASSES`. Without it,
 /// [`host_pass`](Self::host_pass) measures the host's whole pass. A device without `Features::TIMESTAMP_QUERY` measures
 /// nothing. There, a host can measure the CPU time of its calls, and should label it as such, because it says little

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::UVec2;
+use wgpu::TextureUsages;
 
 use super::attachments::{Attachment, attachments};
 use super::texture_allocator::TextureAllocator;
@@ -95,9 +96,9 @@ impl AccumulationTarget {
     }
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
-        let mut textures = TextureAllocator { device, bytes: 0, storage: false };
+        let mut textures = TextureAllocator { device, bytes: 0, written: TextureUsages::RENDER_ATTACHMENT };
         let mut create = |set, tiled| -> Arc<[_]> {
-            textures.storage = tiled;
+            textures.written = if tiled { TextureUsages::STORAGE_BINDING } else { TextureUsages::RENDER_ATTACHMENT };
             let mut texture = |row: &Attachment| {
                 let format = if tiled { row.tiled_format(key.format) } else { row.raster_format(key.format) };
                 textures.create_whole(row.label, format, size)
@@ -107,7 +108,7 @@ impl AccumulationTarget {
         let attachments = create(key.attachments, key.tiled);
         // Layers are always counted by hardware blending.
         let overdraw = key.overdraw.then(|| create(AttachmentSet::NORMAL_AND_AMOUNT, false));
-        textures.storage = false;
+        textures.written = TextureUsages::RENDER_ATTACHMENT;
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;
         let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", REDUCED_DEPTH_FORMAT, size));

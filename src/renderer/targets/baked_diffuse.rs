@@ -35,7 +35,7 @@ impl BakedDiffuse {
     }
 
     fn new(device: &wgpu::Device, size_and_layers: Option<(u32, u32)>) -> Self {
-        let mut textures = TextureAllocator { device, bytes: 0, storage: false };
+        let mut textures = TextureAllocator { device, bytes: 0, written: wgpu::TextureUsages::RENDER_ATTACHMENT };
         let (side, layers) = size_and_layers.unwrap_or((1, 1));
         let label = "haze baked diffuse";
         let texture = textures.create(label, BAKED_DIFFUSE_FORMAT, UVec2::splat(side), array_layers(layers));

@@ -14,4 +14,4 @@ pub(crate) use attachments::{
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};
 pub use target_views::TargetViews;
-pub(crate) use texture_allocator::{depth_target, storage_target};
+pub(crate) use texture_allocator::single_target;

@@ -6,19 +6,15 @@ use glam::UVec2;
 pub(super) struct TextureAllocator<'a> {
     pub device: &'a wgpu::Device,
     pub bytes: u64,
-    /// True if compute shaders write the textures. They are then not render attachments, because not every device can
-    /// render to every storage format.
-    pub storage: bool,
+    /// `RENDER_ATTACHMENT`, or `STORAGE_BINDING` if compute shaders write the textures. Not both, because not every device
+    /// can render to every storage format.
+    pub written: wgpu::TextureUsages,
 }
 
 impl TextureAllocator<'_> {
     pub fn create(&mut self, label: &str, format: wgpu::TextureFormat, size: UVec2, layers: u32) -> wgpu::Texture {
         let texel = u64::from(format.block_copy_size(None).unwrap_or(16));
         self.bytes += texel * u64::from(size.x) * u64::from(size.y) * u64::from(layers);
-        let written = match self.storage {
-            true => wgpu::TextureUsages::STORAGE_BINDING,
-            false => wgpu::TextureUsages::RENDER_ATTACHMENT,
-        };
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers },
@@ -26,7 +22,7 @@ impl TextureAllocator<'_> {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: written | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
+            usage: self.written | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         })
     }
@@ -36,22 +32,13 @@ impl TextureAllocator<'_> {
     }
 }
 
-/// Creates a single depth buffer.
-pub(crate) fn depth_target(
+/// Creates a single texture. `written`: as in [`TextureAllocator`].
+pub(crate) fn single_target(
     device: &wgpu::Device,
     label: &str,
     format: wgpu::TextureFormat,
     size: UVec2,
+    written: wgpu::TextureUsages,
 ) -> wgpu::TextureView {
-    TextureAllocator { device, bytes: 0, storage: false }.create_whole(label, format, size)
-}
-
-/// Creates a single texture that compute shaders write.
-pub(crate) fn storage_target(
-    device: &wgpu::Device,
-    label: &str,
-    format: wgpu::TextureFormat,
-    size: UVec2,
-) -> wgpu::TextureView {
-    TextureAllocator { device, bytes: 0, storage: true }.create_whole(label, format, size)
+    TextureAllocator { device, bytes: 0, written }.create_whole(label, format, size)
 }

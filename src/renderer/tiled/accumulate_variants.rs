@@ -11,7 +11,7 @@ use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineStore, PipelineVariants, Shader};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
-use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, storage_target};
+use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, single_target};
 use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 
 /// Variants of tile_accumulate.
@@ -38,7 +38,8 @@ pub(crate) struct AccumulateVariant {
 
 impl AccumulateVariants {
     pub fn new(store: &PipelineStore, layouts: &Layouts, shader: Shader) -> Self {
-        let placeholder = || storage_target(&store.device, "haze unwritten", PLACEHOLDER_FORMAT, UVec2::ONE);
+        let written = wgpu::TextureUsages::STORAGE_BINDING;
+        let placeholder = || single_target(&store.device, "haze unwritten", PLACEHOLDER_FORMAT, UVec2::ONE, written);
         Self {
             shader,
             groups: [layouts.frame.clone(), layouts.system.clone(), layouts.material.clone()],

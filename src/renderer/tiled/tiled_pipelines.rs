@@ -130,9 +130,13 @@ impl TiledPipelines {
         self.accumulate.check(keys.accumulate)
     }
 
-    /// Compiles the pipelines that measure a host's particles and sort them back to front.
+    /// Compiles the pipelines that measure a host's particles.
+    pub fn compile_measure(&self) -> Result<(), Error> {
+        MeasureKey::ALL.into_iter().try_for_each(|key| self.measure.check(key))
+    }
+
+    /// Compiles the pipelines that sort a host's particles back to front.
     pub fn compile_depth_sort(&self) -> Result<(), Error> {
-        MeasureKey::ALL.into_iter().try_for_each(|key| self.measure.check(key))?;
         self.depth_sort.check(DepthSortKey::DepthKeys)?;
         self.depth_sort.check(DepthSortKey::GatherParticles)?;
         self.compile_sort()

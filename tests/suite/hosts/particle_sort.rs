@@ -7,6 +7,7 @@ use haze::settings::*;
 use haze::{Bounds, Particle, Particles, wgpu};
 use haze_demo::headless::Headless;
 
+use super::warm_up::warm_up;
 use super::{SIZE, rejected_field};
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::psnr;
@@ -147,6 +148,8 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         let mut scene = TestScene::new(SIZE);
         scene.settings.path = path;
         change(&mut scene);
+        // The camera looks along z. In this order, the sorted and the unsorted way draw alike, and only light can differ.
+        scene.particles.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
         let slice = scene.on_gpu(gpu()).picture;
         let reach = scene.settings.sprite_extent();
         let tight = particle_bounds(&scene.particles, reach);
@@ -170,5 +173,24 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
             let unmeasured = psnr(&host.picture(gpu()).unwrap(), &slice);
             assert!(unmeasured < 60.0, "{unmeasured:.1} dB: the box alone gives the same image");
         }
+    }
+}
+
+#[test]
+fn first_frame_of_a_host_buffer_after_a_warm_up_compiles_no_pipeline() {
+    if !is_tiled_available() {
+        return;
+    }
+    for path in [RenderPath::Raster, RenderPath::Tiled, RenderPath::Forward] {
+        let mut scene = TestScene::new(SIZE);
+        (scene.settings.path, scene.bounds) = (path, Some(BOUNDS));
+        let mut host = Host::new(gpu(), &scene).unwrap();
+        host.renderer.warm_up(&warm_up(&scene, &[scene.settings])).unwrap();
+        let warm = host.renderer.context().pipeline_count();
+        let buffer = buffer(gpu(), &scene.particles, 0, READ);
+        let count = scene.particles.len() as u32;
+        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false };
+        host.draw_particles(gpu(), &scene, particles).unwrap();
+        assert_eq!(host.renderer.context().pipeline_count(), warm, "{}", path.name());
     }
 }

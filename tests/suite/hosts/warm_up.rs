@@ -10,7 +10,7 @@ use crate::gpu::{can_test, gpu};
 use crate::test_host::Host;
 use crate::test_scene::{DepthKind, TestScene};
 
-fn warm_up<'a>(scene: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
+pub fn warm_up<'a>(scene: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
     let scene_depth = match scene.depth {
         DepthKind::Buffer => SceneDepthKind::Buffer(scene.host.depth_format),
         DepthKind::Multisampled => SceneDepthKind::Multisampled,

@@ -13,16 +13,7 @@ pub(super) fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, s
     let reads_samples = format.has_depth_aspect() && haze::read_only_depth_is_supported(&gpu.device);
     let is_sampled = sample_count == 1 || reads_samples;
     let sampled = if is_sampled { wgpu::TextureUsages::TEXTURE_BINDING } else { wgpu::TextureUsages::empty() };
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("host target"),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | sampled,
-        view_formats: &[],
-    })
+    create(gpu, size, format, sample_count, sampled, &[])
 }
 
 /// Creates a colour target that stores one format and is drawn to through a view of another.
@@ -32,15 +23,26 @@ pub(super) fn target_with_view_format(
     stored: wgpu::TextureFormat,
     viewed: wgpu::TextureFormat,
 ) -> wgpu::Texture {
+    create(gpu, size, stored, 1, wgpu::TextureUsages::TEXTURE_BINDING, &[viewed])
+}
+
+fn create(
+    gpu: &Headless,
+    size: UVec2,
+    format: wgpu::TextureFormat,
+    sample_count: u32,
+    sampled: wgpu::TextureUsages,
+    view_formats: &[wgpu::TextureFormat],
+) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("host target"),
         size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         mip_level_count: 1,
-        sample_count: 1,
+        sample_count,
         dimension: wgpu::TextureDimension::D2,
-        format: stored,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[viewed],
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | sampled,
+        view_formats,
     })
 }
 
