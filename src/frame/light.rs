@@ -32,7 +32,7 @@ settings! {
         /// Position in world space, metres. Behind the smoke, the light glows through it; beside the smoke, it shows
         /// its shape. Point and spot.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
+        position: Vec3 = Vec3::new(0.0, 2.0, 0.0), vector(-1.0e5..=1.0e5, "m");
         /// Direction in which the light travels, world space; need not be unit length. Spot and directional.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         direction: Vec3 = Vec3::NEG_Y, vector(-1.0e3..=1.0e3, "");

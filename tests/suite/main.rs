@@ -25,6 +25,7 @@ mod presets;
 mod probe;
 mod properties;
 mod psnr;
+mod random_presets;
 mod resource_counter;
 mod shader_layout;
 mod shaders;

@@ -13,6 +13,9 @@ pub(crate) const SUN_DISTANCE: f32 = 60.0;
 pub(crate) const SUN_SPREAD: f32 = 0.02;
 /// Maximum width of the antialiased edge of a hard shadow, metres. `WIDEST_PIXEL` in scene.wgsl.
 pub(crate) const WIDEST_PIXEL: f32 = 0.1;
+/// Minimum radius of the body at which a shadow ray ends, metres: far above the rounding of coordinates. `MIN_LIGHT_RADIUS`
+/// in scene.wgsl.
+pub(crate) const MIN_LIGHT_RADIUS: f32 = 0.02;
 
 /// A box, rotated about the vertical axis. `Box` in scene.wgsl.
 #[repr(C)]

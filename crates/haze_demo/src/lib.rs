@@ -2,6 +2,7 @@
 //! the same image.
 
 mod boxes;
+mod camera_rays;
 pub mod capture;
 mod cpu_render;
 pub mod headless;

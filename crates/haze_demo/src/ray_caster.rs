@@ -1,12 +1,16 @@
 //! CPU ray caster for the demo scene: renders the same colour and depth as the GPU.
 
+use std::ops::RangeInclusive;
+
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::boxes::{SceneBox, Surface, box_interval};
+use super::camera_rays::CameraRays;
 use super::occluders::{BoxMask, indices};
 use super::scene::Scene;
 use super::shading::albedo;
 use haze::assets::image::Image;
+use haze::formula::depth::DepthConvention;
 use haze::frame::View;
 
 /// Renders linear colour with four samples per pixel, and depth 0..1 at pixel centres.
@@ -15,8 +19,9 @@ pub(crate) fn render(scene: &Scene, view: &View) -> (Image<Vec4>, Image<f32>) {
         scene,
         size: view.size.as_vec2(),
         clip_from_world: view.clip_from_view * view.view_from_world,
-        world_from_clip: (view.clip_from_view * view.view_from_world).inverse(),
-        eye: view.view_from_world.inverse().transform_point3(Vec3::ZERO),
+        rays: CameraRays::new(view),
+        visible_depth: DepthConvention::from_clip_from_view(&view.clip_from_view)
+            .map_or(0.0..=f32::INFINITY, |depth| depth.near..=depth.far),
         tiles: boxes_by_tile(&scene.boxes, &(view.clip_from_view * view.view_from_world), view.size),
     };
     let mut colour = Image::new(view.size, Vec4::ZERO);
@@ -30,8 +35,9 @@ struct RayCaster<'a> {
     scene: &'a Scene,
     size: Vec2,
     clip_from_world: Mat4,
-    world_from_clip: Mat4,
-    eye: Vec3,
+    rays: CameraRays,
+    /// View depths from the near to the far plane, metres.
+    visible_depth: RangeInclusive<f32>,
     /// Boxes that may be visible in each tile of the image.
     tiles: Image<BoxMask>,
 }
@@ -83,27 +89,21 @@ impl Hit<'_> {
 }
 
 impl RayCaster<'_> {
-    /// Returns the offset from the eye to a pixel's point on the near plane (0) or the far plane (1).
-    fn offset_to_plane(&self, pixel: Vec2, ndc_depth: f32) -> Vec3 {
-        let uv = pixel / self.size;
-        let place = self.world_from_clip * Vec4::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, ndc_depth, 1.0);
-        place.xyz() / place.w - self.eye
-    }
-
     fn direction(&self, pixel: Vec2) -> Vec3 {
-        self.offset_to_plane(pixel, 1.0).normalize()
+        self.rays.at_unit_depth(pixel / self.size).normalize()
     }
 
     /// Returns the first hit between the near and the far plane, for a position in the image in pixels.
     fn hit(&self, pixel: Vec2) -> Option<Hit<'_>> {
         let at = pixel.as_uvec2();
-        let (near, far) = (self.offset_to_plane(pixel, 0.0), self.offset_to_plane(pixel, 1.0));
-        let (direction, visible_range) = (far.normalize(), near.length()..=far.length());
+        let at_unit_depth = self.rays.at_unit_depth(pixel / self.size);
+        let (direction, length) = (at_unit_depth.normalize(), at_unit_depth.length());
+        let visible_range = self.visible_depth.start() * length..=self.visible_depth.end() * length;
         let mut nearest = f32::INFINITY;
         let mut hit = None;
         let boxes = &self.scene.boxes;
         for b in indices(self.tiles.load((at / TILE_SIZE).as_ivec2()), boxes.len()).map(|index| &boxes[index]) {
-            let (origin, local) = (b.to_local(self.eye - b.centre), b.to_local(direction));
+            let (origin, local) = (b.to_local(self.rays.eye - b.centre), b.to_local(direction));
             let (enter, leave) = box_interval(b, origin, local);
             if enter >= leave {
                 continue;
@@ -126,7 +126,7 @@ impl RayCaster<'_> {
             Vec3::Z
         };
         let local_normal = axis * local.dot(axis).signum();
-        Some(Hit { surface, world: self.eye + direction * nearest, local, local_normal })
+        Some(Hit { surface, world: self.rays.eye + direction * nearest, local, local_normal })
     }
 
     /// Averages four samples, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
@@ -163,11 +163,11 @@ impl RayCaster<'_> {
         if b.surface == Surface::Glow as u32 {
             return Vec3::ONE;
         }
-        let origin = b.to_local(self.eye - b.centre);
+        let origin = b.to_local(self.rays.eye - b.centre);
         let distance = (normal.abs().dot(b.half_size) - normal.dot(origin)) / normal.dot(b.to_local(direction));
         let normal = b.to_world(*normal);
         let pixel = pixel_angle * distance / (-direction.dot(normal)).max(1.0e-3);
-        self.scene.irradiance(self.eye + direction * distance, normal, pixel)
+        self.scene.irradiance(self.rays.eye + direction * distance, normal, pixel)
     }
 
     fn depth(&self, at: UVec2) -> f32 {

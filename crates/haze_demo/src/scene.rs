@@ -3,10 +3,11 @@
 use glam::{Mat4, Vec3};
 
 use super::boxes::{MAX_BOXES, SceneBox};
+use super::camera_rays::CameraRays;
 use super::layout;
 use super::occluders::Occluders;
 use haze::formula::uniforms::LightUniform;
-use haze::frame::Light;
+use haze::frame::{Light, View};
 use haze::preset::Environment;
 
 /// Uniforms of the scene's shader. `Scene` in scene.wgsl.
@@ -14,7 +15,6 @@ use haze::preset::Environment;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct SceneUniform {
     pub clip_from_world: Mat4,
-    pub world_from_clip: Mat4,
     pub eye: Vec3,
     pub box_count: u32,
     pub zenith: Vec3,
@@ -23,6 +23,12 @@ pub(crate) struct SceneUniform {
     pub padding0: f32,
     pub ground: Vec3,
     pub padding1: f32,
+    pub ray_forward: Vec3,
+    pub padding2: f32,
+    pub ray_right: Vec3,
+    pub padding3: f32,
+    pub ray_up: Vec3,
+    pub padding4: f32,
 }
 
 /// A scene prepared for drawing on the GPU or the CPU.
@@ -43,11 +49,11 @@ impl Scene {
         Self { environment: *environment, occluders: Occluders::new(&boxes, &lights), boxes, lights }
     }
 
-    pub fn uniform(&self, clip_from_world: Mat4, eye: Vec3) -> SceneUniform {
+    pub fn uniform(&self, view: &View) -> SceneUniform {
+        let rays = CameraRays::new(view);
         SceneUniform {
-            clip_from_world,
-            world_from_clip: clip_from_world.inverse(),
-            eye,
+            clip_from_world: view.clip_from_view * view.view_from_world,
+            eye: rays.eye,
             box_count: self.boxes.len() as u32,
             zenith: self.environment.zenith,
             light_count: self.lights.len() as u32,
@@ -55,6 +61,12 @@ impl Scene {
             padding0: 0.0,
             ground: self.environment.ground,
             padding1: 0.0,
+            ray_forward: rays.forward,
+            padding2: 0.0,
+            ray_right: rays.right,
+            padding3: 0.0,
+            ray_up: rays.up,
+            padding4: 0.0,
         }
     }
 }

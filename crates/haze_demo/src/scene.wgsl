@@ -11,7 +11,6 @@
 
 struct Scene {
     clip_from_world: mat4x4f,
-    world_from_clip: mat4x4f,
     eye: vec3f,
     box_count: u32,
     zenith: vec3f,
@@ -20,6 +19,13 @@ struct Scene {
     padding0: f32,
     ground: vec3f,
     padding1: f32,
+    // Vectors at view depth 1: camera_rays.rs.
+    ray_forward: vec3f,
+    padding2: f32,
+    ray_right: vec3f,
+    padding3: f32,
+    ray_up: vec3f,
+    padding4: f32,
 }
 
 @group(0) @binding(0) var<uniform> scene: Scene;
@@ -35,6 +41,7 @@ const AMBIENT_REACH: f32 = 0.7;
 const SUN_DISTANCE: f32 = 60.0;
 const SUN_SPREAD: f32 = 0.02;
 const WIDEST_PIXEL: f32 = 0.1;
+const MIN_LIGHT_RADIUS: f32 = 0.02;
 
 fn to_local(b: Box, v: vec3f) -> vec3f {
     return vec3f(v.x * b.cosine + v.z * b.sine, v.y, v.z * b.cosine - v.x * b.sine);
@@ -135,8 +142,10 @@ fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
         var distance = SUN_DISTANCE;
         var spread = SUN_SPREAD;
         if lights[i].directional < 0.5 {
-            distance = length(lights[i].position - world);
-            spread = lights[i].radius / max(distance, 0.1);
+            // A ray ends at the body of its light, which may stand in a surface.
+            let to_light = length(lights[i].position - world);
+            distance = to_light - max(lights[i].radius, MIN_LIGHT_RADIUS);
+            spread = lights[i].radius / max(to_light, 0.1);
         }
         // An empty mask instead of a branch: llvmpipe executes both sides of a branch, but leaves a loop once no lane
         // is active.
@@ -215,8 +224,7 @@ const NO_BOX: f32 = -1.0;
 // Returns the direction of the ray through a position in the image, pixels.
 fn ray_direction(place: vec2f) -> vec3f {
     let uv = place * 2.0 / vec2f(textureDimensions(paint));
-    let far = scene.world_from_clip * vec4f(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, 1.0, 1.0);
-    return normalize(far.xyz / far.w - scene.eye);
+    return normalize(scene.ray_forward + scene.ray_right * (uv.x * 2.0 - 1.0) + scene.ray_up * (1.0 - uv.y * 2.0));
 }
 
 // Returns the point at which the ray meets the plane of a face.

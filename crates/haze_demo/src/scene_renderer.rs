@@ -1,7 +1,7 @@
 //! GPU renderer of the demo scene. Three passes: paint (reflectance at 2x2 samples per pixel), depth (depth buffer and
 //! linear view depth at pixel centres), and light.
 
-use glam::{UVec2, Vec3};
+use glam::UVec2;
 
 use super::boxes::{MAX_BOXES, SceneBox};
 use super::occluders::Occluders;
@@ -139,8 +139,7 @@ impl SceneRenderer {
     /// Records all passes of a scene. At most once per targets and submission, since the uniforms are written by the
     /// queue.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &SceneTargets, scene: &Scene, view: &View) {
-        let eye = view.view_from_world.inverse().transform_point3(Vec3::ZERO);
-        let uniform = scene.uniform(view.clip_from_view * view.view_from_world, eye);
+        let uniform = scene.uniform(view);
         let mut boxes = [SceneBox::default(); MAX_BOXES];
         boxes[..scene.boxes.len()].copy_from_slice(&scene.boxes);
         let mut lights = [LightUniform::default(); MAX_LIGHTS];

@@ -3,7 +3,8 @@
 use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
 
 use super::boxes::{
-    AMBIENT_REACH, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
+    AMBIENT_REACH, MIN_LIGHT_RADIUS, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance,
+    box_interval,
 };
 use super::occluders::{BoxMask, indices};
 use super::scene::Scene;
@@ -161,11 +162,12 @@ impl Scene {
         if facing <= 0.0 || sample.attenuation <= 0.0 {
             return Vec3::ZERO;
         }
+        // A ray ends at the body of its light, which may stand in a surface.
         let (distance, spread) = if light.directional > 0.5 {
             (SUN_DISTANCE, SUN_SPREAD)
         } else {
             let distance = (light.position - world).length();
-            (distance, light.radius / distance.max(0.1))
+            (distance - light.radius.max(MIN_LIGHT_RADIUS), light.radius / distance.max(0.1))
         };
         let boxes = self.occluders.at(1 + index, world);
         let ray = ShadowRay { origin: world + normal * 2.0e-3, direction: sample.direction, distance, spread };
