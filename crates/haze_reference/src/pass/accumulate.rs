@@ -8,16 +8,28 @@ use crate::sprite::SpriteFragment;
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::normal::accumulation_from_normal;
-use haze::settings::{AccumulationFormat, BlendOrder};
+use haze::settings::{AccumulationFormat, BlendOrder, RenderPath};
 use haze::view_setup::{AttachmentRole, AttachmentSet, TexelGrid};
 
 impl VisibleSystem<'_> {
-    /// Textures of the accumulation target, by role.
+    /// Textures of the accumulation target, by role. A blend unit rounds to the target's format at every layer; the path
+    /// `tiled` sums in f32 and rounds once. `auto` rounds as `raster` does.
     pub fn accumulate(&self, reduced_depth: &Image<f32>) -> AccumulatedTextures {
         let set = AttachmentSet::of(&self.settings);
+        let rounds_once = self.settings.path == RenderPath::Tiled;
         AttachmentRole::ALL.map(|role| {
-            let blended = |fragment, weight, texel| self.blended(role, fragment, weight, texel);
-            set.contains(role).then(|| self.blend(reduced_depth, blended))
+            let format = self.format(role);
+            let blended = |fragment, weight, texel| {
+                let sum = self.blended(role, fragment, weight, texel);
+                if rounds_once { sum } else { quantise(format, sum) }
+            };
+            set.contains(role).then(|| {
+                let mut target = self.blend(reduced_depth, blended);
+                if rounds_once {
+                    target.for_each(|_, texel| *texel = quantise(format, *texel));
+                }
+                target
+            })
         })
     }
 
@@ -31,27 +43,31 @@ impl VisibleSystem<'_> {
         })
     }
 
-    /// Texel of the texture with this role after one more fragment. `weight`: weight of its normal.
+    fn format(&self, role: AttachmentRole) -> AccumulationFormat {
+        match role {
+            AttachmentRole::NormalAndAmount | AttachmentRole::SixWay => self.settings.accumulate.format,
+            AttachmentRole::Weights => AccumulationFormat::Rgba16Float,
+        }
+    }
+
+    /// Texel of the texture with this role after one more fragment, before rounding. `weight`: weight of its normal.
     fn blended(&self, role: AttachmentRole, fragment: SpriteFragment, weight: f32, texel: Vec4) -> Vec4 {
         let accumulate = &self.settings.accumulate;
         let SpriteFragment { normal, six_way, amount } = fragment;
         let weighted = amount * weight;
-        let (format, source) = match role {
+        let source = match role {
             AttachmentRole::NormalAndAmount if self.settings.is_six_way() => {
-                (accumulate.format, (six_way.positive * weighted).extend(amount))
+                (six_way.positive * weighted).extend(amount)
             }
-            AttachmentRole::NormalAndAmount => {
-                (accumulate.format, accumulation_from_normal(accumulate.encoding, normal, amount, weight))
-            }
-            AttachmentRole::SixWay => (accumulate.format, (six_way.negative * weighted).extend(weighted)),
-            AttachmentRole::Weights => (AccumulationFormat::Rgba16Float, Vec4::splat(weighted)),
+            AttachmentRole::NormalAndAmount => accumulation_from_normal(accumulate.encoding, normal, amount, weight),
+            AttachmentRole::SixWay => (six_way.negative * weighted).extend(weighted),
+            AttachmentRole::Weights => Vec4::splat(weighted),
         };
-        let blended = match (self.settings.order(), role) {
+        match (self.settings.order(), role) {
             (BlendOrder::Sorted, _) => premultiplied_over(source, texel),
             (BlendOrder::Weighted, AttachmentRole::NormalAndAmount) => weighted_sum(source, texel),
             (BlendOrder::Weighted, _) => source + texel,
-        };
-        quantise(format, blended)
+        }
     }
 
     /// Blends `f(fragment, weight, texel)` of every fragment into a target.
