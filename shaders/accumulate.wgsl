@@ -25,8 +25,12 @@ override OVERDRAW: bool = false;
 const OVERDRAW_STEP: f32 = 1.0 / 255.0;
 
 @vertex
-fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex {
-    var out = sprite_vertex(particle, index, system.target_from_ndc, 1.0 / f32(system.scale));
+fn vertex(
+    particle: Particle,
+    @builtin(instance_index) index: u32,
+    @builtin(vertex_index) corner: u32,
+) -> SpriteVertex {
+    var out = sprite_vertex(particle, index, corner, system.target_from_ndc, 1.0 / f32(system.scale));
     // The x of a hidden sprite keeps it outside the clip volume.
     if !HOST_DEPTH {
         // Depth in the units of the reduced target.

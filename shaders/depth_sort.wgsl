@@ -24,7 +24,8 @@ fn depth_keys(@builtin(global_invocation_id) invocation: vec3u) {
     }
     let position = particles[tiles.first + 2u * index].xyz;
     let view_z = (system.view_from_particles * vec4f(position, 1.0)).z;
-    keys[index] = ~front_to_back_bits(view_z);
+    // Particles that are not drawn come last: their indices are higher than those of drawn ones with the same key.
+    keys[index] = select(0xffffffffu, ~front_to_back_bits(view_z), index < system.alive_count);
     indices[index] = index;
 }
 

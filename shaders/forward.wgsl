@@ -16,8 +16,12 @@ override AGE_COLOUR: bool = false;
 override BLEND_MODE: u32 = BLEND_MODE_ALPHA;
 
 @vertex
-fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex {
-    return sprite_vertex(particle, index, vec4f(1.0, 1.0, 0.0, 0.0), 1.0);
+fn vertex(
+    particle: Particle,
+    @builtin(instance_index) index: u32,
+    @builtin(vertex_index) corner: u32,
+) -> SpriteVertex {
+    return sprite_vertex(particle, index, corner, vec4f(1.0, 1.0, 0.0, 0.0), 1.0);
 }
 
 @fragment

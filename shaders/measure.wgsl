@@ -87,7 +87,8 @@ fn sum_particles(
     @builtin(local_invocation_index) local: u32,
 ) {
     var sum = ExtentSums(vec4f(0.0), 0.0);
-    for (var index = invocation.x; index < measure.count; index += measure.workgroups * WORKGROUP) {
+    let count = min(measure.count, system.alive_count);
+    for (var index = invocation.x; index < count; index += measure.workgroups * WORKGROUP) {
         let particle = sized_particle(index);
         if particle.w > 0.0 {
             let weight = extent_weight(amount_of(index), particle.w, -particle.z, view.near);
@@ -137,7 +138,8 @@ fn combine_sums(@builtin(local_invocation_index) local: u32) {
 @compute @workgroup_size(256)
 fn farthest_particle(@builtin(global_invocation_id) invocation: vec3u) {
     var reach = 0.0;
-    for (var index = invocation.x; index < measure.count; index += measure.workgroups * WORKGROUP) {
+    let count = min(measure.count, system.alive_count);
+    for (var index = invocation.x; index < count; index += measure.workgroups * WORKGROUP) {
         let particle = sized_particle(index);
         if particle.w > 0.0 {
             let back = -particle.z + particle.w;

@@ -79,7 +79,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         let in_front = optical_depth_in_front(system.front_knots, -centre.z, system.smoke_near, system.smoke_far);
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
-    let visible = !placed.hidden && all(first < last);
+    let visible = !placed.hidden && index < system.alive_count && all(first < last);
     if visible {
         sprites[index] = sprite;
     } else {

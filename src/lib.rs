@@ -78,7 +78,8 @@ pub use assets::material_assets::MaterialAssets;
 pub use assets::{builtin, image, noise, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{
-    Bounds, EmitterSnapshot, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View,
+    AliveCount, Bounds, EmitterSnapshot, Frame, Light, LightKind, Material, Particle, ParticleBuffer, Particles,
+    SceneDepth, System, View,
 };
 pub use renderer::{
     Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,

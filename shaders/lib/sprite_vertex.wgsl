@@ -144,9 +144,10 @@ fn trimmed_extent(frames: FlipbookFrames, lod: f32) -> vec4f {
     return reach;
 }
 
-// Computes one corner of a sprite. `target_from_ndc` maps the view's NDC to the target's.
+// Computes one corner of a sprite. `index` is that of its particle. `target_from_ndc` maps the view's NDC to the target's.
 fn sprite_vertex(
     particle: Particle,
+    index: u32,
     corner_index: u32,
     target_from_ndc: vec4f,
     texels_per_pixel: f32,
@@ -154,7 +155,7 @@ fn sprite_vertex(
     var out: SpriteVertex;
     let sprite = project_sprite(particle, texels_per_pixel);
     // Hidden sprites collapse outside the clip volume.
-    if sprite.hidden {
+    if sprite.hidden || index >= system.alive_count {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
         return out;
     }

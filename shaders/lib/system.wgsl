@@ -56,9 +56,10 @@ struct System {
     march_steps: u32,
     noise_octaves: u32,
     depth_weight: f32,
+    // Particles from this index on are not drawn. Copied from a host's buffer if only the GPU knows it.
+    alive_count: u32,
     padding0: f32,
     padding1: f32,
-    padding2: f32,
     // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
     // Metres behind the scene at which sprites still show, under the curve `always`.

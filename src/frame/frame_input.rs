@@ -135,27 +135,49 @@ impl<'a> System<'a> {
     }
 }
 
+/// Particles on the GPU, in the layout of [`Particle`]. With `STORAGE` usage and an `offset` that is a multiple of 16, the
+/// GPU measures them, and the smoke is lit as that of a slice; without, as if it filled `System::bounds`.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticleBuffer<'a> {
+    /// Contains `count` particles from `offset` on. `VERTEX` usage.
+    pub buffer: &'a wgpu::Buffer,
+    /// Bytes before the first particle: a multiple of 4, or of 16 if compute shaders read the buffer because of `path` or
+    /// `is_sorted`.
+    pub offset: u64,
+    /// Number of particles to draw; the largest number with `alive`.
+    pub count: u32,
+    /// Number of particles to draw if only the GPU knows it, such as the survivors of a simulation. `None`: `count`.
+    pub alive: Option<AliveCount<'a>>,
+    /// True if the particles are ordered back to front. If they are not and their order matters, the GPU sorts them, at
+    /// equal depth by index. That needs compute shaders and `STORAGE` usage.
+    pub is_sorted: bool,
+}
+
+impl<'a> ParticleBuffer<'a> {
+    /// Unsorted particles from the start of a buffer.
+    pub const fn new(buffer: &'a wgpu::Buffer, count: u32) -> Self {
+        Self { buffer, offset: 0, count, alive: None, is_sorted: false }
+    }
+}
+
+/// A number of particles in a GPU buffer: a `u32`, such as the instance count of an indirect draw. The first particles of
+/// the buffer are drawn, up to `count`. [`Renderer::prepare`](crate::Renderer::prepare) records a copy of it.
+#[derive(Clone, Copy, Debug)]
+pub struct AliveCount<'a> {
+    /// `COPY_SRC` usage.
+    pub buffer: &'a wgpu::Buffer,
+    /// Bytes before the number, a multiple of 4.
+    pub offset: u64,
+}
+
 /// Source of the sprites.
 #[derive(Clone, Copy, Debug)]
 pub enum Particles<'a> {
     /// Particles in memory. [`Renderer::prepare`](crate::Renderer::prepare) sorts and uploads them. A sprite with a
     /// number that is not finite or out of range is skipped.
     Slice(&'a [Particle]),
-    /// Particles on the GPU, in the layout of [`Particle`], with `VERTEX` usage. Requires `System::bounds`. With
-    /// `STORAGE` usage and an `offset` that is a multiple of 16, the GPU measures them, and the smoke is lit as that of a
-    /// slice; without, as if it filled `bounds`.
-    Buffer {
-        /// Contains `count` particles from `offset` on.
-        buffer: &'a wgpu::Buffer,
-        /// Bytes before the first particle: a multiple of 4, or of 16 if compute shaders read the buffer because of
-        /// `path` or `is_sorted`.
-        offset: u64,
-        /// Number of particles to draw.
-        count: u32,
-        /// True if the particles are ordered back to front. If they are not and their order matters, the GPU sorts
-        /// them, at equal depth by index. That needs compute shaders and `STORAGE` usage.
-        is_sorted: bool,
-    },
+    /// Particles on the GPU. Requires `System::bounds`.
+    Buffer(ParticleBuffer<'a>),
     /// Particles of an emitter at one time. The path `tiled` evaluates them on the GPU, with differences from
     /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre
     /// and second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is
@@ -164,17 +186,17 @@ pub enum Particles<'a> {
 }
 
 impl Particles<'_> {
-    /// Number of particles, including invisible ones.
+    /// Number of particles, including invisible ones and all that a buffer has room for.
     pub fn count(&self) -> u32 {
         match *self {
             Self::Slice(particles) => particles.len() as u32,
-            Self::Buffer { count, .. } => count,
+            Self::Buffer(particles) => particles.count,
             Self::Emitter(emission) => emission.count(),
         }
     }
 
     /// True for a buffer that is not sorted although its order matters.
     pub fn need_sorting(&self, settings: &Settings) -> bool {
-        matches!(self, Self::Buffer { is_sorted: false, .. }) && settings.order() == BlendOrder::Sorted
+        matches!(self, Self::Buffer(ParticleBuffer { is_sorted: false, .. })) && settings.order() == BlendOrder::Sorted
     }
 }

@@ -38,11 +38,9 @@ impl Instances {
     ) -> Option<Sprites> {
         let loops = settings.sprite.debug_loop;
         let particles = match particles {
-            Particles::Buffer { buffer, offset, count, is_sorted } => {
+            Particles::Buffer(particles) => {
                 self.buffer = None;
-                let by_view_depth = false;
-                let sprites = Sprites { buffer: buffer.clone(), offset, count, loops, is_sorted, by_view_depth };
-                return (count > 0).then_some(sprites);
+                return (particles.count > 0).then(|| Sprites::of_host(&particles, loops));
             }
             Particles::Slice(particles) => particles,
             Particles::Emitter(emission) => {

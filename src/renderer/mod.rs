@@ -1,5 +1,6 @@
 //! GPU renderer: records a frame, pass by pass.
 
+mod alive_copy;
 mod auto;
 mod context;
 mod counts;
@@ -198,6 +199,8 @@ impl Renderer {
             }
             let Some(passes) = state.passes() else { continue };
             self.order.push(VisibleSystem { state: index, distance: state.distance() });
+            // Copies the number of a host's particles, if only the GPU knows it.
+            state.alive().iter().for_each(|copy| copy.record(encoder));
             // Measures a host's particles, which the CPU cannot read.
             state.measure().iter().for_each(|pass| pass.record(encoder, timing));
             // Evaluates an emitter's particles, or sorts a host's particles back to front.

@@ -1,7 +1,7 @@
 //! Sprites, shared by accumulate and forward, and the variants of `shaders/lib/sprite_vertex.wgsl` and
 //! `sprite_fragment.wgsl`.
 
-use crate::frame::Particle;
+use crate::frame::{Particle, ParticleBuffer};
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use crate::settings::{FadeCurve, Settings, SpriteAnimation, Technique};
 
@@ -76,6 +76,12 @@ pub(crate) struct Sprites {
 }
 
 impl Sprites {
+    /// Returns the sprites of a host's buffer.
+    pub fn of_host(particles: &ParticleBuffer<'_>, loops: u32) -> Self {
+        let &ParticleBuffer { buffer, offset, count, is_sorted, .. } = particles;
+        Self { buffer: buffer.clone(), offset, count, loops, is_sorted, by_view_depth: false }
+    }
+
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.buffer.slice(self.offset..));
         for _ in 0..self.loops {

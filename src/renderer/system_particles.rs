@@ -51,7 +51,7 @@ impl SystemParticles {
                 space.world_bounds(&emission.bounds(system.settings.sprite_extent()))
             }
             // `validate` refuses a buffer without bounds.
-            (None, Particles::Slice(_) | Particles::Buffer { .. }) => self.measures.bounds,
+            (None, Particles::Slice(_) | Particles::Buffer(_)) => self.measures.bounds,
         }
     }
 
@@ -106,9 +106,9 @@ impl SystemParticles {
         system: &wgpu::Buffer,
     ) -> Option<Measure> {
         let FrameContext { gpu, shared, .. } = context;
-        let Particles::Buffer { buffer, offset, count, is_sorted } = host.particles else { return None };
-        let tiled = shared.pipelines.tiled.as_ref().filter(|_| is_readable_by_compute(buffer, offset))?;
-        let sprites = Sprites { buffer: buffer.clone(), offset, count, loops: 1, is_sorted, by_view_depth: false };
+        let Particles::Buffer(particles) = host.particles else { return None };
+        let tiled = shared.pipelines.tiled.as_ref().filter(|_| is_readable_by_compute(&particles))?;
+        let sprites = Sprites::of_host(&particles, 1);
         let fade_distance = settings.soft_fade.max_distance();
         Some(self.measured.write(gpu, tiled, (&sprites, groups, system), host.depth.is_some(), fade_distance))
     }
@@ -143,7 +143,7 @@ impl SystemParticles {
 fn known_particles<'a>(particles: Particles<'a>, sample: &'a [Particle]) -> Option<(&'a [Particle], u32)> {
     match particles {
         Particles::Slice(particles) => Some((particles, 1)),
-        Particles::Buffer { .. } => None,
+        Particles::Buffer(_) => None,
         Particles::Emitter(emission) => Some((sample, emission.step)),
     }
 }

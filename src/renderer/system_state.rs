@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec3};
 
+use super::alive_copy::AliveCopy;
 use super::auto::{PathChoice, PathChooser, PathWorkload, estimate_workload};
 use super::context::Shared;
 use super::counts::{FrameCounts, Overdraw};
@@ -59,6 +60,7 @@ struct PreparedSystem {
     choice: Option<PathChoice>,
     /// Number of particles that each one of `sample` represents, if the GPU evaluates the emitter; otherwise `None`.
     sampled: Option<u32>,
+    alive: Option<AliveCopy>,
     measure: Option<Measure>,
     particle_pass: Option<ParticlePass>,
     passes: SystemPasses,
@@ -97,6 +99,11 @@ impl SystemState {
     /// Returns this frame's passes; `None` if the system is out of sight.
     pub fn passes(&self) -> Option<&SystemPasses> {
         self.prepared.as_ref().map(|prepared| &prepared.passes)
+    }
+
+    /// Returns the copy of the number of a host's particles, if only the GPU knows it. It comes before all passes.
+    pub fn alive(&self) -> Option<&AliveCopy> {
+        self.prepared.as_ref()?.alive.as_ref()
     }
 
     /// Returns the pass that measures a host's particles. It runs before all other passes.
@@ -275,6 +282,7 @@ impl SystemState {
             trim,
             choice,
             sampled,
+            alive: AliveCopy::new(&system.particles, &self.uniform),
             measure,
             particle_pass,
             passes,

@@ -13,7 +13,7 @@ use crate::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
     validate_world_from_particles,
 };
-use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
+use crate::frame::{AliveCount, Frame, Particle, ParticleBuffer, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, RenderPath, Technique};
 use crate::view_setup::AttachmentSet;
 
@@ -174,7 +174,7 @@ pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &System<'_>) -> 
     let Some(tiled) = &shared.pipelines.tiled else { return Some(PathReason::TiledUnsupported) };
     let (count, is_readable) = match system.particles {
         Particles::Slice(particles) => (particles.len() as u64, true),
-        Particles::Buffer { buffer, offset, count, .. } => (u64::from(count), is_readable_by_compute(buffer, offset)),
+        Particles::Buffer(particles) => (u64::from(particles.count), is_readable_by_compute(&particles)),
         Particles::Emitter(emission) => (u64::from(emission.count()), true),
     };
     if !is_readable {
@@ -183,9 +183,25 @@ pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &System<'_>) -> 
     (count > tiled.limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES).then_some(PathReason::TooManyParticles)
 }
 
-/// Returns true if compute shaders can read particles from this offset of a host's buffer.
-pub(crate) fn is_readable_by_compute(buffer: &wgpu::Buffer, offset: u64) -> bool {
-    buffer.usage().contains(wgpu::BufferUsages::STORAGE) && offset.is_multiple_of(PARTICLE_ALIGNMENT)
+/// Returns true if compute shaders can read a host's particles.
+pub(crate) fn is_readable_by_compute(particles: &ParticleBuffer<'_>) -> bool {
+    particles.buffer.usage().contains(wgpu::BufferUsages::STORAGE)
+        && particles.offset.is_multiple_of(PARTICLE_ALIGNMENT)
+}
+
+fn validate_alive_count(alive: &AliveCount<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
+    let AliveCount { buffer, offset } = *alive;
+    if !offset.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT) {
+        let expected = format!("a multiple of {}", wgpu::COPY_BUFFER_ALIGNMENT);
+        return Err(FieldError::new(field("particles.alive.offset"), offset, expected));
+    }
+    let needed = offset.saturating_add(wgpu::COPY_BUFFER_ALIGNMENT);
+    if buffer.size() < needed || !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
+        let problem = format!("the buffer has {} bytes and usage {:?}", buffer.size(), buffer.usage());
+        let expected = format!("at least {needed} bytes and usage {:?}", wgpu::BufferUsages::COPY_SRC);
+        return Err(FieldError::from_problem(field("particles.alive"), problem, expected));
+    }
+    Ok(())
 }
 
 fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
@@ -216,7 +232,7 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
                 return Err(FieldError::from_problem(field("particles"), problem, expected));
             }
         }
-        Particles::Buffer { buffer, offset, count, .. } => {
+        Particles::Buffer(ParticleBuffer { buffer, offset, count, alive, .. }) => {
             validate_count(u64::from(count), max_count, field)?;
             if system.bounds.is_none() {
                 let expected = "the bounding box of the particles: the CPU does not read a GPU buffer";
@@ -235,6 +251,9 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
                 let problem = format!("the buffer has {} bytes and usage {:?}", buffer.size(), buffer.usage());
                 let expected = format!("at least {needed} bytes and usage {usage:?}");
                 return Err(FieldError::from_problem(field("particles"), problem, expected));
+            }
+            if let Some(alive) = alive {
+                validate_alive_count(&alive, field)?;
             }
         }
     }

@@ -4,7 +4,9 @@ mod textures;
 
 use glam::{UVec2, Vec4};
 use haze::image::Image;
-use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, Timing, wgpu};
+use haze::{
+    Context, Descriptor, Error, Frame, Particle, ParticleBuffer, Particles, Renderer, SceneDepth, System, Timing, wgpu,
+};
 use haze_demo::headless::Headless;
 
 pub use self::textures::convert_to_rgba16float;
@@ -170,7 +172,11 @@ impl Host {
     /// Draws particles from a GPU buffer in their given order, without sorting.
     pub fn draw_buffer(&mut self, gpu: &Headless, scene: &TestScene, particles: &[Particle]) -> Result<(), Error> {
         let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
-        self.draw_particles(gpu, scene, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true })
+        self.draw_particles(
+            gpu,
+            scene,
+            Particles::Buffer(ParticleBuffer { is_sorted: true, ..ParticleBuffer::new(&buffer, count) }),
+        )
     }
 
     /// Records `prepare`, the first half of a frame.

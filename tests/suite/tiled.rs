@@ -14,7 +14,7 @@ use glam::{Vec3, Vec4, vec3};
 use haze::builtin;
 use haze::image::Image;
 use haze::settings::*;
-use haze::{Bounds, Context, Error, Particle, Particles, wgpu};
+use haze::{Bounds, Context, Error, Particle, ParticleBuffer, Particles, wgpu};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 
@@ -218,7 +218,7 @@ fn tiled_path_is_deterministic_and_sorts_buffers() {
             bytes.extend_from_slice(bytemuck::cast_slice(particles));
             let buffer = storage_buffer(&bytes);
             let particles =
-                Particles::Buffer { buffer: &buffer, offset, count: particles.len() as u32, is_sorted: false };
+                Particles::Buffer(ParticleBuffer { offset, ..ParticleBuffer::new(&buffer, particles.len() as u32) });
             host.draw_particles(gpu(), &scene, particles).unwrap();
             host.picture(gpu()).unwrap()
         };
@@ -265,7 +265,7 @@ fn devices_and_buffers_without_tiles_are_errors_on_the_tiled_path() {
     scene.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
     let mut host = Host::new(gpu(), &scene).unwrap();
     let buffer = storage_buffer(&[0; 128]);
-    let particles = Particles::Buffer { buffer: &buffer, offset: 4, count: 1, is_sorted: false };
+    let particles = Particles::Buffer(ParticleBuffer { offset: 4, ..ParticleBuffer::new(&buffer, 1) });
     let message = refused(host.draw_particles(gpu(), &scene, particles));
     assert!(message.contains("particles.offset") && message.contains("16"), "{message}");
     let vertices = gpu().device.create_buffer(&wgpu::BufferDescriptor {
@@ -274,7 +274,7 @@ fn devices_and_buffers_without_tiles_are_errors_on_the_tiled_path() {
         usage: wgpu::BufferUsages::VERTEX,
         mapped_at_creation: false,
     });
-    let particles = Particles::Buffer { buffer: &vertices, offset: 0, count: 1, is_sorted: false };
+    let particles = Particles::Buffer(ParticleBuffer::new(&vertices, 1));
     let message = refused(host.draw_particles(gpu(), &scene, particles));
     assert!(message.contains("STORAGE"), "{message}");
 }

@@ -182,7 +182,7 @@ fn projection() -> Vec<Formula> {
             name: "sprite_vertex",
             file: "lib/sprite_vertex.wgsl",
             wgsl: with_particle!(
-                "let v = sprite_vertex(p, u32(x(9)), vec4f(1.0, 1.0, 0.0, 0.0), 0.5); \
+                "system.alive_count = 7u; let v = sprite_vertex(p, u32(x(10)), u32(x(9)), vec4f(1.0, 1.0, 0.0, 0.0), 0.5); \
                  if v.position.x == 2.0 && v.position.w == 1.0 { return; } \
                  y2(0, pixel_from_ndc(v.position.xy / v.position.w, view.size)); y2(2, v.uv); y(4, v.position.w);"
             ),
@@ -190,7 +190,8 @@ fn projection() -> Vec<Formula> {
                 let settings = technique(x);
                 let visible = with_billboards(&settings);
                 let (projector, index) = (visible.projector(), x[9] as usize);
-                let Some(sprite) = projector.project(&particle(x), 0.5) else { return vec![0.0; 5] };
+                let sprite = projector.project(&particle(x), 0.5).filter(|_| (x[10] as u32) < 7);
+                let Some(sprite) = sprite else { return vec![0.0; 5] };
                 if settings.technique.is_sphere() {
                     let (low, high) = projector.sphere_rectangle(&sprite, 0.5);
                     let corner = [Vec2::new(low.x, high.y), high, low, Vec2::new(high.x, low.y)][index];
@@ -203,7 +204,7 @@ fn projection() -> Vec<Formula> {
                 vec![pixel.x, pixel.y, uv.x, uv.y, -projector.clamped_to_near_plane(sprite.centre).z]
             },
             cases: {
-                let corners = random(particles().len() as u32, &[(0.0, 3.99)]);
+                let corners = random(particles().len() as u32, &[(0.0, 3.99), (0.0, 8.99)]);
                 particles().into_iter().zip(corners).map(|(case, corner)| [case, corner].concat()).collect()
             },
             // Corners close to the near plane are far outside the view.
@@ -211,6 +212,7 @@ fn projection() -> Vec<Formula> {
             mutants: &[
                 ("place.x * out.rotation.x - place.y", "place.x * out.rotation.x + place.y"),
                 ("min(centre.z, -view.near)", "centre.z"),
+                (" || index >= system.alive_count", ""),
                 ("let place = trimmed_corner(corner, ", "let place = trimmed_corner(corner, 0.5 * "),
             ],
         },

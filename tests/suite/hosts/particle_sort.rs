@@ -4,7 +4,7 @@ use glam::camera::rh;
 use glam::{Mat4, Vec3, vec3};
 use haze::frame::particle_bounds;
 use haze::settings::*;
-use haze::{Bounds, Particle, Particles, wgpu};
+use haze::{AliveCount, Bounds, Particle, ParticleBuffer, Particles, wgpu};
 use haze_demo::headless::Headless;
 
 use super::warm_up::warm_up;
@@ -13,7 +13,7 @@ use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::psnr;
 use crate::resource_counter;
 use crate::test_host::Host;
-use crate::test_scene::TestScene;
+use crate::test_scene::{BACKDROP, TestScene};
 
 const BOUNDS: Bounds = Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) };
 
@@ -60,7 +60,11 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
             let particles = repeated_particles(&scene, count);
             let mut drawn = |particles: &[Particle], is_sorted| {
                 let buffer = buffer(gpu(), particles, offset, READ);
-                let particles = Particles::Buffer { buffer: &buffer, offset, count: count as u32, is_sorted };
+                let particles = Particles::Buffer(ParticleBuffer {
+                    offset,
+                    is_sorted,
+                    ..ParticleBuffer::new(&buffer, count as u32)
+                });
                 host.draw_particles(gpu(), &scene, particles).unwrap();
                 host.picture(gpu()).unwrap()
             };
@@ -77,6 +81,62 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
     gpu().check().unwrap();
 }
 
+/// Buffer with a number that the GPU may have written.
+fn number_buffer(number: u32, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let usage = usage | wgpu::BufferUsages::COPY_DST;
+    let buffer =
+        gpu().device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 8, usage, mapped_at_creation: false });
+    gpu().queue.write_buffer(&buffer, 4, &number.to_le_bytes());
+    buffer
+}
+
+#[test]
+fn only_living_particles_are_drawn_measured_and_sorted() {
+    let mut scene = TestScene::new(SIZE);
+    scene.bounds = Some(BOUNDS);
+    let (living, room) = (scene.particles.len() as u32, scene.particles.len() as u32 + 500);
+    let mut particles = scene.particles.clone();
+    // Dead particles keep their last state: large, opaque, and in front.
+    let dead = Particle { position: vec3(0.0, 0.0, -3.5), radius: 1.0, amount: 1.0, ..Particle::default() };
+    particles.resize(room as usize, dead);
+    let buffer = buffer(gpu(), &particles, 0, READ);
+    let tiled = [(RenderPath::Raster, false), (RenderPath::Forward, false), (RenderPath::Tiled, false)];
+    let cases = [(RenderPath::Raster, true), (RenderPath::Forward, true)];
+    for (path, is_sorted) in cases.into_iter().chain(tiled.into_iter().filter(|_| is_tiled_available())) {
+        scene.settings.path = path;
+        let mut host = Host::new(gpu(), &scene).unwrap();
+        let mut drawn = |count, alive: Option<u32>| {
+            let number = alive.map(|number| number_buffer(number, wgpu::BufferUsages::COPY_SRC));
+            let alive = number.as_ref().map(|buffer| AliveCount { buffer, offset: 4 });
+            let particles = ParticleBuffer { alive, is_sorted, ..ParticleBuffer::new(&buffer, count) };
+            host.draw_particles(gpu(), &scene, Particles::Buffer(particles)).unwrap();
+            host.picture(gpu()).unwrap()
+        };
+        let known = drawn(living, None);
+        let counted = drawn(room, Some(living));
+        // With more workgroups, the GPU adds up the extent of the smoke in another order.
+        let psnr = psnr(&counted, &known);
+        println!("{path:?}, sorted {is_sorted}: {psnr:.1} dB");
+        assert!(psnr >= 90.0, "{path:?}, sorted {is_sorted}: {psnr:.1} dB");
+        assert!(drawn(room, None) != counted, "{path:?}, sorted {is_sorted}");
+        // A number beyond the room reads no other memory.
+        assert!(drawn(living, Some(u32::MAX)) == known, "{path:?}, sorted {is_sorted}");
+        assert!(drawn(room, Some(0)).texels.iter().all(|&texel| texel == BACKDROP), "{path:?}, sorted {is_sorted}");
+    }
+    gpu().check().unwrap();
+    for (offset, usage, field) in [
+        (2, wgpu::BufferUsages::COPY_SRC, "systems[0].particles.alive.offset"),
+        (8, wgpu::BufferUsages::COPY_SRC, "systems[0].particles.alive"),
+        (4, wgpu::BufferUsages::STORAGE, "systems[0].particles.alive"),
+    ] {
+        let number = number_buffer(1, usage);
+        let alive = Some(AliveCount { buffer: &number, offset });
+        let particles = ParticleBuffer { alive, is_sorted: true, ..ParticleBuffer::new(&buffer, living) };
+        let drawn = Host::new(gpu(), &scene).unwrap().draw_particles(gpu(), &scene, Particles::Buffer(particles));
+        assert_eq!(rejected_field(drawn), field);
+    }
+}
+
 #[test]
 fn steady_frames_of_unsorted_particles_create_no_gpu_resources() {
     if !is_tiled_available() {
@@ -87,7 +147,7 @@ fn steady_frames_of_unsorted_particles_create_no_gpu_resources() {
     let mut host = Host::new(gpu(), &scene).unwrap();
     let buffer = buffer(gpu(), &repeated_particles(&scene, 500), 0, READ);
     let mut draw = |count| {
-        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false };
+        let particles = Particles::Buffer(ParticleBuffer::new(&buffer, count));
         host.draw_particles(gpu(), &scene, particles).unwrap();
     };
     draw(500);
@@ -108,7 +168,7 @@ fn host_buffers_that_cannot_be_sorted_are_rejected() {
     let refused = |gpu: &Headless, scene: &TestScene, usage, offset| {
         let buffer = buffer(gpu, &scene.particles, offset, usage);
         let count = scene.particles.len() as u32;
-        let particles = Particles::Buffer { buffer: &buffer, offset, count, is_sorted: false };
+        let particles = Particles::Buffer(ParticleBuffer { offset, ..ParticleBuffer::new(&buffer, count) });
         Host::new(gpu, scene).unwrap().draw_particles(gpu, scene, particles)
     };
     let webgl2 = Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty()).unwrap();
@@ -159,7 +219,7 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         let mut host = Host::new(gpu(), &scene).unwrap();
         let buffer = buffer(gpu(), &scene.particles, 0, READ);
         let count = scene.particles.len() as u32;
-        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false };
+        let particles = Particles::Buffer(ParticleBuffer::new(&buffer, count));
         host.draw_particles(gpu(), &scene, particles).unwrap();
         gpu().check().unwrap();
         let measured = psnr(&host.picture(gpu()).unwrap(), &slice);
@@ -168,7 +228,8 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         // A buffer that only the vertex stage may read is lit by its box.
         let vertices = self::buffer(gpu(), &scene.particles, 0, wgpu::BufferUsages::VERTEX);
         if path == RenderPath::Raster && name == "raster" {
-            let particles = Particles::Buffer { buffer: &vertices, offset: 0, count, is_sorted: true };
+            let particles =
+                Particles::Buffer(ParticleBuffer { is_sorted: true, ..ParticleBuffer::new(&vertices, count) });
             host.draw_particles(gpu(), &scene, particles).unwrap();
             let unmeasured = psnr(&host.picture(gpu()).unwrap(), &slice);
             assert!(unmeasured < 60.0, "{unmeasured:.1} dB: the box alone gives the same image");
@@ -189,7 +250,7 @@ fn first_frame_of_a_host_buffer_after_a_warm_up_compiles_no_pipeline() {
         let warm = host.renderer.context().pipeline_count();
         let buffer = buffer(gpu(), &scene.particles, 0, READ);
         let count = scene.particles.len() as u32;
-        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false };
+        let particles = Particles::Buffer(ParticleBuffer::new(&buffer, count));
         host.draw_particles(gpu(), &scene, particles).unwrap();
         assert_eq!(host.renderer.context().pipeline_count(), warm, "{}", path.name());
     }

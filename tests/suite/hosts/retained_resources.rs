@@ -2,7 +2,7 @@
 
 use glam::{Mat4, UVec2, Vec3, vec3};
 use haze::settings::*;
-use haze::{Bounds, Error, Frame, Particle, Particles, SceneDepth, Settings, System, View, wgpu};
+use haze::{Bounds, Error, Frame, Particle, ParticleBuffer, Particles, SceneDepth, Settings, System, View, wgpu};
 use haze_demo::headless::Headless;
 
 use super::{SIZE, encoder, rejected_field};
@@ -25,8 +25,11 @@ fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
             mapped_at_creation: false,
         });
         gpu().queue.write_buffer(&buffer, 0, &bytes);
-        let particles =
-            Particles::Buffer { buffer: &buffer, offset, count: scene.particles.len() as u32, is_sorted: true };
+        let particles = Particles::Buffer(ParticleBuffer {
+            offset,
+            is_sorted: true,
+            ..ParticleBuffer::new(&buffer, scene.particles.len() as u32)
+        });
         host.draw_particles(gpu(), &scene, particles).map(|()| host.picture(gpu()).unwrap())
     };
     let first = draw(0).unwrap();
@@ -51,7 +54,7 @@ fn invalid_offsets_in_a_host_buffer_are_rejected() {
         rejected_field(host.draw_particles(
             gpu(),
             &scene,
-            Particles::Buffer { buffer: &buffer, offset, count, is_sorted: true },
+            Particles::Buffer(ParticleBuffer { offset, is_sorted: true, ..ParticleBuffer::new(&buffer, count) }),
         ))
     };
     assert_eq!(refused(2, 1), "systems[0].particles.offset");

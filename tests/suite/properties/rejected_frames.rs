@@ -1,7 +1,7 @@
 //! Frames that are rejected.
 
 use glam::{Mat4, Vec3};
-use haze::{Bounds, Error, Particles, wgpu};
+use haze::{Bounds, Error, ParticleBuffer, Particles, wgpu};
 
 use super::SIZE;
 use crate::gpu::gpu;
@@ -57,7 +57,7 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     });
     let mut refused = |count, bounds| {
         scene.bounds = bounds;
-        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true };
+        let particles = Particles::Buffer(ParticleBuffer { is_sorted: true, ..ParticleBuffer::new(&buffer, count) });
         refusal(&mut host, &scene, particles).to_string()
     };
     assert!(refused(2, None).starts_with("systems[0].bounds: None"));

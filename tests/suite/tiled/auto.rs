@@ -2,7 +2,7 @@
 
 use glam::vec3;
 use haze::settings::*;
-use haze::{Bounds, Particles, PathCosts, PathModel, PathModelSource, PathReason};
+use haze::{Bounds, ParticleBuffer, Particles, PathCosts, PathModel, PathModelSource, PathReason};
 
 use super::{scene, storage_buffer};
 use crate::gpu::{gpu, is_tiled_available};
@@ -50,8 +50,7 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
     assert_eq!((choice.path, choice.reason), (RenderPath::Raster, PathReason::BufferNotReadable));
     let bytes: Vec<u8> = bytemuck::cast_slice(&scene.particles).to_vec();
     let (buffer, count) = (storage_buffer(&bytes), scene.particles.len() as u32);
-    host.draw_particles(gpu(), &scene, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false })
-        .unwrap();
+    host.draw_particles(gpu(), &scene, Particles::Buffer(ParticleBuffer::new(&buffer, count))).unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert!(choice.path == RenderPath::Tiled && choice.to_string().contains("unknown, assumed 16"), "{choice}");
     // If the settings name a path, `auto` makes no choice.

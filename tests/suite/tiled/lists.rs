@@ -3,7 +3,7 @@
 use glam::{UVec2, vec3};
 use haze::formula::uniforms::TilesUniform;
 use haze::settings::*;
-use haze::{Bounds, Particle, Particles, shader, wgpu};
+use haze::{Bounds, Particle, ParticleBuffer, Particles, shader, wgpu};
 
 use super::{scene, storage_buffer};
 use crate::gpu::{gpu, is_tiled_available};
@@ -37,12 +37,7 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
         host.renderer.context().set_cooperative_traversal(cooperative);
         let mut picture = |path| {
             scene.settings.path = path;
-            host.draw_particles(
-                gpu(),
-                &scene,
-                Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false },
-            )
-            .unwrap();
+            host.draw_particles(gpu(), &scene, Particles::Buffer(ParticleBuffer::new(&buffer, count))).unwrap();
             (host.picture(gpu()).unwrap(), host.renderer.memory_use().tiled.lists)
         };
         let (raster, _) = picture(RenderPath::Raster);
