@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::UVec2;
+use haze::FieldError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -198,6 +199,30 @@ impl Milliseconds {
             low + (high - low) * place.fract()
         };
         Some(Self { median: at(0.5), min, max, quartiles: [at(0.25), at(0.75)] })
+    }
+
+    /// Checks that ratios and spreads of the times are finite numbers.
+    ///
+    /// # Errors
+    /// Names the field, and `row` before it.
+    pub fn validate(&self, row: &str) -> Result<(), FieldError> {
+        /// Longest time, eleven days, and shortest, a picosecond.
+        const MAX: f64 = 1.0e9;
+        const MIN: f64 = 1.0e-9;
+        let [low, high] = self.quartiles;
+        for (field, value, min) in [
+            ("median", self.median, MIN),
+            ("min", self.min, 0.0),
+            ("max", self.max, 0.0),
+            ("quartiles[0]", low, 0.0),
+            ("quartiles[1]", high, 0.0),
+        ] {
+            if !(min..=MAX).contains(&value) {
+                let expected = format!("{min:?} to {MAX:?} milliseconds");
+                return Err(FieldError::new(format!("{row}.gpu_ms.{field}"), value, expected));
+            }
+        }
+        Ok(())
     }
 
     /// Half the distance between the quartiles, as a share of the median.
