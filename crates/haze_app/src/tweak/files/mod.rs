@@ -8,3 +8,6 @@ pub mod persistence;
 pub mod preset_thumbnails;
 pub mod value_spread;
 pub mod window_screenshot;
+
+#[cfg(all(test, target_os = "linux"))]
+mod special_targets;
