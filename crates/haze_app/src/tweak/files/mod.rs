@@ -9,5 +9,6 @@ pub mod preset_thumbnails;
 pub mod value_spread;
 pub mod window_screenshot;
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
+#[cfg(target_os = "linux")]
 mod special_targets;
