@@ -1,7 +1,12 @@
 //! Error types. Every message names the field, file or line, and says what would be right.
 
+mod io_reason;
+
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+
+pub(crate) use io_reason::LINK_LOOP;
+pub use io_reason::{io_expected, io_problem, io_reason, is_link_loop};
 
 /// Formats text from outside for a message of one line: control characters and marks that change the direction of
 /// writing are escaped, and a long text is cut.
@@ -126,7 +131,7 @@ pub enum Error {
     },
 
     /// A file could not be read or written.
-    #[error("{}: {error}", display_path(path))]
+    #[error("{}: {}", display_path(path), io_reason(error))]
     Io {
         /// File.
         path: PathBuf,

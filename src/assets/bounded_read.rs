@@ -1,10 +1,11 @@
 //! Bounded reading of user files: type and length are checked before the contents are read.
 
-use std::fs::{File, Metadata, OpenOptions};
+use std::fs::Metadata;
 use std::io::{self, ErrorKind, Read as _};
 use std::path::Path;
 
-use crate::error::{Error, one_line};
+use crate::assets::file_type::{self, nonblocking};
+use crate::error::{Error, io_problem, one_line};
 
 /// Reads a file of at most `max_bytes` bytes. Pipes, devices and folders are refused. `kind` names the expected file
 /// type in errors.
@@ -18,60 +19,30 @@ pub fn read(path: &Path, kind: &str, max_bytes: u64) -> Result<Vec<u8>, Error> {
         io(io::Error::new(ErrorKind::InvalidData, reason))
     };
     let check = |found: &Metadata| match found {
-        found if !found.is_file() => Err(refuse(format!("{}, not a file", kind_of(found)))),
+        found if !found.is_file() => Err(refuse(format!("{}, not a file", file_type::name(found)))),
         found if found.len() > max_bytes => Err(refuse(format!("{} bytes", found.len()))),
         _ => Ok(()),
     };
     // Checked by path first, and again on the open file in case the path was replaced in between.
     let found = std::fs::metadata(path).map_err(|error| match std::fs::read_link(path) {
         Ok(target) if error.kind() == ErrorKind::NotFound => {
-            let reason = format!("a link to {}, which is not there", one_line(target.display()));
+            let reason = format!("a link to {}, which is not there; expected a {kind}", one_line(target.display()));
             io(io::Error::new(ErrorKind::NotFound, reason))
         }
         _ => io(error),
     });
     check(&found?)?;
-    let file = open(path).map_err(io)?;
+    let file = nonblocking().read(true).open(path).map_err(io)?;
     check(&file.metadata().map_err(io)?)?;
     let mut bytes = Vec::new();
-    file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(io)?;
+    // Some files of /proc are files to the system, but cannot be read like one.
+    let read = file.take(max_bytes + 1).read_to_end(&mut bytes);
+    read.map_err(|error| refuse(format!("cannot be read: {}", io_problem(&error))))?;
     // The file may have grown since the check, or report no length.
     if bytes.len() as u64 > max_bytes {
         return Err(refuse(format!("more than {max_bytes} bytes")));
     }
     Ok(bytes)
-}
-
-/// `O_NONBLOCK`. Without it, opening a pipe blocks until a process opens it for writing.
-#[cfg(target_os = "linux")]
-const NONBLOCK: i32 = 0o4000;
-#[cfg(target_os = "macos")]
-const NONBLOCK: i32 = 4;
-
-/// Opens a path of any type without blocking.
-fn open(path: &Path) -> io::Result<File> {
-    let mut options = OpenOptions::new();
-    #[cfg(any(target_os = "linux", target_os = "macos"))]
-    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, NONBLOCK);
-    options.read(true).open(path)
-}
-
-fn kind_of(found: &Metadata) -> &'static str {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt as _;
-        let kind = found.file_type();
-        if kind.is_fifo() {
-            return "a pipe";
-        }
-        if kind.is_char_device() || kind.is_block_device() {
-            return "a device";
-        }
-        if kind.is_socket() {
-            return "a socket";
-        }
-    }
-    if found.is_dir() { "a folder" } else { "something else" }
 }
 
 #[cfg(all(test, target_os = "linux"))]
@@ -85,7 +56,10 @@ mod tests {
         assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
         let (opened, wait) = std::sync::mpsc::channel();
         let pipe = path.clone();
-        std::thread::spawn(move || opened.send(open(&pipe).map(|file| file.metadata().unwrap().is_file())));
+        std::thread::spawn(move || {
+            let file = nonblocking().read(true).open(&pipe);
+            opened.send(file.map(|file| file.metadata().unwrap().is_file()))
+        });
         let is_file = wait.recv_timeout(std::time::Duration::from_secs(10)).unwrap();
         assert!(!is_file.unwrap());
         assert!(read(&path, "PNG picture", 1).unwrap_err().to_string().contains("a pipe, not a file"));

@@ -3,6 +3,7 @@
 
 pub mod bounded_read;
 pub mod builtin;
+pub mod file_type;
 pub mod image;
 pub mod json;
 pub mod material_assets;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 use haze::builtin;
-use haze::image::{CompressionEffort, read_png, write_png};
+use haze::image::{read_png, write_baked_png};
 use haze::settings::CoverageMode;
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
@@ -117,7 +117,7 @@ fn committed_images_are_encoded_as_scripts_bake_encodes_them() {
         for entry in std::fs::read_dir(file(folder, "")).unwrap() {
             let committed = entry.unwrap().path();
             if committed.extension().is_some_and(|ending| ending == "png") {
-                write_png(&written, &read_png(&committed).unwrap(), CompressionEffort::Small).unwrap();
+                write_baked_png(&written, &read_png(&committed).unwrap()).unwrap();
                 let is_same = std::fs::read(&written).unwrap() == std::fs::read(&committed).unwrap();
                 assert!(is_same, "{} has other bytes; run scripts/bake", committed.display());
             }

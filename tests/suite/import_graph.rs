@@ -200,6 +200,37 @@ fn modules_without_a_device_do_not_use_wgpu() {
 }
 
 #[test]
+fn files_are_written_by_one_function() {
+    /// Calls that create, change or replace a file.
+    const CALLS: [&str; 9] = [
+        "fs::write(",
+        "fs::rename(",
+        "fs::copy(",
+        "fs::hard_link(",
+        "File::create",
+        "File::options",
+        "OpenOptions::new",
+        "save_with_format(",
+        ".save(",
+    ];
+    /// Files with such calls: `write_file`, options that do not block, and the lock, which keeps its file open.
+    const WRITERS: [&str; 3] = ["assets/image/atomic_write.rs", "assets/file_type.rs", "tweak/platform/lock_file.rs"];
+    let is_test = |file: &Path| {
+        let parts = file.with_extension("");
+        parts.iter().any(|part| ["tests", "testing", "special_targets"].iter().any(|name| part == *name))
+    };
+    let mut found = BTreeSet::new();
+    for (file, text) in crates().iter().flat_map(|folder| sources(folder)).filter(|(file, _)| !is_test(file)) {
+        // Methods of the tweaker, which do not take a path.
+        let code = code(&text).replace(".save()", "").replace(".save(session)", "");
+        if CALLS.iter().any(|call| code.contains(call)) {
+            found.insert(file.display().to_string());
+        }
+    }
+    assert_eq!(found, WRITERS.map(String::from).into(), "files go through haze::image::write_file");
+}
+
+#[test]
 fn paths_named_in_documents_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut documents: Vec<_> =

@@ -4,7 +4,8 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use haze::image::{CompressionEffort, write_png};
+use clap::Args;
+use haze::image::{is_baked_png, write_baked_png};
 use haze::{Error, FieldError};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
@@ -115,20 +116,63 @@ impl Recipe {
     }
 }
 
+/// Treatment of a PNG beside a recipe that no bake has written, or that was changed since.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PaintedPng {
+    Keep,
+    Replace,
+}
+
+/// Option of the commands that bake.
+#[derive(Args)]
+pub struct OverwriteArguments {
+    /// Also replace PNGs that were painted: that no bake has written, or that were changed since.
+    #[arg(long)]
+    overwrite: bool,
+}
+
+impl OverwriteArguments {
+    pub fn painted_png(&self) -> PaintedPng {
+        if self.overwrite { PaintedPng::Replace } else { PaintedPng::Keep }
+    }
+}
+
+/// Refuses to replace a PNG that was painted.
+///
+/// # Errors
+/// Names the PNG and the ways to replace it.
+pub fn check_not_painted(picture: &Path, painted: PaintedPng) -> Result<(), Error> {
+    if painted == PaintedPng::Replace || !picture.exists() || is_baked_png(picture) {
+        return Ok(());
+    }
+    let problem = format!("{} was painted, or changed after it was baked, and is kept", picture.display());
+    let expected = "no such PNG, a recipe of another name, or `bake --overwrite`";
+    Err(FieldError::from_problem("output", problem, expected).into())
+}
+
 /// A valid recipe, with the files that its images go to.
 pub struct BakeJob<'a> {
     path: &'a Path,
     recipe: Recipe,
     outputs: Vec<PathBuf>,
+    painted: PaintedPng,
 }
 
 impl<'a> BakeJob<'a> {
-    pub fn load(path: &'a Path, kinds: &RecipeKinds, files: &mut FileChecks) -> Result<Self, Error> {
+    pub fn load(
+        path: &'a Path,
+        kinds: &RecipeKinds,
+        files: &mut FileChecks,
+        painted: PaintedPng,
+    ) -> Result<Self, Error> {
         let recipe = kinds.find(path)?(path)?;
         let output = |extension| path.with_file_name(recipe_stem(path).with_extension(extension));
         let outputs: Vec<_> = recipe.extensions().iter().map(output).collect();
-        outputs.iter().try_for_each(|output| files.check_output("output", output, "png"))?;
-        Ok(Self { path, recipe, outputs })
+        for output in &outputs {
+            files.check_output("output", output, "png")?;
+            check_not_painted(output, painted)?;
+        }
+        Ok(Self { path, recipe, outputs, painted })
     }
 
     /// Writes the images, and prints a line for each.
@@ -140,10 +184,10 @@ impl<'a> BakeJob<'a> {
         };
         let pictures =
             with_changing_progress(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
+        // A PNG may have been painted during a long bake.
+        self.outputs.iter().try_for_each(|output| check_not_painted(output, self.painted))?;
         for (picture, output) in pictures.iter().zip(&self.outputs) {
-            with_progress(format!("haze: writing {}", output.display()), || {
-                write_png(output, picture, CompressionEffort::Small)
-            })?;
+            with_progress(format!("haze: writing {}", output.display()), || write_baked_png(output, picture))?;
             print_line!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
         }
         Ok(())
@@ -151,9 +195,9 @@ impl<'a> BakeJob<'a> {
 }
 
 /// Bakes all recipes if every recipe is valid.
-pub fn bake_all(recipes: &[PathBuf], kinds: &RecipeKinds) -> Result<(), Failures> {
+pub fn bake_all(recipes: &[PathBuf], kinds: &RecipeKinds, painted: PaintedPng) -> Result<(), Failures> {
     let mut files = FileChecks::for_inputs(recipes);
-    let (jobs, failures) = Failures::of_each(recipes, |path| BakeJob::load(path, kinds, &mut files));
+    let (jobs, failures) = Failures::of_each(recipes, |path| BakeJob::load(path, kinds, &mut files, painted));
     failures.into_result()?;
     jobs.iter().try_for_each(BakeJob::bake).map_err(Failures::from)
 }

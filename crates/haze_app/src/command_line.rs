@@ -10,6 +10,7 @@ use std::process::ExitCode;
 
 use clap::error::{ContextValue, ErrorKind};
 use clap::{CommandFactory as _, Parser, Subcommand};
+use haze::error::is_link_loop;
 use haze::{Error, builtin};
 
 use crate::commands::{info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
@@ -147,9 +148,63 @@ fn exit_code(error: &Error) -> u8 {
             std::io::ErrorKind::NotFound
             | std::io::ErrorKind::PermissionDenied
             | std::io::ErrorKind::InvalidData
-            | std::io::ErrorKind::IsADirectory => 2,
+            | std::io::ErrorKind::InvalidFilename
+            | std::io::ErrorKind::InvalidInput
+            | std::io::ErrorKind::IsADirectory
+            | std::io::ErrorKind::NotADirectory => 2,
+            _ if is_link_loop(error) => 2,
             _ => 1,
         },
         Error::Device(_) => 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::any::TypeId;
+
+    use super::*;
+
+    /// Collects the options of a command and of its subcommands whose value is a number, after the words before them.
+    fn number_options(command: &clap::Command, words: &[String], found: &mut Vec<Vec<String>>) {
+        let numbers = [
+            TypeId::of::<f32>(),
+            TypeId::of::<f64>(),
+            TypeId::of::<i32>(),
+            TypeId::of::<i64>(),
+            TypeId::of::<u32>(),
+            TypeId::of::<u64>(),
+            TypeId::of::<usize>(),
+        ];
+        for argument in command.get_arguments() {
+            if numbers.iter().any(|number| argument.get_value_parser().type_id() == *number) {
+                let option = format!("--{}", argument.get_long().unwrap());
+                found.push([words, &[option]].concat());
+            }
+        }
+        for command in command.get_subcommands() {
+            number_options(command, &[words, &[command.get_name().to_owned()]].concat(), found);
+        }
+    }
+
+    #[test]
+    fn every_option_that_takes_a_number_names_its_range() {
+        let mut options = Vec::new();
+        number_options(&Cli::command(), &["haze".into()], &mut options);
+        // Far fewer would mean that options are no longer found.
+        assert!(options.len() > 40, "{}", options.len());
+        for words in options {
+            let (option, words) = words.split_last().unwrap();
+            for value in ["x", "", "nan", "-1e39"] {
+                let given = words.iter().cloned().chain([format!("{option}={value}")]);
+                let Err(error) = Cli::try_parse_from(given) else { panic!("{words:?} {option}={value}") };
+                let line = usage_line(error);
+                let is_digit = |c: char| c.is_ascii_digit() || c == '-';
+                let mut ranges = line.match_indices(" to ");
+                let has_range = ranges
+                    .any(|(at, to)| line[..at].ends_with(is_digit) && line[at + to.len()..].starts_with(is_digit));
+                assert!(has_range && line.contains(&**option), "{words:?}: {line}");
+            }
+        }
     }
 }

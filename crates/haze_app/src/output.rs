@@ -4,7 +4,8 @@ use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use haze::error::alters_line;
+use haze::assets::file_type;
+use haze::error::{alters_line, io_expected, io_problem};
 use haze::image::{FileIdentity, check_writable};
 use haze::{Error, FieldError};
 
@@ -111,14 +112,19 @@ impl FileChecks {
         // `a.png/` and `a.png/.` have the file name `a.png`, but mean a folder.
         let name = path.file_name().unwrap_or_default().as_encoded_bytes();
         let found = std::fs::metadata(path);
-        if !path.as_os_str().as_encoded_bytes().ends_with(name) || found.as_ref().is_ok_and(|found| !found.is_file()) {
-            return refuse("is not a file", "a file, or a name that does not exist yet");
+        let expected = "a file, or a name that does not exist yet";
+        if !path.as_os_str().as_encoded_bytes().ends_with(name) {
+            return refuse("is not a file", expected);
+        }
+        if let Some(found) = found.as_ref().ok().filter(|found| !found.is_file()) {
+            return refuse(&format!("is {}, not a file", file_type::name(found)), expected);
         }
         if found.is_ok_and(|found| found.permissions().readonly()) {
             return refuse("is read-only", "a file with write permission");
         }
         if let Err(error) = check_writable(path) {
-            return refuse(&format!("cannot be written ({error})"), "a file that can be written");
+            let problem = format!("cannot be written ({})", io_problem(&error));
+            return refuse(&problem, io_expected(&error).unwrap_or("a file that can be written"));
         }
         let identity = FileIdentity::of(path);
         if self.inputs.contains(&identity) {

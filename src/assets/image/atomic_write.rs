@@ -4,27 +4,48 @@
 //! killed processes.
 
 use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, ErrorKind, Seek, Write};
+use std::io::{self, ErrorKind, Read as _, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use crate::error::Error;
+use crate::assets::file_type::{self, nonblocking};
+use crate::error::{Error, LINK_LOOP, display_path};
 
 /// Writes a temporary file in the same folder and renames it to `path`. Readers never see a partial file, and a failed
-/// write leaves the old file. The new file keeps the old one's permissions. A symbolic link is followed and stays a
-/// link. The data is synced before the rename, so a killed process or a power failure leaves either the old or the new
-/// file. Temporary files that a killed process left in the folder are removed.
+/// write leaves the old file. The new file keeps the old one's owner and permissions. A symbolic link is followed and
+/// stays a link. The data is synced before the rename, so a killed process or a power failure leaves either the old or
+/// the new file. Temporary files that a killed process left in the folder are removed.
 ///
-/// A file with several hard links, or in a folder in which no file can be created, is overwritten in place. If that
-/// fails, the old contents are restored.
+/// Only a file is replaced: a device, a pipe, a socket and a folder stay, also at the end of a link. The type is checked
+/// before the write and again right before the rename; the system has no rename that checks it.
+///
+/// A file with several hard links, in a folder in which no file can be created, or of an owner that the new file cannot
+/// have, is overwritten in place. If that fails, the old contents are restored.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    write_atomically(&resolve_links(path), bytes).map_err(|error| Error::Io { path: path.into(), error })
+    let io = |error| Error::Io { path: path.into(), error };
+    let target = resolve_links(path).map_err(io)?;
+    let old = replaceable_file(&target).map_err(|error| io(explain_link(path, &target, error)))?;
+    write_atomically(&target, old.as_ref(), bytes).map_err(io)
+}
+
+/// Writes a file that a program keeps for itself, such as the layout of its window. It differs from [`write_file`] in
+/// that nothing outside the folder can change: a symbolic link is refused, and of a file with several hard links only
+/// this one gets the new contents.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be written, or no file can be created in the folder.
+pub fn write_state_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let write = || {
+        let old = replaceable_file(path)?;
+        let (partial, file) = create_partial(path)?;
+        put(&partial, file, path, old.as_ref(), bytes)
+    };
+    write().map_err(|error| Error::Io { path: path.into(), error })
 }
 
 /// Checks that [`write_file`] could start now, for callers with long work before the write. Changes nothing.
@@ -32,12 +53,10 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// The system's error, if the write could not start.
 pub fn check_writable(path: &Path) -> io::Result<()> {
-    let target = resolve_links(path);
-    match OpenOptions::new().write(true).open(&target) {
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            create_partial(&target).and_then(|(partial, _)| fs::remove_file(partial))
-        }
-        opened => opened.map(drop),
+    let target = resolve_links(path)?;
+    match replaceable_file(&target)? {
+        None => create_partial(&target).and_then(|(partial, _)| fs::remove_file(partial)),
+        Some(_) => nonblocking().write(true).open(&target).map(drop),
     }
 }
 
@@ -61,7 +80,7 @@ impl FileIdentity {
             use std::os::unix::fs::MetadataExt;
             return Self(Identity::Inode(found.dev(), found.ino()));
         }
-        let target = resolve_links(path);
+        let target = resolve_links(path).unwrap_or_else(|_| path.into());
         let folder = folder_of(&target);
         let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.into());
         Self(Identity::Place(folder.join(target.file_name().unwrap_or_default())))
@@ -72,42 +91,95 @@ impl FileIdentity {
 const MAX_LINKS: u32 = 40;
 
 /// Follows symbolic links. The target need not exist.
-fn resolve_links(path: &Path) -> PathBuf {
-    let mut path = path.to_path_buf();
-    for _ in 0..MAX_LINKS {
-        let Ok(target) = fs::read_link(&path) else { break };
-        path = path.parent().unwrap_or(Path::new("")).join(target);
+fn resolve_links(path: &Path) -> io::Result<PathBuf> {
+    let mut target = path.to_path_buf();
+    for _ in 0..=MAX_LINKS {
+        let Ok(link) = fs::read_link(&target) else { return Ok(target) };
+        target = target.parent().unwrap_or(Path::new("")).join(link);
     }
-    path
+    Err(io::Error::from_raw_os_error(LINK_LOOP))
 }
 
-fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let old = match fs::metadata(path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => None,
-        found => Some(found?),
-    };
-    if old.as_ref().is_some_and(has_hard_links) {
+/// Returns the file at a path; `None` if nothing is there.
+///
+/// # Errors
+/// If something other than a file is there.
+fn replaceable_file(path: &Path) -> io::Result<Option<Metadata>> {
+    match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        found => {
+            let found = found?;
+            check_is_file(&found)?;
+            Ok(Some(found))
+        }
+    }
+}
+
+fn check_is_file(found: &Metadata) -> io::Result<()> {
+    if found.is_file() {
+        return Ok(());
+    }
+    let found = file_type::name(found);
+    let reason = format!("{found}, not a file; expected a file, or a name that does not exist yet");
+    Err(io::Error::new(ErrorKind::InvalidData, reason))
+}
+
+/// Names the target of a link in the error of a target that is not a file.
+fn explain_link(path: &Path, target: &Path, error: io::Error) -> io::Error {
+    if path == target || error.kind() != ErrorKind::InvalidData {
+        return error;
+    }
+    io::Error::new(error.kind(), format!("a link to {}: {error}", display_path(target)))
+}
+
+fn write_atomically(path: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
+    if old.is_some_and(has_hard_links) {
         return overwrite(path, bytes);
     }
-    let (partial, mut file) = match create_partial(path) {
+    let (partial, file) = match create_partial(path) {
         Err(_) if old.is_some() => return overwrite(path, bytes),
         made => made?,
     };
+    if old.is_some_and(|old| !take_owner(&file, old)) {
+        fs::remove_file(&partial)?;
+        return overwrite(path, bytes);
+    }
+    put(&partial, file, path, old, bytes)
+}
+
+/// Writes the temporary file and renames it.
+fn put(partial: &Path, mut file: File, path: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     remove_stale_partials(folder_of(path));
-    let write = || {
+    let mut write = || {
         file.write_all(bytes)?;
         if let Some(old) = old {
-            fs::set_permissions(&partial, old.permissions())?;
+            fs::set_permissions(partial, old.permissions())?;
         }
         // Without a sync, a file system may persist the rename before the data.
         file.sync_all()?;
-        fs::rename(&partial, path)
+        // Another program may have put something else in place meanwhile.
+        replaceable_file(path)?;
+        fs::rename(partial, path)
     };
     write().inspect_err(|_| {
-        let _ = fs::remove_file(&partial);
+        let _ = fs::remove_file(partial);
     })?;
     sync_folder(folder_of(path));
     Ok(())
+}
+
+/// Gives a new file the owner and the group of an old one. Returns false if that is not permitted.
+#[cfg(unix)]
+fn take_owner(file: &File, old: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let owner = |found: &Metadata| (found.uid(), found.gid());
+    file.metadata().is_ok_and(|new| owner(&new) == owner(old))
+        || std::os::unix::fs::fchown(file, Some(old.uid()), Some(old.gid())).is_ok()
+}
+
+#[cfg(not(unix))]
+fn take_owner(_: &File, _: &Metadata) -> bool {
+    true
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -132,14 +204,15 @@ fn remove_stale_partials(folder: &Path) {
         return;
     }
     // Files that cannot be opened are left alone.
-    for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let is_partial =
             |name: &str| name.strip_prefix(PARTIAL.0).is_some_and(|rest| rest.strip_suffix(PARTIAL.1).is_some());
-        if path.file_name().and_then(OsStr::to_str).is_some_and(is_partial)
-            && let Ok(left) = OpenOptions::new().write(true).open(&path)
+        if entry.file_name().to_str().is_some_and(is_partial)
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && let Ok(left) = nonblocking().write(true).open(entry.path())
             && left.try_lock().is_ok()
         {
-            let _ = fs::remove_file(&path);
+            let _ = fs::remove_file(entry.path());
         }
     }
 }
@@ -182,94 +255,14 @@ fn overwrite(path: &Path, bytes: &[u8]) -> io::Result<()> {
         file.set_len(bytes.len() as u64)?;
         file.sync_all()
     }
-    let before = fs::read(path)?;
-    let mut file = OpenOptions::new().write(true).open(path)?;
+    let mut file = nonblocking().read(true).write(true).open(path)?;
+    check_is_file(&file.metadata()?)?;
+    let mut before = Vec::new();
+    file.read_to_end(&mut before)?;
     write(&mut file, bytes).inspect_err(|_| {
         let _ = write(&mut file, &before);
     })
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn missing_files_are_identified_by_their_location() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        fs::create_dir(path("in")).unwrap();
-        let same = |a: &str, b: &str| FileIdentity::of(&path(a)) == FileIdentity::of(&path(b));
-        assert!(same("a.png", "in/../a.png") && same("a.png", "./a.png"));
-        assert!(!same("a.png", "b.png") && !same("a.png", "in/a.png"));
-        fs::write(path("a.png"), "").unwrap();
-        assert!(same("a.png", "in/../a.png") && !same("a.png", "b.png"));
-    }
-
-    #[test]
-    fn checking_a_file_changes_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.png");
-        check_writable(&path).unwrap();
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-        fs::write(&path, "old").unwrap();
-        check_writable(&path).unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
-        assert!(
-            check_writable(&folder.path().join("missing/a.png")).is_err() && check_writable(folder.path()).is_err()
-        );
-    }
-
-    #[test]
-    fn a_file_name_of_the_maximum_length_can_be_written_repeatedly() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(format!("{}.png", "n".repeat(251)));
-        for text in ["first", "second"] {
-            write_file(&path, text.as_bytes()).unwrap();
-            assert_eq!(fs::read_to_string(&path).unwrap(), text);
-        }
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn stale_temporary_files_are_removed_and_locked_ones_stay() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        for name in [".haze-1-0.partial", ".haze-1-1.partial", ".haze-1.png", "haze-1-2.partial"] {
-            fs::write(path(name), "half").unwrap();
-        }
-        let written = OpenOptions::new().write(true).open(path(".haze-1-1.partial")).unwrap();
-        written.lock().unwrap();
-        write_file(&path("a.png"), b"new").unwrap();
-        let mut names: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-        names.sort();
-        assert_eq!(names, [".haze-1-1.partial", ".haze-1.png", "a.png", "haze-1-2.partial"]);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn symbolic_links_permissions_and_hard_links_are_preserved() {
-        use std::os::unix::fs::{PermissionsExt, symlink};
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        let read = |name: &str| fs::read_to_string(path(name)).unwrap();
-        // A link to a link to a missing file: the missing file is created.
-        fs::create_dir(path("in")).unwrap();
-        symlink("in/b.png", path("a.png")).unwrap();
-        symlink("../c.png", path("in/b.png")).unwrap();
-        write_file(&path("a.png"), b"made").unwrap();
-        assert!(path("a.png").is_symlink() && path("in/b.png").is_symlink() && !path("c.png").is_symlink());
-        assert_eq!(read("c.png"), "made");
-
-        fs::set_permissions(path("c.png"), fs::Permissions::from_mode(0o640)).unwrap();
-        write_file(&path("c.png"), b"again").unwrap();
-        assert_eq!(fs::metadata(path("c.png")).unwrap().permissions().mode() & 0o777, 0o640);
-
-        fs::hard_link(path("c.png"), path("d.png")).unwrap();
-        assert_eq!(FileIdentity::of(&path("a.png")), FileIdentity::of(&path("d.png")));
-        write_file(&path("d.png"), b"both").unwrap();
-        assert_eq!((read("c.png"), read("d.png")), ("both".into(), "both".into()));
-
-        symlink("loop.png", path("loop.png")).unwrap();
-        assert!(write_file(&path("loop.png"), b"").is_err() && check_writable(&path("loop.png")).is_err());
-    }
-}
+mod tests;

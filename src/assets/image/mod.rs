@@ -1,12 +1,14 @@
 //! Images in memory with parallel iteration over rows, and reading and writing of PNG files.
 
 mod atomic_write;
+mod baked_png;
 mod colour_space;
 mod icc_profile;
 mod png;
 mod png_chunks;
 
-pub use atomic_write::{FileIdentity, check_writable, write_file};
+pub use atomic_write::{FileIdentity, check_writable, write_file, write_state_file};
+pub use baked_png::{is_baked_png, write_baked_png};
 pub use colour_space::{colour_conversion_notes, decode_colour_png, read_colour_png};
 pub use png::is_png;
 pub use png::{CompressionEffort, MAX_BYTES, MAX_SIDE, decode_png, read_file, read_png, write_png};

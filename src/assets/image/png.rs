@@ -118,6 +118,11 @@ pub enum CompressionEffort {
 /// # Errors
 /// [`Error::Io`] if the file cannot be written.
 pub fn write_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<(), Error> {
+    write_file(path, &encode_png(path, picture, effort)?)
+}
+
+/// Encodes an image as PNG. `path` is used only in errors.
+pub(super) fn encode_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<Vec<u8>, Error> {
     let encoded = |compression, filter| -> Result<Vec<u8>, Error> {
         let mut bytes = Vec::new();
         let encoder = PngEncoder::new_with_quality(&mut bytes, compression, filter);
@@ -125,23 +130,23 @@ pub fn write_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort)
         picture.write_with_encoder(encoder).map_err(io)?;
         Ok(bytes)
     };
-    let bytes = match effort {
-        CompressionEffort::Quick => encoded(CompressionType::Fast, FilterType::Adaptive)?,
+    match effort {
+        CompressionEffort::Quick => encoded(CompressionType::Fast, FilterType::Adaptive),
         CompressionEffort::Small => {
             // Encodes with both filters and keeps the smaller file.
             let mut tries = [FilterType::Adaptive, FilterType::Paeth].map(|filter| (filter, Ok(Vec::new())));
             parallel_for_each(tries.iter_mut(), |(filter, bytes)| *bytes = encoded(SMALL, *filter));
             let [adaptive, paeth] = tries.map(|(_, bytes)| bytes);
             let (adaptive, paeth) = (adaptive?, paeth?);
-            if paeth.len() < adaptive.len() { paeth } else { adaptive }
+            Ok(if paeth.len() < adaptive.len() { paeth } else { adaptive })
         }
-    };
-    write_file(path, &bytes)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assets::image::png_chunks::chunk;
 
     #[test]
     fn damaged_pngs_are_refused_with_the_file_name() {
@@ -159,17 +164,6 @@ mod tests {
 
     #[test]
     fn a_palette_of_broken_length_is_refused() {
-        /// Checksum of a chunk's kind and data. (PNG 3, annex D)
-        fn crc(bytes: &[u8]) -> u32 {
-            !bytes.iter().fold(u32::MAX, |crc, &byte| {
-                (0..8)
-                    .fold(crc ^ u32::from(byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
-            })
-        }
-        let chunk = |kind: &[u8; 4], data: &[u8]| {
-            let body = [&kind[..], data].concat();
-            [&(data.len() as u32).to_be_bytes()[..], &body, &crc(&body).to_be_bytes()].concat()
-        };
         let header = [&1_u32.to_be_bytes()[..], &1_u32.to_be_bytes(), &[8, 3, 0, 0, 0]].concat();
         // One row: no filter, index 0; stored without compression, with its Adler-32 checksum.
         let pixels = [0x78, 0x01, 0x01, 2, 0, 0xfd, 0xff, 0, 0, 0, 2, 0, 1];

@@ -1,4 +1,4 @@
-//! Reads the chunks of a PNG: checks that the file is complete and extracts its colour tags.
+//! Chunks of a PNG: checks that the file is complete, extracts its colour tags, and builds further chunks.
 //!
 //! Not by `png::Info`, which lacks the name of the colour profile, and whose reader must decode all pixels to find a
 //! truncated end.
@@ -52,6 +52,19 @@ pub fn colour_tags(bytes: &[u8]) -> Option<ColourTags> {
             _ => {}
         }
     }
+}
+
+/// Returns a chunk with its length and its checksum.
+pub(super) fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let body = [&kind[..], data].concat();
+    [&(data.len() as u32).to_be_bytes()[..], &body, &checksum(&body).to_be_bytes()].concat()
+}
+
+/// Checksum of a chunk's kind and data. (PNG 3, annex D)
+fn checksum(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
+    })
 }
 
 fn numbers<const N: usize>(data: &[u8]) -> Option<[u32; N]> {

@@ -1,12 +1,12 @@
 //! `haze bench compare`: compares two runs of one machine row by row.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
 
-use super::report::Row;
+use super::report::{Report, Row};
 use super::report_json;
 use crate::output::{Failures, print_error, print_line};
 
@@ -36,7 +36,7 @@ struct Ratio {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
-    let [before, after] = [report_json::read(&arguments.before)?, report_json::read(&arguments.after)?];
+    let [before, after] = [read(&arguments.before)?, read(&arguments.after)?];
     for (what, before, after) in [
         ("adapter", &before.adapter.name, &after.adapter.name),
         ("driver", &before.adapter.driver, &after.adapter.driver),
@@ -89,6 +89,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let path = arguments.after.clone();
     let what = format!("{slower} of {} rows are more than {} % slower", both.len(), arguments.slower);
     Err(Error::Io { path, error: std::io::Error::other(what) }.into())
+}
+
+/// Reads a report whose times can be compared. An incomplete one is reported.
+fn read(path: &Path) -> Result<Report, Error> {
+    let report = report_json::read(path)?;
+    for (index, row) in report.rows.iter().enumerate() {
+        let name = format!("rows[{index}] ({} {})", row.suite, row.case);
+        row.gpu_ms.validate(&name).map_err(|error| Error::JsonField { path: path.into(), error })?;
+    }
+    if !report.complete {
+        let path = path.display();
+        print_error(format_args!("{path}: an incomplete run; only its {} rows are compared", report.rows.len()));
+    }
+    Ok(report)
 }
 
 fn ratio(before: &Row, after: &Row) -> Ratio {

@@ -1,8 +1,10 @@
 //! Format of a benchmark report, whose rows a spreadsheet or jq reads directly.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use glam::UVec2;
+use haze::FieldError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -198,6 +200,29 @@ impl Milliseconds {
             low + (high - low) * place.fract()
         };
         Some(Self { median: at(0.5), min, max, quartiles: [at(0.25), at(0.75)] })
+    }
+
+    /// Checks that ratios and spreads of the times are finite numbers.
+    ///
+    /// # Errors
+    /// Names the field, and `row` before it.
+    pub fn validate(&self, row: &str) -> Result<(), FieldError> {
+        /// A picosecond to eleven days. Ratios divide by the median, so only the others may be zero.
+        const MEDIAN: (RangeInclusive<f64>, &str) = (1.0e-9..=1.0e9, "1e-9 to 1e9 milliseconds");
+        const OTHERS: (RangeInclusive<f64>, &str) = (0.0..=1.0e9, "0 to 1e9 milliseconds");
+        let [low, high] = self.quartiles;
+        for (field, value, (range, expected)) in [
+            ("median", self.median, MEDIAN),
+            ("min", self.min, OTHERS),
+            ("max", self.max, OTHERS),
+            ("quartiles[0]", low, OTHERS),
+            ("quartiles[1]", high, OTHERS),
+        ] {
+            if !range.contains(&value) {
+                return Err(FieldError::new(format!("{row}.gpu_ms.{field}"), value, expected));
+            }
+        }
+        Ok(())
     }
 
     /// Half the distance between the quartiles, as a share of the median.

@@ -10,6 +10,8 @@ mod drivers;
 mod many;
 #[path = "cli/names.rs"]
 mod names;
+#[path = "cli/odd_inputs.rs"]
+mod odd_inputs;
 #[path = "cli/outputs.rs"]
 mod outputs;
 #[path = "cli/particles.rs"]
@@ -24,6 +26,8 @@ mod ramps;
 mod shaders;
 #[path = "cli/sheets.rs"]
 mod sheets;
+#[path = "cli/special_targets.rs"]
+mod special_targets;
 #[path = "cli/sprites.rs"]
 mod sprites;
 #[path = "cli/streams.rs"]

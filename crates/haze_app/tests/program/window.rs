@@ -102,6 +102,12 @@ fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
     let (display, folder) = (Display::start(), folder());
     let text = line(haze(folder.path(), "", &[], &["tweak"]), 2);
     assert!(text.contains("DISPLAY") && text.contains("`haze render`"), "{text}");
+    let text = line(haze(folder.path(), ":987", &[], &["tweak"]), 2);
+    assert!(
+        text.contains("none could be opened with DISPLAY=:987; expected ") && text.contains("`haze render`"),
+        "{text}"
+    );
+    assert!(!text.contains(".rs"), "{text}");
     // Neither a Vulkan nor an OpenGL driver.
     let none = [
         ("VK_DRIVER_FILES", "/nonexistent"),

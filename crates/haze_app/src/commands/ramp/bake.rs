@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::bake_job::{RAMPS, bake_all};
+use crate::bake_job::{OverwriteArguments, RAMPS, bake_all};
 use crate::output::Failures;
 
 #[derive(Args)]
@@ -12,8 +12,10 @@ pub struct Arguments {
     /// `*.ramp.json` and `*.motif.json` files.
     #[arg(required = true)]
     recipes: Vec<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArguments,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
-    bake_all(&arguments.recipes, &RAMPS)
+    bake_all(&arguments.recipes, &RAMPS, arguments.overwrite.painted_png())
 }

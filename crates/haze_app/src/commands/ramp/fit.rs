@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::image::{CompressionEffort, write_png};
+use haze::image::{CompressionEffort, write_baked_png, write_png};
 use haze::ramp::Ramp;
 use haze::{Error, builtin};
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
 
 use super::ramp_io::{check_recipe_output, write_recipe};
-use crate::bake_job::image_path;
+use crate::bake_job::{PaintedPng, check_not_painted, image_path};
 use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
 use crate::options::whole_number;
 use crate::output::{FileChecks, print_line};
@@ -52,6 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     for recipe in [Some(output), backlight.as_ref()].into_iter().flatten() {
         check_recipe_output(&mut files, recipe)?;
         files.check_output("--output", &image_path(recipe), "png")?;
+        check_not_painted(&image_path(recipe), PaintedPng::Keep)?;
     }
     if let Some(sheet) = sheet {
         files.check_output("--sheet", sheet, "png")?;
@@ -63,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let write = |path: &PathBuf, recipe: &RampRecipe| {
         let baked = recipe.bake()?;
         write_recipe(path, recipe)?;
-        write_png(&image_path(path), &baked, CompressionEffort::Small)?;
+        write_baked_png(&image_path(path), &baked)?;
         Ok::<_, Error>(Ramp::from_image(&baked))
     };
     let diffuse = write(output, diffuse)?;

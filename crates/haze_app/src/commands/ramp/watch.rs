@@ -10,7 +10,7 @@ use std::time::Duration;
 use clap::Args;
 use haze::Error;
 
-use crate::bake_job::{BakeJob, RAMPS, image_path};
+use crate::bake_job::{BakeJob, PaintedPng, RAMPS, image_path};
 use crate::file_watcher::Watcher;
 use crate::interrupt;
 use crate::output::{Failures, FileChecks, print_error};
@@ -82,5 +82,5 @@ fn is_newer(picture: &Path, recipe: &Path) -> bool {
 }
 
 fn bake(path: &Path) -> Result<(), Error> {
-    BakeJob::load(path, &RAMPS, &mut FileChecks::for_inputs([path]))?.bake()
+    BakeJob::load(path, &RAMPS, &mut FileChecks::for_inputs([path]), PaintedPng::Keep)?.bake()
 }

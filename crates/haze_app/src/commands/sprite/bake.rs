@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::six_way::SixWayArguments;
-use crate::bake_job::{SPRITES, bake_all};
+use crate::bake_job::{OverwriteArguments, SPRITES, bake_all};
 use crate::output::Failures;
 
 #[derive(Args)]
@@ -15,10 +15,13 @@ pub struct Arguments {
     recipes: Vec<PathBuf>,
     #[command(flatten)]
     six_way: SixWayArguments,
+    #[command(flatten)]
+    overwrite: OverwriteArguments,
 }
 
-pub fn run(Arguments { recipes, six_way }: &Arguments) -> Result<(), Failures> {
-    six_way.check(recipes)?;
-    bake_all(&six_way.recipe_files(recipes), &SPRITES)?;
+pub fn run(Arguments { recipes, six_way, overwrite }: &Arguments) -> Result<(), Failures> {
+    let painted = overwrite.painted_png();
+    six_way.check(recipes, painted)?;
+    bake_all(&six_way.recipe_files(recipes), &SPRITES, painted)?;
     six_way.bake_all(recipes).map_err(Failures::from)
 }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clap::Args;
-use haze::image::{CompressionEffort, write_png};
+use haze::image::write_baked_png;
 use haze::{Error, FieldError, builtin};
 use haze_author::sprite::six_way::BakedSixWay;
 
-use crate::bake_job::{image_path, six_way_path};
+use crate::bake_job::{PaintedPng, check_not_painted, image_path, six_way_path};
 use crate::medium_options::{MediumNumbers, medium_names, sprite_recipe};
 use crate::options::whole_number;
 use crate::output::{FileChecks, print_line};
@@ -33,7 +33,7 @@ impl SixWayArguments {
     ///
     /// # Errors
     /// Names the option or the file.
-    pub fn check(&self, recipes: &[PathBuf]) -> Result<(), Error> {
+    pub fn check(&self, recipes: &[PathBuf], painted: PaintedPng) -> Result<(), Error> {
         match &self.six_way {
             None => match self.numbers.first_given() {
                 Some(option) => {
@@ -45,8 +45,10 @@ impl SixWayArguments {
             Some(name) => {
                 self.numbers.medium_of(name)?;
                 let mut files = FileChecks::for_inputs(recipes);
-                sprites(recipes)
-                    .try_for_each(|path| files.check_output("output", &six_way_path(&image_path(path)), "png"))
+                sprites(recipes).map(|path| six_way_path(&image_path(path))).try_for_each(|output| {
+                    files.check_output("output", &output, "png")?;
+                    check_not_painted(&output, painted)
+                })
             }
         }
     }
@@ -83,7 +85,7 @@ impl SixWayArguments {
         let BakedSixWay { picture: maps, intensity, colour, anisotropy } = baked;
         let output = six_way_path(&image_path(path));
         print_line!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
-        write_png(&output, &maps.into(), CompressionEffort::Small)?;
+        write_baked_png(&output, &maps.into())?;
         print_line!(
             "  to look like {}: lighting six_way, diffuse.intensity {intensity:.2}, six_way_anisotropy {anisotropy:.2}, \
              six_way_colour {:.3},{:.3},{:.3}",

@@ -26,7 +26,7 @@ pub fn copy_assets(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error>
             continue;
         }
         let bytes = read(&source)?;
-        if !file_io::exists(&target) {
+        if !file_io::is_taken(&target) {
             copies.push((source, target));
         } else if read(&target)? != bytes {
             let reason = format!("differs from {}; expected a folder without a file of this name", source.display());

@@ -12,7 +12,7 @@ use haze_author::ramp::RampRecipe;
 use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, fit_image};
 
 use super::Document;
-use crate::tweak::platform::file_io::{CompressionEffort, Stamp, read_colour_png, write_png};
+use crate::tweak::platform::file_io::{Stamp, read_colour_png, write_baked_png};
 use crate::tweak::platform::{asset_loading, file_io};
 
 /// Ramps that panels have asked about, by their names in the preset.
@@ -205,9 +205,9 @@ fn stamps(picture: &Path) -> [Option<Stamp>; 2] {
 }
 
 /// Writes the recipe first, because the image can be made again from it.
-fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
+pub fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
     file_io::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
-    write_png(picture, baked, CompressionEffort::Small)
+    write_baked_png(picture, baked)
 }
 
 /// Writes a copy of a built-in ramp beside a preset under a free name, and returns the name.
@@ -217,7 +217,7 @@ fn copy_of(name: &str, preset: &Path) -> Result<String, Error> {
     let recipe = RampRecipe::parse(&builtin::path(name), builtin.recipe)?;
     let file = file_io::free_copy_name(name, |file| {
         let picture = folder.join(file);
-        !file_io::exists(&picture) && !file_io::exists(&recipe_of(&picture))
+        !file_io::is_taken(&picture) && !file_io::is_taken(&recipe_of(&picture))
     });
     write(&folder.join(&file), &recipe, &recipe.bake()?)?;
     Ok(file)

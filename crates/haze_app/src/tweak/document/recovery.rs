@@ -69,7 +69,7 @@ impl Recovery {
             let written = lock.write(path.to_str().unwrap_or_default());
             written.map_err(|error| Error::Io { path: lock.path().into(), error })?;
         }
-        file_io::write(&preset_beside(lock.path()), document.preset.to_text("").as_bytes())?;
+        file_io::write_state_file(&preset_beside(lock.path()), document.preset.to_text("").as_bytes())?;
         self.written = Some((document.preset.clone(), path));
         Ok(())
     }
@@ -106,7 +106,7 @@ fn free_lock(folder: &Path) -> Result<Lock, Error> {
     /// Far more than the number of tweakers that run at the same time.
     const MAX_LOCKS: u32 = 1000;
     let path = |number| folder.join(format!("recovery-{number}.lock"));
-    let is_free = |path: &PathBuf| !file_io::exists(&preset_beside(path));
+    let is_free = |path: &PathBuf| !file_io::is_taken(&preset_beside(path));
     let free = (1..MAX_LOCKS).map(path).filter(is_free).find_map(|path| Lock::take(&path));
     free.ok_or_else(|| {
         let error = std::io::Error::other("cannot lock a file here; expected a writable folder");

@@ -203,7 +203,7 @@ impl ExportPath {
             _ => format!("{}{what}_{number}{end}", self.stem),
         };
         let paths = (1..10_000).map(|number| self.folder.join(name(number)));
-        let path = paths.into_iter().find(|path| !file_io::exists(path)).unwrap_or_else(|| self.folder.join(name(1)));
+        let path = paths.into_iter().find(|path| !file_io::is_taken(path)).unwrap_or_else(|| self.folder.join(name(1)));
         file_io::absolute(&path)
     }
 }

@@ -8,3 +8,7 @@ pub mod persistence;
 pub mod preset_thumbnails;
 pub mod value_spread;
 pub mod window_screenshot;
+
+#[cfg(test)]
+#[cfg(target_os = "linux")]
+mod special_targets;

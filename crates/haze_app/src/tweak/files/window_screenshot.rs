@@ -42,7 +42,7 @@ impl Screenshot {
     }
 }
 
-fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
+pub(super) fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
     let [width, height] = picture.size.map(|side| side as u32);
     let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use haze::Error;
 use haze::assets::{bounded_read, json};
-pub use haze::image::{CompressionEffort, read_colour_png, read_png, write_png};
+pub use haze::image::{CompressionEffort, read_colour_png, read_png, write_baked_png, write_png, write_state_file};
 use haze::image::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
 use haze_author::particle_files;
@@ -62,6 +62,11 @@ pub fn list(folder: &Path) -> Vec<PathBuf> {
 /// Returns true if a file or folder exists.
 pub fn exists(path: &Path) -> bool {
     path.exists()
+}
+
+/// Returns true if a name is not free: it is that of a file, a folder or a link, even of a link to nothing.
+pub fn is_taken(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
 }
 
 /// Returns the absolute path, or the path itself if that is not known.

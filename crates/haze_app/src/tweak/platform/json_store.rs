@@ -29,7 +29,7 @@ pub fn write<T: Serialize>(folder: &Path, name: &str, value: &T) -> Result<(), E
     let path = field_path(folder, name);
     file_io::make_folder(folder)?;
     match serde_json::to_string_pretty(value) {
-        Ok(text) => file_io::write(&path, (text + "\n").as_bytes()),
+        Ok(text) => file_io::write_state_file(&path, (text + "\n").as_bytes()),
         Err(error) => Err(Error::Io { path, error: error.into() }),
     }
 }

@@ -12,13 +12,16 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Locks a file, and creates it if necessary. Returns `None` if another process holds the lock, or files cannot be
-    /// locked.
+    /// Locks a file, and creates it if necessary. Returns `None` if another process holds the lock, if files cannot be
+    /// locked, or if the path is a link, a device or a pipe, which the text must not be written to.
     pub fn take(path: &Path) -> Option<Self> {
+        if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
+            return None;
+        }
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).ok()?;
         file.try_lock().ok()?;
         let lock = Self { path: path.into(), file };
-        // The previous owner may have removed the file meanwhile.
+        // The previous owner may have removed the file meanwhile, or something else may have replaced it.
         lock.is_in_place().then_some(lock)
     }
 
@@ -30,7 +33,7 @@ impl Lock {
     fn is_in_place(&self) -> bool {
         use std::os::unix::fs::MetadataExt;
         let inode = |found: io::Result<fs::Metadata>| found.ok().map(|found| (found.dev(), found.ino()));
-        inode(fs::metadata(&self.path)) == inode(self.file.metadata())
+        inode(fs::symlink_metadata(&self.path)) == inode(self.file.metadata())
     }
 
     #[cfg(not(unix))]

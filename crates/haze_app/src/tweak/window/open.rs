@@ -2,6 +2,7 @@
 
 use eframe::{egui, egui_wgpu, wgpu};
 use haze::Error;
+use haze::error::one_line;
 
 use super::drag_end::split_events_at_release;
 use super::surface_pacing::paced_surface_handler;
@@ -75,19 +76,21 @@ fn open_once(kept: &mut KeptState, is_sized: bool) -> Result<(), Error> {
         },
         ..Default::default()
     };
+    let state = &mut *kept;
     let app: eframe::AppCreator<'_> = Box::new(move |context| {
         let renderer = ViewportRenderer::new(context)?;
-        if let Some(memory) = kept.memory.take() {
+        if let Some(memory) = state.memory.take() {
             context.egui_ctx.memory_mut(|new| *new = memory);
         }
         if !is_sized && renderer.is_software() {
             context.egui_ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(DEFAULT_SOFTWARE_SIZE));
         }
         let health = renderer.health().clone();
-        let window = kept.start.take().map(|start| Window::new(renderer, start)).transpose()?;
-        Ok(Box::new(WindowApp { window, health, kept, later: Vec::new() }) as Box<dyn eframe::App>)
+        let window = state.start.take().map(|start| Window::new(renderer, start)).transpose()?;
+        Ok(Box::new(WindowApp { window, health, kept: state, later: Vec::new() }) as Box<dyn eframe::App>)
     });
-    eframe::run_native("haze", options, app).map_err(no_window)
+    let ended = eframe::run_native("haze", options, app);
+    ended.map_err(|error| no_window(error, kept.frames > 0))
 }
 
 /// App of eframe around the window, while the device works.
@@ -197,8 +200,9 @@ fn check_display() -> Result<(), Error> {
     Err(Error::NoDevice(format!("{reason}; {INSTEAD}, and under `xvfb-run` a window opens on none")))
 }
 
-/// Converts an error of eframe to one that tells the reason and a remedy.
-fn no_window(error: eframe::Error) -> Error {
+/// Converts an error of eframe to one that tells the reason and a remedy. The texts of the windowing library name a source
+/// file of it instead.
+fn no_window(error: eframe::Error, was_shown: bool) -> Error {
     match error {
         eframe::Error::AppCreation(error) => match error.downcast::<Error>() {
             Ok(error) => *error,
@@ -208,6 +212,22 @@ fn no_window(error: eframe::Error) -> Error {
             "no graphics adapter for a window ({error}); on Debian and Ubuntu `apt-get install mesa-vulkan-drivers` \
              installs a software one; {INSTEAD}"
         )),
-        error => Error::NoDevice(format!("no window: {error}; {INSTEAD}")),
+        eframe::Error::WinitEventLoop(_) if !was_shown => {
+            Error::NoDevice(format!("{}; {INSTEAD}", unreachable_display()))
+        }
+        eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
+            Error::NoDevice(format!("the display closed the window or refused to open it; {INSTEAD}"))
+        }
     }
+}
+
+/// Returns a message that names the displays that were tried.
+fn unreachable_display() -> String {
+    let named = ["WAYLAND_DISPLAY", "DISPLAY"].into_iter().filter_map(|name| {
+        let value = std::env::var_os(name).filter(|value| !value.is_empty())?;
+        Some(format!("{name}={}", one_line(value.to_string_lossy())))
+    });
+    let named = named.collect::<Vec<_>>().join(" and ");
+    let named = if named.is_empty() { String::new() } else { format!(" with {named}") };
+    format!("no display for a window: none could be opened{named}; expected a display that runs and admits this user")
 }

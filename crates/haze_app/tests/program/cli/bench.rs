@@ -184,6 +184,42 @@ fn runs_are_compared_row_by_row() {
 }
 
 #[test]
+fn times_that_cannot_be_compared_and_incomplete_runs_are_reported() {
+    let folder = folder();
+    let report = |median: &str, quartiles: &str, complete: bool| {
+        let adapter =
+            r#"{"name": "a", "backend": "Vulkan", "driver": "d", "software": true, "wgpu": "1", "haze": "1"}"#;
+        let times = format!(r#"{{"median": {median}, "min": 0, "max": 2, "quartiles": {quartiles}}}"#);
+        let row = format!(
+            r#"{{"suite": "scale", "case": "full", "size": "8x8", "clock": "gpu", "samples": 9, "gpu_ms": {times},
+            "passes": {{}}}}"#
+        );
+        format!(
+            r#"{{"version": 1, "adapter": {adapter}, "complete": {complete}, "discarded": 0, "rows": [{row}],
+            "left_out": []}}"#
+        )
+    };
+    let write = |name: &str, text: String| fs::write(folder.path().join(name), text).unwrap();
+    write("good.json", report("1", "[1, 1]", true));
+    for (median, quartiles, field) in [
+        ("0", "[1, 1]", "rows[0] (scale full).gpu_ms.median: 0 is not valid; expected 1e-9 to 1e9 milliseconds"),
+        ("-1", "[1, 1]", "rows[0] (scale full).gpu_ms.median: -1 is not valid"),
+        ("null", "[1, 1]", "rows[0].gpu_ms.median: null is not valid"),
+        ("1", "[1, 1e300]", "rows[0] (scale full).gpu_ms.quartiles[1]: 1000"),
+    ] {
+        write("bad.json", report(median, quartiles, true));
+        for files in [["good.json", "bad.json"], ["bad.json", "good.json"]] {
+            let line = refusal(folder.path(), &["bench", "compare", files[0], files[1]]);
+            assert!(line.contains("bad.json:") && line.contains(field), "{line}");
+        }
+    }
+    write("part.json", report("1", "[1, 1]", false));
+    let output = haze(folder.path(), &["bench", "compare", "good.json", "part.json"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(stderr(&output), "haze: part.json: an incomplete run; only its 1 rows are compared\n");
+}
+
+#[test]
 fn unwritable_outputs_are_refused_before_the_run() {
     let folder = folder();
     for output in [["--json", "none/a.json"], ["--csv", "a.json"], ["--html", "."]] {

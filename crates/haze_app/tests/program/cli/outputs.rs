@@ -24,7 +24,10 @@ fn unwritable_outputs_are_refused_before_rendering() {
     assert!(line(&SMALL, &["a.png/"]).contains("a.png/ is not a file"));
     assert!(line(&SMALL, &["a.png/."]).contains("a.png/. is not a file"));
     assert!(line(&SMALL, &["cells/soft.png"]).contains("expected a file, or a name that does not exist yet"));
-    assert!(line(&SMALL, &[&format!("{}.png", "n".repeat(300))]).contains("expected a file that can be written"));
+    assert!(
+        line(&SMALL, &[&format!("{}.png", "n".repeat(300))])
+            .contains("(the name is too long); expected at most 255 bytes")
+    );
     let curves = line(&SHEET, &["a.png", "--curves", "missing/c.png"]);
     assert!(curves.contains("--curves: missing/c.png") && curves.contains("a folder that exists"), "{curves}");
     let cells = line(&SHEET, &["a.png", "--cells", "missing"]);
@@ -173,4 +176,32 @@ fn a_program_killed_during_a_write_keeps_the_old_file() {
     assert!(bake(10_000).success() && picture() != old);
     // Partial files of the killed runs are gone.
     assert_eq!(names(folder.path()), ["a.png", "a.ramp.json"]);
+}
+
+#[test]
+fn a_bake_keeps_painted_images_unless_it_is_told_to_replace_them() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let puff = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../sprites/puff.sprite.json")).unwrap();
+    fs::write(path("a.sprite.json"), puff).unwrap();
+    fs::write(path("ball.motif.json"), MOTIF).unwrap();
+    for (picture, command) in [
+        ("ball.png", &["ramp", "bake", "ball.motif.json"][..]),
+        ("a.detail.png", &["sprite", "bake", "a.sprite.json"]),
+        ("a.six_way.png", &["sprite", "bake", "a.sprite.json", "--six-way"]),
+        ("b.png", &["ramp", "fit", "-o", "b.ramp.json"]),
+    ] {
+        image::RgbImage::new(8, 8).save(path(picture)).unwrap();
+        let before = fs::read(path(picture)).unwrap();
+        let line = refusal(folder.path(), command);
+        assert!(line.contains(&format!("{picture} was painted, or changed after it was baked, and is kept")), "{line}");
+        assert!(line.contains("`bake --overwrite`") && fs::read(path(picture)).unwrap() == before, "{line}");
+        fs::remove_file(path(picture)).unwrap();
+    }
+    fs::write(path("ball.png"), "painted").unwrap();
+    for more in [&["--overwrite"][..], &[]] {
+        let output = haze(folder.path(), &[&["ramp", "bake", "ball.motif.json"], more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert_eq!(size_of(&path("ball.png")), (8, 8));
+    }
 }

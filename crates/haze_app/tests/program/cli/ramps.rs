@@ -92,6 +92,7 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
     assert_eq!(line, "haze: a.png: not a PNG file; export it as PNG\n");
     let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json", "--error=-1"]);
     assert_eq!(line, "haze: invalid value '-1' for '--error <STEPS>': expected a number, 1 to 64\n");
+    fs::remove_file(folder.path().join("a.png")).unwrap();
     assert_eq!(stdout_of(folder.path(), &["ramp", "bake", "a.ramp.json"]), "a.png: 256x1\n");
 }
 

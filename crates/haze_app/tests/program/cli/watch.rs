@@ -125,7 +125,7 @@ fn recipes_of_a_folder_are_followed_and_painted_images_are_kept() {
     fs::write(path("odd.ramp.json"), recipe(1)).unwrap();
     fs::create_dir(path("odd.png")).unwrap();
     let watching = Watching::new(folder.path(), &["."]);
-    watching.says("haze: output: ./odd.png is not a file", "a folder in place of the image");
+    watching.says("haze: output: ./odd.png is a folder, not a file", "a folder in place of the image");
     fs::write(path("new.ramp.json"), recipe(7)).unwrap();
     watching.says("./new.png: 2x1", "new");
     fs::write(path("ball.motif.json"), MOTIF).unwrap();
@@ -139,6 +139,37 @@ fn recipes_of_a_folder_are_followed_and_painted_images_are_kept() {
     assert_eq!(fs::read(path("painted.png")).unwrap(), picture);
     fs::write(path("painted.ramp.json"), recipe(2)).unwrap();
     watching.says("./painted.png: 2x1", "saved");
+}
+
+#[test]
+fn painted_images_are_kept_and_baked_ones_are_replaced_after_a_restart() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let paint = |name: &str| image::RgbImage::from_pixel(2, 1, image::Rgb([9; 3])).save(path(name)).unwrap();
+    let kept = "haze: output: a.png was painted, or changed after it was baked, and is kept; expected no such PNG";
+    // A new recipe beside a painted image.
+    paint("a.png");
+    assert!(haze(folder.path(), &["ramp", "new", "-o", "a.ramp.json"]).status.success());
+    let watching = Watching::new(folder.path(), &["a.ramp.json"]);
+    watching.says(kept, "a painted image");
+    fs::write(path("a.ramp.json"), recipe(2)).unwrap();
+    watching.says(kept, "a saved recipe");
+    assert_eq!(colour(&path("a.png")), 0x09_0909);
+    fs::remove_file(path("a.png")).unwrap();
+    fs::write(path("a.ramp.json"), recipe(3)).unwrap();
+    watching.says("a.png: 2x1", "a deleted image");
+    drop(watching);
+    // A recipe that was saved while nothing watched it.
+    std::thread::sleep(Duration::from_millis(20));
+    fs::write(path("a.ramp.json"), recipe(4)).unwrap();
+    let watching = Watching::new(folder.path(), &["a.ramp.json"]);
+    watching.says("a.png: 2x1", "restarted");
+    assert_eq!(colour(&path("a.png")), 4);
+    // An image that is painted over while its recipe is watched.
+    paint("a.png");
+    fs::write(path("a.ramp.json"), recipe(5)).unwrap();
+    watching.says(kept, "painted over");
+    assert_eq!(colour(&path("a.png")), 0x09_0909);
 }
 
 #[test]

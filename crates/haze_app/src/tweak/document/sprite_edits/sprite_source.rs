@@ -12,7 +12,7 @@ use haze_author::sprite::lint::lint_sprite;
 use image::RgbaImage;
 
 use crate::tweak::platform::asset_loading::sprite_recipe;
-use crate::tweak::platform::file_io::{self, CompressionEffort, Stamp, read_png, write_png};
+use crate::tweak::platform::file_io::{self, Stamp, read_png, write_baked_png};
 
 /// Origin of a sprite, which decides whether it can be edited.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,8 +116,8 @@ pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<Str
 /// Writes the recipe first, because the images can be made again from it.
 pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: BakedSprite) -> Result<(), Error> {
     file_io::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
-    write_png(&detail_of(picture), &baked.detail.into(), CompressionEffort::Small)?;
-    write_png(picture, &baked.picture.into(), CompressionEffort::Small)
+    write_baked_png(&detail_of(picture), &baked.detail.into())?;
+    write_baked_png(picture, &baked.picture.into())
 }
 
 /// Returns the recipe of a built-in sprite.
@@ -130,7 +130,7 @@ pub fn copy(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
     let file = file_io::free_copy_name(name, |file| {
         let picture = folder.join(file);
-        stamps(&picture) == [None; 3]
+        [picture.clone(), detail_of(&picture), recipe_of(&picture)].iter().all(|path| !file_io::is_taken(path))
     });
     let picture = folder.join(&file);
     let find = |list| builtin::find(list, name);

@@ -79,7 +79,7 @@ fn a_failed_save_is_reported_and_the_work_stays_unsaved() {
     if is_mounted {
         fs::write(full.join("my.json"), "old").unwrap();
         let _ = fs::write(full.join("rest"), vec![0; 1 << 20]);
-        places.push((full.join("my.json"), "No space left"));
+        places.push((full.join("my.json"), "the disk is full"));
     }
     for (path, expected) in places {
         bench.press(COMMAND_SHIFT, Key::S);
