@@ -19,6 +19,7 @@ const SAMPLE: f64 = 1024.0;
 
 choice! {
     /// Shape in which particles are born.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     EmitterShape {
         /// An ellipsoid.
         #[default]

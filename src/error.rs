@@ -6,10 +6,12 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 pub(crate) use io_reason::LINK_LOOP;
+#[doc(hidden)]
 pub use io_reason::{io_expected, io_problem, io_reason, is_link_loop};
 
 /// Formats text from outside for a message of one line: control characters and marks that change the direction of
 /// writing are escaped, and a long text is cut.
+#[doc(hidden)]
 pub fn one_line(text: impl Display) -> String {
     /// Leaves room for the expected value.
     const MAX_CHARS: usize = 200;
@@ -22,12 +24,14 @@ pub fn one_line(text: impl Display) -> String {
 }
 
 /// File name on one line, not cut.
+#[doc(hidden)]
 pub fn display_path(path: &Path) -> String {
     escape(path.to_string_lossy().chars())
 }
 
 /// True for characters that would change what a terminal shows of a line: control characters, line and paragraph
 /// separators, and characters that reverse text.
+#[doc(hidden)]
 pub fn alters_line(c: char) -> bool {
     c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
@@ -47,6 +51,7 @@ fn escape(text: impl Iterator<Item = char>) -> String {
 /// Value outside its valid range, or in conflict with another value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field}: {problem}; expected {expected}")]
+#[non_exhaustive]
 pub struct FieldError {
     /// Dotted path of the field, for example `systems[0].settings.soft_fade.fade_scale`.
     pub field: String,
@@ -70,6 +75,7 @@ impl FieldError {
 
 /// Any failure of the library that a caller, a file or a driver can cause.
 #[derive(Debug, thiserror::Error)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum Error {
     /// A setting, a light, a particle system or the view is invalid.
     #[error(transparent)]

@@ -49,6 +49,13 @@
 //! # Ok::<(), haze::Error>(())
 //! ```
 //!
+//! # Versions
+//! haze follows semantic versioning; before 1.0 the minor version takes the place of the major one. wgpu's and glam's types
+//! are part of the interface, so a new version of either that changes types comes with a new major version of haze;
+//! [`wgpu`] and [`glam`] are the versions in use. A minor version may add fields and variants: create structs with
+//! `..Default::default()` or `..Frame::new(…)`, and give every `match` a wildcard arm. Messages of errors, the feature
+//! `exhaustive`, and items that these pages do not show may change in any version.
+//!
 //! # Conventions
 //! Metres, seconds, radians; angles in settings are degrees. World and view space are the host's, left- or
 //! right-handed. Internally, view space has x to the right, y up and z towards the viewer. Depth is linear *view
@@ -62,9 +69,11 @@
 //! - BLOG: *Soft Particles*, after Umenhoffer et al., *Spherical Billboards*, 2006.
 //! - MS: the DirectX 10 *SoftParticles* sample.
 
+#[doc(hidden)]
 pub mod assets;
 pub mod emitter;
 pub mod error;
+#[doc(hidden)]
 pub mod formula;
 pub mod frame;
 pub mod preset;

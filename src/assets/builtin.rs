@@ -12,6 +12,7 @@ use crate::settings::ImageRole;
 
 /// A built-in file: its name and contents.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Builtin {
     /// Name without folder and extension.
     pub name: &'static str,

@@ -94,6 +94,7 @@ impl MaterialAssets {
 
 /// Properties of a material's images that preparing a frame needs.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MaterialInfo {
     /// Side of one frame of the sprite, texels.
     pub sprite_size: f32,
@@ -113,6 +114,7 @@ pub struct MaterialInfo {
 
 /// Properties of a detail map that preparing a frame needs.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct DetailInfo {
     /// Frames of the detail map.
     pub frame_count: u32,

@@ -10,6 +10,7 @@ use crate::formula::uniforms::EmitterUniform;
 /// Particles of an emitter at one time, not yet evaluated. [`Emitter::snapshot`](crate::emitter::Emitter::snapshot)
 /// returns it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct EmitterSnapshot {
     pub(crate) uniform: EmitterUniform,
     /// Step of the sample: one birth stands for so many.

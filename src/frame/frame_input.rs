@@ -58,6 +58,7 @@ impl<'a> Frame<'a> {
 /// Single-sampled, but for [`SceneDepth::Multisampled`]. `docs/depth.md` has a table of which depth is read and which is
 /// tested.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum SceneDepth<'a> {
     /// Depth buffer written with the view's projection: a 2D view of its depth aspect.
     Buffer(&'a wgpu::TextureView),
@@ -172,6 +173,7 @@ pub struct AliveCount<'a> {
 
 /// Source of the sprites.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum Particles<'a> {
     /// Particles in memory. [`Renderer::prepare`](crate::Renderer::prepare) sorts and uploads them. A sprite with a
     /// number that is not finite or out of range is skipped.

@@ -11,6 +11,7 @@ pub const MAX_LIGHTS: usize = 128;
 
 choice! {
     /// Type of a light.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     LightKind {
         /// Shines from `position` in all directions.
         #[default]

@@ -30,6 +30,7 @@ settings! {
 
 choice! {
     /// Demo scenes.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     SceneName {
         /// A yard with walls, crates, pillars and a fence.
         #[default]

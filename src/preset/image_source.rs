@@ -8,6 +8,7 @@ use crate::assets::image::{MAX_BYTES, read_file};
 use crate::error::Error;
 
 /// Source of the image files that a preset names: folders, or a host's own reader.
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum ImageSource<'a> {
     /// Folders, in which a file is searched for.
     Folders(AssetFolders),

@@ -16,9 +16,14 @@ pub use camera::Camera;
 pub use environment::{Environment, SceneName};
 pub use image_cache::{ImageCache, MAX_IMAGE_BYTES};
 pub use image_source::ImageSource;
-pub use material_names::{MaterialNames, image_file_path};
-pub use particle_source::{EndBehaviour, ParticleFiles, UpAxis, particle_file_path};
+pub use material_names::MaterialNames;
+#[doc(hidden)]
+pub use material_names::image_file_path;
+#[doc(hidden)]
+pub use particle_source::particle_file_path;
+pub use particle_source::{EndBehaviour, ParticleFiles, UpAxis};
 #[doc(hidden)]
 pub use preset_file::with_system_context;
 pub use preset_file::{MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
+#[doc(hidden)]
 pub use sequence::{Sequence, exists, frame_files, watched_paths};

@@ -9,6 +9,7 @@ use crate::settings::{choice, settings};
 
 choice! {
     /// Axis of a file that points up.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     UpAxis {
         /// y, as in Houdini.
         #[default]
@@ -20,6 +21,7 @@ choice! {
 
 choice! {
     /// Continuation after the last frame.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     EndBehaviour {
         /// The last frame stays.
         #[default]

@@ -2,6 +2,7 @@
 
 /// Counts of the last frame, as far as the CPU knows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct FrameCounts {
     /// Visible systems.
     pub systems: u64,
@@ -27,6 +28,7 @@ impl std::iter::Sum for FrameCounts {
 /// Computed from sprite positions, without the scene: a depth test removes hidden fragments if the hardware rejects
 /// them before shading. Systems whose particles are in a buffer are excluded, because the CPU does not know them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Overdraw {
     /// Sum of the areas of all sprites, in texels of the accumulation targets; in pixels for forward systems.
     pub fragments: f64,

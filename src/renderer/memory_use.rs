@@ -2,6 +2,7 @@
 
 /// GPU memory that a renderer holds, without its materials. All figures are bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct MemoryUse {
     /// Accumulation targets, lit smoke, reduced depths and baked light of all systems.
     pub targets: u64,
@@ -13,6 +14,7 @@ pub struct MemoryUse {
 
 /// GPU memory of the path `tiled`, and of the sort of a host's particles for the other paths. All figures are bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TiledMemory {
     /// Particles of emitters that the GPU evaluates.
     pub emitted: u64,

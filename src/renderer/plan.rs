@@ -24,6 +24,7 @@ use crate::view_setup::{AttachmentSet, ResolvedSettings};
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum SceneDepthKind {
     /// [`SceneDepth::Buffer`].
     Buffer(wgpu::TextureFormat),

@@ -10,6 +10,7 @@ pub(super) const MAX_SCALE: u32 = 16;
 
 choice! {
     /// Texel format of the accumulation target.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     AccumulationFormat {
         /// Half floats, 8 bytes a texel. The default.
         #[default]
@@ -22,6 +23,7 @@ choice! {
 
 choice! {
     /// Encoding of normals in the accumulation target.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     NormalEncoding {
         /// -1..1, stored unchanged. Needs `rgba16float`.
         #[default]
@@ -33,6 +35,7 @@ choice! {
 
 choice! {
     /// Decoding of the accumulated normals.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     NormalDecode {
         /// Takes the amount into account: correct at every amount.
         #[default]
@@ -44,6 +47,7 @@ choice! {
 
 choice! {
     /// Order in which normals are blended; the amount does not depend on it. `docs/order.md` compares them.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     BlendOrder {
         /// Sprites are blended back to front, as in OTEE. A sprite that passes another in depth changes the picture
         /// abruptly, and the edges of the nearest sprites show.
@@ -57,6 +61,7 @@ choice! {
 
 choice! {
     /// Scene depth that the sprites are compared with.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     DepthSource {
         /// A copy at the resolution of the accumulation target. Works everywhere.
         #[default]
@@ -69,6 +74,7 @@ choice! {
 
 choice! {
     /// Depth that a reduced texel keeps of the pixels under it.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     DepthDownsample {
         /// Farthest and nearest in alternating texels: an upsampler finds both sides of an edge close by.
         #[default]
@@ -84,6 +90,7 @@ choice! {
 
 choice! {
     /// Upsampling of the reduced target to full resolution.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     Upsample {
         /// Bilinear where depth hardly changes, elsewhere a fit by position and depth over the surrounding sixteen
         /// texels. Smooth on both sides of an edge and on surfaces at a grazing angle. `docs/upsampling.md` compares
@@ -104,6 +111,7 @@ choice! {
 choice! {
     /// Resolution at which diffuse light and soft scatter are computed. `docs/upsampling.md` has the cost and the error
     /// of each.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     LightingResolution {
         /// Once per pixel of the picture, from the upsampled normal and amount.
         #[default]
@@ -116,6 +124,7 @@ choice! {
 
 choice! {
     /// Layers that the path `tiled` adds up. `docs/tiled.md` has the error.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     Layers {
         /// Stops where a texel lets less than a thousandth through. With the order `weighted` all layers are added up,
         /// because normals count there regardless of the smoke in front.

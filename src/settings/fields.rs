@@ -29,6 +29,7 @@ pub type FieldHeading = (&'static str, Option<&'static str>);
 
 /// Use of an image that a field names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum ImageRole {
     /// Flipbook of normal maps.
     Sprite,

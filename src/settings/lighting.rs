@@ -7,6 +7,7 @@ use super::settings_macro::settings;
 
 choice! {
     /// Lighting model of sprites. `docs/six_way.md` compares the two.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     Lighting {
         /// Normals, through ramps that an artist paints.
         #[default]
@@ -19,6 +20,7 @@ choice! {
 
 choice! {
     /// Computation of the diffuse light of a normal.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     DiffuseMode {
         /// Every light through the diffuse ramp, in every pixel. Point lights vary across the smoke.
         #[default]
@@ -36,6 +38,7 @@ choice! {
 
 choice! {
     /// Ramp for light from behind the smoke.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     Backlight {
         /// The diffuse ramp, as from any side.
         #[default]
@@ -47,6 +50,7 @@ choice! {
 
 choice! {
     /// Dependence of soft scatter on the amount.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     SoftScatterMode {
         /// From `scatter_colour` to `ambient_colour` by a smoothstep.
         #[default]
@@ -58,6 +62,7 @@ choice! {
 
 choice! {
     /// Conversion of the amount to coverage, the share of the background that is hidden.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     CoverageMode {
         /// The amount times `boost`.
         #[default]
@@ -69,6 +74,7 @@ choice! {
 
 choice! {
     /// Value of a ramp between two of its texels.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     RampFilter {
         /// A mix of both: smooth light.
         #[default]

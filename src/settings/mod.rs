@@ -36,6 +36,7 @@ pub use traversal::{FieldRef, FieldValue, PathStep, field_path, field_values, fo
 
 choice! {
     /// Rendering path of a system.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     RenderPath {
         /// The faster of `raster` and `tiled`, estimated from the number of layers and their cost on the device.
         #[default]
@@ -65,6 +66,7 @@ impl RenderPath {
 
 choice! {
     /// Blend mode of forward sprites: OTEE's three.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     BlendMode {
         /// Greyish smoke: covers the background.
         #[default]
@@ -78,6 +80,7 @@ choice! {
 
 choice! {
     /// Debug view: the stage of the shading that is shown. OTEE's "Shade tree".
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     DebugView {
         /// Lit smoke over the scene.
         #[default]

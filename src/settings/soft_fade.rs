@@ -5,6 +5,7 @@ use super::settings_macro::settings;
 
 choice! {
     /// Curve from depth difference to fade. x is the difference times `fade_scale`, clamped to 0..1.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     FadeCurve {
         /// 3x² - 2x³: no crease at either end.
         #[default]

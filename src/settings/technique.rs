@@ -5,6 +5,7 @@ use super::settings_macro::settings;
 
 choice! {
     /// Technique by which a sprite meets the scene.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     Technique {
         /// Cut off at the scene, by the hardware's depth test. (NV, MS)
         Hard = "hard",
@@ -57,6 +58,7 @@ impl Technique {
 
 choice! {
     /// Source of the flipbook frame.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     SpriteAnimation {
         /// The particle's `frame`, repeating, with neighbours blended.
         #[default]

@@ -12,6 +12,7 @@ use super::fields::{FieldVisitor, Fields, ImageRole};
 pub type PathStep<'a> = (&'a str, Option<usize>);
 
 /// Reference to a field.
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum FieldRef<'a> {
     /// Real number.
     Number(&'a mut f32),
@@ -30,6 +31,7 @@ pub enum FieldRef<'a> {
 /// Value of a field. NaN equals NaN here.
 #[derive(Clone, Debug, serde::Serialize)]
 #[serde(untagged)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum FieldValue {
     /// Value of a [`FieldRef::Number`].
     Number(f32),

@@ -8,6 +8,7 @@ pub const MAX_TARGET_ATTACHMENTS: usize = 4;
 
 /// Role of a texture of the accumulation target. The order is that of the textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum AttachmentRole {
     /// Sum of premultiplied normals in rgb, amount in a. With six-way maps: light from right, top and front in rgb.
     /// Every system has it.

@@ -7,11 +7,14 @@ mod icc_profile;
 mod png;
 mod png_chunks;
 
+#[doc(hidden)]
 pub use atomic_write::{FileIdentity, check_writable, write_file, write_state_file};
+#[doc(hidden)]
 pub use baked_png::{is_baked_png, write_baked_png};
 pub use colour_space::{colour_conversion_notes, decode_colour_png, read_colour_png};
-pub use png::is_png;
-pub use png::{CompressionEffort, MAX_BYTES, MAX_SIDE, decode_png, read_file, read_png, write_png};
+#[doc(hidden)]
+pub use png::{CompressionEffort, is_png, read_file, write_png};
+pub use png::{MAX_BYTES, MAX_SIDE, decode_png, read_png};
 
 use glam::{IVec2, UVec2, Vec3, Vec4};
 

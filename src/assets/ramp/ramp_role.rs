@@ -4,6 +4,7 @@ use crate::settings::choice;
 
 choice! {
     /// Use of a ramp; `ramps/README.md` describes the axes.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     RampRole {
         /// Diffuse light by the angle between normal and light.
         #[default]

@@ -1,5 +1,6 @@
 //! Sprites: flipbooks of normal maps with the amount in alpha.
 
+#[doc(hidden)]
 pub mod alpha_bounds;
 
 use std::path::Path;

@@ -13,6 +13,7 @@ const SWITCH_RATIO: f32 = 0.95;
 
 /// RenderPath that `auto` chose for a system, with the reason. `Display` formats it as one sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub struct PathChoice {
     /// [`RenderPath::Raster`] or [`RenderPath::Tiled`].
     pub path: RenderPath,
@@ -22,6 +23,7 @@ pub struct PathChoice {
 
 /// Reason for a [`PathChoice`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum PathReason {
     /// The path is expected to take less time than the other, or not enough more to justify a switch.
     Expected {

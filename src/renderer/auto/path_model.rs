@@ -62,6 +62,7 @@ pub struct PathCosts {
 
 /// Origin of the figures of a [`PathModel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum PathModelSource {
     /// Defaults, measured on a GPU.
     Gpu,

@@ -14,6 +14,7 @@ const ASSUMED_DEPTH: f64 = 0.05;
 
 /// Accumulation workload of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub struct PathWorkload {
     /// Technique of the sprites.
     pub technique: Technique,

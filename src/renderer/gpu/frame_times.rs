@@ -4,6 +4,7 @@ use crate::renderer::auto::PathChoice;
 
 /// GPU time of one frame, by pass. See [`Timing`](crate::Timing).
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct FrameTimes {
     /// Frame number, which increases. A host compares it to detect a new result.
     pub frame: u64,
@@ -20,6 +21,7 @@ pub struct FrameTimes {
 
 /// GPU time of all passes of one name.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PassTime {
     /// Name of the pass (`"accumulate"`), or the host's label.
     pub name: &'static str,

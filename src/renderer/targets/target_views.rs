@@ -8,6 +8,7 @@ use crate::view_setup::AttachmentSet;
 /// · (`origin` + (i, j)). The part in use has `size` texels and starts at texel (0, 0) of the textures, which may be
 /// larger. All have the usage `COPY_SRC`.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct TargetViews<'a> {
     /// Textures of the accumulation target, in the order of `roles`. The first has normal and amount.
     pub accumulation: &'a [wgpu::TextureView],

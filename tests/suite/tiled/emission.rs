@@ -78,7 +78,7 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
     host.prepare(&mut encoder, &scene, Particles::Emitter(&emission)).unwrap();
     let memory = host.renderer.memory_use();
     println!("{memory:?}");
-    let TiledMemory { emitted, sorted, sprites, keys, counts, lists } = memory.tiled;
+    let TiledMemory { emitted, sorted, sprites, keys, counts, lists, .. } = memory.tiled;
     assert!([emitted, sprites, keys, counts, lists].iter().all(|&bytes| bytes > 1 << 20), "{memory:?}");
     assert_eq!((memory.tiled.total(), sorted), (emitted + sprites + keys + counts + lists, 0));
     assert!(memory.buffers >= memory.tiled.total() && memory.targets > 960 * 540 * 8);
