@@ -8,7 +8,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use glam::UVec2;
 use haze::emitter::Emitter;
 use haze::settings::BlendOrder;
-use haze::{Context, Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, wgpu};
+use haze::{Context, Descriptor, FrameInput, Light, ParticleSystem, Particles, Renderer, SceneDepth, Settings, wgpu};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_demo::headless::Headless;
@@ -54,9 +54,10 @@ fn prepare(criterion: &mut Criterion) {
             let (emitter, time) = emitter(count);
             let mut particles = Vec::new();
             emitter.evaluate(time, &mut particles);
-            let systems = [System::new(0, Particles::Slice(&particles), &settings, &material)];
+            let systems = [ParticleSystem::new(0, Particles::Slice(&particles), &settings, &material)];
             let lights = [Light::default()];
-            let frame = Frame { lights: &lights, systems: &systems, ..Frame::new(view, SceneDepth::Buffer(&depth)) };
+            let frame =
+                FrameInput { lights: &lights, systems: &systems, ..FrameInput::new(view, SceneDepth::Buffer(&depth)) };
             group.throughput(Throughput::Elements(count.into()));
             group.bench_function(BenchmarkId::new(order.name(), count), |bench| {
                 bench.iter_custom(|rounds| {

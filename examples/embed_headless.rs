@@ -5,10 +5,12 @@ use std::path::Path;
 use glam::camera::rh;
 use glam::{UVec2, Vec3, vec3};
 use haze::preset::MaterialNames;
-use haze::{Context, Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, View, wgpu};
+use haze::{
+    Context, Descriptor, FrameInput, Light, ParticleSystem, Particles, Renderer, SceneDepth, Settings, View, wgpu,
+};
 
 const SIZE: UVec2 = UVec2::new(640, 360);
-const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -28,9 +30,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             view_formats: &[],
         })
     };
-    let colour = target(COLOUR, wgpu::TextureUsages::COPY_SRC);
+    let color = target(COLOR, wgpu::TextureUsages::COPY_SRC);
     let depth = target(DEPTH, wgpu::TextureUsages::TEXTURE_BINDING); // haze reads the depth
-    let (colour_view, depth_view) = (colour.create_view(&Default::default()), depth.create_view(&Default::default()));
+    let (color_view, depth_view) = (color.create_view(&Default::default()), depth.create_view(&Default::default()));
     let view = View::new(
         rh::view::look_at_mat4(vec3(0.0, 1.6, 6.5), vec3(0.0, 1.7, 0.0), Vec3::Y),
         rh::proj::directx::perspective(0.8, SIZE.x as f32 / SIZE.y as f32, 0.1, 100.0),
@@ -38,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
 
     // haze setup, done once.
-    let descriptor = Descriptor { color_format: COLOUR, depth_format: Some(DEPTH), ..Descriptor::default() };
+    let descriptor = Descriptor { color_format: COLOR, depth_format: Some(DEPTH), ..Descriptor::default() };
     let context = Context::new(&device, &queue, None);
     let mut smoke = Renderer::new(&context, &descriptor)?;
     let material = context.create_material(&MaterialNames::default().load(Path::new(""))?)?;
@@ -47,23 +49,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut particles = Vec::new();
     haze::emitter::Emitter::default().evaluate(8.0, &mut particles);
     let (settings, orange) = (Settings::default(), vec3(1.0, 0.7, 0.4));
-    let frame = Frame {
-        lights: &[Light { position: vec3(-3.0, 3.0, 3.0), colour: orange, intensity: 12.0, ..Light::default() }],
-        systems: &[System::new(0, Particles::Slice(&particles), &settings, &material)],
+    let frame = FrameInput {
+        lights: &[Light { position: vec3(-3.0, 3.0, 3.0), color: orange, intensity: 12.0, ..Light::default() }],
+        systems: &[ParticleSystem::new(0, Particles::Slice(&particles), &settings, &material)],
         time: 8.0,
-        ..Frame::new(view, SceneDepth::Buffer(&depth_view))
+        ..FrameInput::new(view, SceneDepth::Buffer(&depth_view))
     };
     let mut encoder = device.create_command_encoder(&Default::default());
     // The host's scene is only a dark wall across the view; the smoke intersects it.
     let wall = view.clip_from_view.project_point3(vec3(0.0, 0.0, -6.6)).z;
     drop(host_pass(
         &mut encoder,
-        &colour_view,
+        &color_view,
         &depth_view,
         Some((wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 }, wall)),
     ));
     smoke.prepare(&mut encoder, &frame)?;
-    smoke.render(&mut host_pass(&mut encoder, &colour_view, &depth_view, None));
+    smoke.render(&mut host_pass(&mut encoder, &color_view, &depth_view, None));
 
     // The host submits, reads back and saves. Rows of 640 pixels are a multiple of 256 bytes, so they need no padding.
     let size = u64::from(4 * SIZE.x * SIZE.y);
@@ -71,7 +73,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let read = device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.x), rows_per_image: None };
     let into = wgpu::TexelCopyBufferInfo { buffer: &read, layout };
-    encoder.copy_texture_to_buffer(colour.as_image_copy(), into, colour.size());
+    encoder.copy_texture_to_buffer(color.as_image_copy(), into, color.size());
     queue.submit([encoder.finish()]);
     read.map_async(wgpu::MapMode::Read, .., |_| {});
     device.poll(wgpu::PollType::wait_indefinitely())?;
@@ -79,20 +81,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Begins a pass on the host's targets. With `clear` it writes colour and depth; without, the depth buffer is attached
+/// Begins a pass on the host's targets. With `clear` it writes color and depth; without, the depth buffer is attached
 /// read-only (no `depth_ops`), as haze requires.
 fn host_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    colour: &wgpu::TextureView,
+    color: &wgpu::TextureView,
     depth: &wgpu::TextureView,
     clear: Option<(wgpu::Color, f32)>,
 ) -> wgpu::RenderPass<'a> {
-    let load = clear.map_or(wgpu::LoadOp::Load, |(colour, _)| wgpu::LoadOp::Clear(colour));
+    let load = clear.map_or(wgpu::LoadOp::Load, |(color, _)| wgpu::LoadOp::Clear(color));
     let depth_ops =
         clear.map(|(_, depth)| wgpu::Operations { load: wgpu::LoadOp::Clear(depth), store: wgpu::StoreOp::Store });
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: colour,
+            view: color,
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },

@@ -9,8 +9,8 @@ use glam::{UVec2, Vec3, vec3};
 use haze::emitter::Emitter;
 use haze::preset::MaterialNames;
 use haze::{
-    Context, Descriptor, Frame, Light, Material, Particle, Particles, Renderer, SceneDepth, Settings, System, View,
-    wgpu,
+    Context, Descriptor, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, SceneDepth,
+    Settings, View, wgpu,
 };
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
@@ -161,23 +161,23 @@ impl Host {
             rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 100.0),
             size,
         );
-        let lamp = |position, colour, intensity| Light { position, colour, intensity, ..Light::default() };
-        let frame = Frame {
+        let lamp = |position, color, intensity| Light { position, color, intensity, ..Light::default() };
+        let frame = FrameInput {
             lights: &[
                 lamp(vec3(-3.0, 3.0, 3.0), vec3(1.0, 0.7, 0.4), 12.0),
                 lamp(vec3(2.0, 2.0, -2.5), vec3(0.4, 0.6, 1.0), 3.0),
             ],
-            systems: &[System::new(0, Particles::Slice(&self.particles), &self.settings, &self.material)],
+            systems: &[ParticleSystem::new(0, Particles::Slice(&self.particles), &self.settings, &self.material)],
             time,
-            ..Frame::new(view, SceneDepth::Buffer(&self.depth))
+            ..FrameInput::new(view, SceneDepth::Buffer(&self.depth))
         };
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let colour = target.texture.create_view(&Default::default());
+        let color = target.texture.create_view(&Default::default());
         let clear = wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 };
         // The host draws its opaque scene in this pass; this example has none.
-        drop(begin(&mut encoder, &colour, &self.depth, Some(clear)));
+        drop(begin(&mut encoder, &color, &self.depth, Some(clear)));
         self.smoke.prepare(&mut encoder, &frame)?;
-        self.smoke.render(&mut begin(&mut encoder, &colour, &self.depth, None));
+        self.smoke.render(&mut begin(&mut encoder, &color, &self.depth, None));
         self.queue.submit([encoder.finish()]);
         self.window.pre_present_notify();
         self.queue.present(target);
@@ -200,10 +200,10 @@ fn depth_target(device: &wgpu::Device, configuration: &wgpu::SurfaceConfiguratio
     texture.create_view(&Default::default())
 }
 
-/// Begins a pass on the window. With `clear` it writes colour and depth; without, depth is read-only, as haze requires.
+/// Begins a pass on the window. With `clear` it writes color and depth; without, depth is read-only, as haze requires.
 fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    colour: &wgpu::TextureView,
+    color: &wgpu::TextureView,
     depth: &wgpu::TextureView,
     clear: Option<wgpu::Color>,
 ) -> wgpu::RenderPass<'a> {
@@ -211,7 +211,7 @@ fn begin<'a>(
     let depth_ops = clear.map(|_| wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store });
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: colour,
+            view: color,
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },

@@ -7,7 +7,7 @@
 
 #import "lib/diffuse.wgsl"
 #import "lib/diffuse_bake.wgsl"
-#import "lib/colour.wgsl"
+#import "lib/color.wgsl"
 
 override MOTIF: bool = false;
 // Number of texels along a side of the target.

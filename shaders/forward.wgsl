@@ -1,17 +1,17 @@
 // forward: lights and blends every sprite fragment at full resolution. The classic method, and the baseline of every
 // comparison.
 // Reads   particles (instances, back to front), sprite flipbook, detail map or noise, scene depth, lights, ramps.
-// Writes  the host's colour target: linear light.
+// Writes  the host's color target: linear light.
 // Blend   alpha: ONE, ONE_MINUS_SRC_ALPHA (premultiplied) · additive: ONE, ONE · multiply: DST, ZERO.
 // Source  OTEE "Typical game particles so far"; techniques: NV, BLOG, MS; age ramp: MS.
 
 #import "lib/sprite_fragment.wgsl"
 #import "lib/diffuse.wgsl"
 #import "lib/blending.wgsl"
-#import "lib/colour.wgsl"
+#import "lib/color.wgsl"
 
-// True if sprite.age_colour is not 0.
-override AGE_COLOUR: bool = false;
+// True if sprite.age_color is not 0.
+override AGE_COLOR: bool = false;
 
 override BLEND_MODE: u32 = BLEND_MODE_ALPHA;
 
@@ -49,9 +49,9 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         light = diffuse_from_lights(normal, covered, position);
     }
     light = light * system.diffuse_intensity + soft_scatter(amount);
-    if AGE_COLOUR {
-        let colour = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
-        light *= mix(vec3f(1.0), colour, system.age_colour);
+    if AGE_COLOR {
+        let color = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
+        light *= mix(vec3f(1.0), color, system.age_color);
     }
     return forward_fragment(BLEND_MODE, bounded_light(light), covered);
 }

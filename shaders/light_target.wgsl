@@ -7,7 +7,7 @@
 // Space   As in transfer.
 
 #import "lib/lit_smoke.wgsl"
-#import "lib/colour.wgsl"
+#import "lib/color.wgsl"
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {

@@ -1,11 +1,11 @@
 // specular_scatter: draws the glow of lights behind the smoke, one quad of constant pixel size around each light.
 // Reads   accumulation target, reduced depth, scene depth, lights, specular ramp.
-// Writes  the host's colour target: linear light.
+// Writes  the host's color target: linear light.
 // Blend   ONE, ONE (additive); alpha is unchanged.
 // Source  OTEE "Specular scattering".
 
 #import "lib/accumulated.wgsl"
-#import "lib/colour.wgsl"
+#import "lib/color.wgsl"
 #import "lib/ramp.wgsl"
 #import "lib/sprite.wgsl"
 
@@ -13,8 +13,8 @@ struct QuadVertex {
     @builtin(position) position: vec4f,
     // -1..1 across the quad.
     @location(0) uv: vec2f,
-    // Light colour times all fades except that of the range.
-    @location(1) @interpolate(flat, either) colour: vec3f,
+    // Light color times all fades except that of the range.
+    @location(1) @interpolate(flat, either) color: vec3f,
     // Position, and 1 / range.
     @location(2) @interpolate(flat, either) position_inverse_range: vec4f,
 }
@@ -62,7 +62,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     let extent = corner * system.specular_scatter_size * 2.0 / view.size;
     out.position = vec4f(centre + extent, 0.5, 1.0);
     out.uv = corner;
-    out.colour = light.colour * strength * visibility;
+    out.color = light.color * strength * visibility;
     out.position_inverse_range = vec4f(light.position, light.inverse_range);
     return out;
 }
@@ -82,5 +82,5 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     let window = range_window(dot(to_light, to_light), in.position_inverse_range.w);
     // x is distance², y is the amount.
     let glow = sample_ramp_2d(specular_ramp, linear_sampler, vec2f(distance_squared, amount));
-    return vec4f(bounded_light(glow * in.colour * window), 0.0);
+    return vec4f(bounded_light(glow * in.color * window), 0.0);
 }

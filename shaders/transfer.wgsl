@@ -1,13 +1,13 @@
 // transfer: lights the accumulated smoke once per pixel over the system's bounding box, or upsamples the output of
 // light_target.
 // Reads   accumulation target, reduced depth, scene depth, lights, ramps, baked diffuse light.
-// Writes  the host's colour target: linear light.
+// Writes  the host's color target: linear light.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", "Diffuse lighting", "Soft scattering".
 // Space   Lighting in view space, on the plane through the middle of the smoke that faces the viewer.
 
 #import "lib/lit_smoke.wgsl"
-#import "lib/colour.wgsl"
+#import "lib/color.wgsl"
 
 // True: draw back faces, which the near plane never clips away. False: draw front faces, depth-tested.
 override BACK_FACES: bool = false;
@@ -69,7 +69,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let accumulated = sample_target(accumulation, pixel);
     let amount = accumulated.a;
     if DEBUG_VIEW == DEBUG_VIEW_OVERDRAW {
-        return vec4f(overdraw_colour(amount * 255.0), 1.0);
+        return vec4f(overdraw_color(amount * 255.0), 1.0);
     }
     if DEBUG_VIEW == DEBUG_VIEW_AMOUNT {
         return vec4f(vec3f(amount), 1.0);

@@ -2,7 +2,7 @@
 //! lit **once per pixel** from ramp textures that an artist can paint.
 //!
 //! ```text
-//! host:                opaque scene ─► scene colour (HDR) + scene depth
+//! host:                opaque scene ─► scene color (HDR) + scene depth
 //!                                                              │ sampled
 //! Renderer::prepare    depth_resolve      multisampled scene depth ─► farthest sample of each pixel
 //!   (host's encoder)   measure            extent of particles in a host's buffer
@@ -27,7 +27,7 @@
 //! # fn host() -> (wgpu::Device, wgpu::Queue, wgpu::CommandEncoder, wgpu::TextureView, haze::View) { unimplemented!() }
 //! # fn pass_with_read_only_depth(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { unimplemented!() }
 //! # let (device, queue, mut encoder, scene_depth, view) = host();
-//! use haze::{Context, Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System};
+//! use haze::{Context, Descriptor, FrameInput, Light, ParticleSystem, Particles, Renderer, SceneDepth, Settings};
 //!
 //! // Once.
 //! let context = Context::new(&device, &queue, None);
@@ -39,10 +39,10 @@
 //! // Every frame, after the opaque scene.
 //! let mut particles = Vec::new();
 //! haze::emitter::Emitter::default().evaluate(2.0, &mut particles);
-//! let frame = Frame {
+//! let frame = FrameInput {
 //!     lights: &[Light { position: glam::vec3(-3.0, 3.0, 2.0), intensity: 20.0, ..Light::default() }],
-//!     systems: &[System::new(0, Particles::Slice(&particles), &settings, &material)],
-//!     ..Frame::new(view, SceneDepth::Buffer(&scene_depth))
+//!     systems: &[ParticleSystem::new(0, Particles::Slice(&particles), &settings, &material)],
+//!     ..FrameInput::new(view, SceneDepth::Buffer(&scene_depth))
 //! };
 //! smoke.prepare(&mut encoder, &frame)?;
 //! smoke.render(&mut pass_with_read_only_depth(&mut encoder));
@@ -53,13 +53,13 @@
 //! haze follows semantic versioning; before 1.0 the minor version takes the place of the major one. wgpu's and glam's types
 //! are part of the interface, so a new version of either that changes types comes with a new major version of haze;
 //! [`wgpu`] and [`glam`] are the versions in use. A minor version may add fields and variants: create structs with
-//! `..Default::default()` or `..Frame::new(…)`, and give every `match` a wildcard arm. Messages of errors, the feature
+//! `..Default::default()` or `..FrameInput::new(…)`, and give every `match` a wildcard arm. Messages of errors, the feature
 //! `exhaustive`, and items that these pages do not show may change in any version.
 //!
 //! # Conventions
 //! Metres, seconds, radians; angles in settings are degrees. World and view space are the host's, left- or
 //! right-handed. Internally, view space has x to the right, y up and z towards the viewer. Depth is linear *view
-//! depth*, positive in front of the camera. Colour is linear; ramps are sRGB images, decoded when loaded. NDC depth is
+//! depth*, positive in front of the camera. Color is linear; ramps are sRGB images, decoded when loaded. NDC depth is
 //! 0..1, in any of the usual conventions, which is derived from the projection. `shaders/README.md` and
 //! `ramps/README.md` have the details.
 //!
@@ -87,8 +87,8 @@ pub use assets::material_assets::MaterialAssets;
 pub use assets::{builtin, image, noise, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{
-    AliveCount, Bounds, EmitterSnapshot, Frame, Light, LightKind, Material, Particle, ParticleBuffer, Particles,
-    SceneDepth, System, View,
+    AliveCount, Bounds, EmitterSnapshot, FrameInput, Light, LightKind, Material, Particle, ParticleBuffer,
+    ParticleSystem, Particles, SceneDepth, View,
 };
 pub use renderer::{
     Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,

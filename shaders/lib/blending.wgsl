@@ -4,7 +4,7 @@ const BLEND_MODE_ALPHA: u32 = 0u;
 const BLEND_MODE_ADDITIVE: u32 = 1u;
 const BLEND_MODE_MULTIPLY: u32 = 2u;
 
-// Output of a forward fragment: premultiplied for alpha and additive, a filter colour for multiply. `light` is as the
+// Output of a forward fragment: premultiplied for alpha and additive, a filter color for multiply. `light` is as the
 // target stores it.
 fn forward_fragment(mode: u32, light: vec3f, coverage: f32) -> vec4f {
     switch mode {

@@ -12,7 +12,7 @@ const BACKLIGHT_SAME: u32 = 0u;
 const BACKLIGHT_RAMP: u32 = 1u;
 override BACKLIGHT: u32 = BACKLIGHT_SAME;
 
-// Sum of all lights through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · colour · attenuation. (OTEE
+// Sum of all lights through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · color · attenuation. (OTEE
 // "Diffuse lighting")
 fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
     let to_viewer = direction_to_viewer(position, view.orthographic);
@@ -25,7 +25,7 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
             let against = sample_ramp_2d(backlight_ramp, linear_sampler, at);
             falloff = mix(falloff, against, backlight_weight(light.direction, to_viewer));
         }
-        sum += falloff * lights[i].colour * light.attenuation;
+        sum += falloff * lights[i].color * light.attenuation;
     }
     return sum;
 }
@@ -36,9 +36,9 @@ fn diffuse_from_six_way(six_way: SixWay, position: vec3f) -> vec3f {
     for (var i = 0u; i < system.light_count; i++) {
         let light = sample_light(lights[i], position);
         let response = six_way_response(six_way.positive, six_way.negative, light.direction, system.six_way_anisotropy);
-        sum += lights[i].colour * (response * light.attenuation);
+        sum += lights[i].color * (response * light.attenuation);
     }
-    return sum * system.six_way_colour;
+    return sum * system.six_way_color;
 }
 
 // Even backlight of smoke by its amount. (OTEE "Soft scattering")
@@ -47,5 +47,5 @@ fn soft_scatter(amount: f32) -> vec3f {
         return sample_ramp(soft_scatter_ramp, linear_sampler, amount) * system.soft_scatter_intensity;
     }
     let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
-    return mix(system.scatter_colour, system.ambient_colour, weight) * system.soft_scatter_intensity;
+    return mix(system.scatter_color, system.ambient_color, weight) * system.soft_scatter_intensity;
 }

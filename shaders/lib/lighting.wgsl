@@ -1,6 +1,6 @@
-// Lighting of a single point of the smoke. View space, metres, linear colour.
+// Lighting of a single point of the smoke. View space, metres, linear color.
 
-#import "lib/colour.wgsl"
+#import "lib/color.wgsl"
 
 // Mirrors LightUniform in src/formula/uniforms.rs.
 struct Light {
@@ -12,8 +12,8 @@ struct Light {
     direction: vec3f,
     // 1 for directional lights, else 0.
     directional: f32,
-    // Colour times intensity.
-    colour: vec3f,
+    // Color times intensity.
+    color: vec3f,
     specular_scatter: f32,
     // Cone fade: saturate(cos · spot_scale + spot_offset)². Scale 0, offset 1 for lights without a cone.
     spot_scale: f32,
@@ -76,7 +76,7 @@ fn backlight_weight(to_light: vec3f, to_viewer: vec3f) -> f32 {
     return against * against * against;
 }
 
-// Weight of `ambient_colour`, 0 in thin smoke and 1 in thick: smoothstep(scatter_amount, scatter_amount +
+// Weight of `ambient_color`, 0 in thin smoke and 1 in thick: smoothstep(scatter_amount, scatter_amount +
 // scatter_smooth, A), safe at scatter_smooth = 0. (OTEE "Soft scattering")
 fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {
     let x = saturate((amount - scatter_amount) / max(scatter_smooth, 1.0e-4));

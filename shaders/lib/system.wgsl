@@ -21,9 +21,9 @@ struct System {
     depth_limit: f32,
     // Pixels per reduced texel.
     scale: u32,
-    scatter_colour: vec3f,
+    scatter_color: vec3f,
     scatter_amount: f32,
-    ambient_colour: vec3f,
+    ambient_color: vec3f,
     scatter_smooth: f32,
     // NDC of the accumulation target = NDC of the view · xy + zw.
     target_from_ndc: vec4f,
@@ -45,7 +45,7 @@ struct System {
     light_count: u32,
     size: f32,
     motion: f32,
-    age_colour: f32,
+    age_color: f32,
     // Number of mip levels by which the detail map is smaller than the sprite.
     detail_lod: f32,
     billboard_radius: f32,
@@ -65,7 +65,7 @@ struct System {
     // Metres behind the scene at which sprites still show, under the curve `always`.
     show_through_distance: f32,
     // Linear RGB of smoke that is lit by six-way maps.
-    six_way_colour: vec3f,
+    six_way_color: vec3f,
     six_way_anisotropy: f32,
     // Optical depth of the smoke in front of sixteen view depths.
     front_knots: array<vec4f, 4>,

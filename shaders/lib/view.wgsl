@@ -10,7 +10,7 @@ struct View {
     ray_offset: vec2f,
     // Pixels.
     size: vec2f,
-    // First pixel of the view in the host's colour target and depth.
+    // First pixel of the view in the host's color target and depth.
     origin: vec2f,
     // Metres. An infinite far plane is SKY_VIEW_DEPTH.
     near: f32,

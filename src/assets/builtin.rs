@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::image::{decode_colour_png, decode_png};
+use super::image::{decode_color_png, decode_png};
 use super::json;
 use super::noise::NoiseVolume;
 use super::ramp::Ramp;
@@ -137,9 +137,9 @@ impl Builtin {
     /// Decodes a ramp or a motif.
     ///
     /// # Errors
-    /// As [`decode_colour_png`].
+    /// As [`decode_color_png`].
     pub fn ramp(&self) -> Result<Ramp, Error> {
-        Ok(Ramp::from_image(&decode_colour_png(&path(self.name), self.bytes)?))
+        Ok(Ramp::from_image(&decode_color_png(&path(self.name), self.bytes)?))
     }
 
     /// Decodes a sprite with the layout of its recipe.

@@ -37,7 +37,7 @@ pub struct MaterialAssets {
     pub specular_ramp: Ramp,
     /// Painted image of a lit sphere, for [`DiffuseMode::PaintedMotif`](crate::settings::DiffuseMode::PaintedMotif).
     pub motif: Ramp,
-    /// Particle colour by age; forward path only. One row. (MS)
+    /// Particle color by age; forward path only. One row. (MS)
     pub age_ramp: Ramp,
     /// Coverage by amount times `boost`, for [`CoverageMode::Ramp`](crate::settings::CoverageMode::Ramp): black is
     /// transparent, white opaque. One row.

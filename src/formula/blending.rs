@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 
 use crate::settings::BlendMode;
 
-/// Output of a forward fragment: premultiplied for alpha and additive, a filter colour for multiply.
+/// Output of a forward fragment: premultiplied for alpha and additive, a filter color for multiply.
 pub fn forward_fragment(mode: BlendMode, light: Vec3, coverage: f32) -> Vec4 {
     match mode {
         BlendMode::Alpha => light.extend(1.0) * coverage,

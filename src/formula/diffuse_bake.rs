@@ -115,10 +115,10 @@ pub fn zonal_coefficients(f: impl Fn(f32) -> Vec3) -> [Vec3; 3] {
 /// Adds one light to the nine coefficients, as seen through a ramp with these zonal coefficients. A zonal function
 /// rotated to `direction` has c_lm = √(4π / (2l + 1)) · z_l · Y_lm(direction). (Sloan, "Stupid Spherical Harmonics
 /// Tricks", 2008)
-pub fn add_light(coefficients: &mut [Vec4; 9], zonal: &[Vec3; 3], direction: Vec3, colour: Vec3) {
+pub fn add_light(coefficients: &mut [Vec4; 9], zonal: &[Vec3; 3], direction: Vec3, color: Vec3) {
     const BAND: [usize; 9] = [0, 1, 1, 1, 2, 2, 2, 2, 2];
     for ((c, basis), band) in coefficients.iter_mut().zip(spherical_harmonics_basis(direction)).zip(BAND) {
         let turn = (4.0 * std::f32::consts::PI / (2 * band + 1) as f32).sqrt();
-        *c += (zonal[band] * colour * (turn * basis)).extend(0.0);
+        *c += (zonal[band] * color * (turn * basis)).extend(0.0);
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::colour::{luminance, srgb_from_linear};
+use super::color::{luminance, srgb_from_linear};
 use super::saturate;
 use super::uniforms::LightUniform;
 
@@ -11,7 +11,7 @@ use super::uniforms::LightUniform;
 pub struct LightSample {
     /// Unit vector towards the light.
     pub direction: Vec3,
-    /// Multiplies the light's colour.
+    /// Multiplies the light's color.
     pub attenuation: f32,
 }
 
@@ -60,7 +60,7 @@ pub fn backlight_weight(to_light: Vec3, to_viewer: Vec3) -> f32 {
     against * against * against
 }
 
-/// Weight of `ambient_colour`, 0 in thin smoke and 1 in thick: smoothstep(scatter_amount, scatter_amount +
+/// Weight of `ambient_color`, 0 in thin smoke and 1 in thick: smoothstep(scatter_amount, scatter_amount +
 /// scatter_smooth, A). (OTEE "Soft scattering")
 pub fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {
     let x = saturate((amount - scatter_amount) / scatter_smooth.max(1.0e-4));

@@ -2,7 +2,7 @@
 //! name as in `shaders/lib/`. Both renderers, the bakers and the tests use it.
 
 pub mod blending;
-pub mod colour;
+pub mod color;
 pub mod depth;
 pub mod diffuse_bake;
 pub mod emitter;

@@ -3,12 +3,12 @@
 
 use glam::{Mat3, UVec2, Vec3, vec3};
 
-use super::colour::srgb_from_linear;
+use super::color::srgb_from_linear;
 use super::hash::{pcg3d, unit};
 
 /// ACES tonemap curve, linear HDR to linear 0..1. (Hill, "BakingLab", 2016: a fit of the reference and output
 /// transforms)
-pub fn aces_fitted(colour: Vec3) -> Vec3 {
+pub fn aces_fitted(color: Vec3) -> Vec3 {
     const INPUT: Mat3 = Mat3::from_cols(
         vec3(0.597_19, 0.076, 0.028_4),
         vec3(0.354_58, 0.908_34, 0.133_83),
@@ -19,14 +19,14 @@ pub fn aces_fitted(colour: Vec3) -> Vec3 {
         vec3(-0.531_08, 1.108_13, -0.072_76),
         vec3(-0.073_67, -0.006_05, 1.076_02),
     );
-    let v = INPUT * colour.max(Vec3::ZERO);
+    let v = INPUT * color.max(Vec3::ZERO);
     let fitted = (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951) + 0.238_081);
     (OUTPUT * fitted).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
 /// sRGB code of tonemapped light. `exposure` multiplies the light first.
-pub fn tonemapped(colour: Vec3, exposure: f32) -> Vec3 {
-    aces_fitted(colour * exposure).map(srgb_from_linear)
+pub fn tonemapped(color: Vec3, exposure: f32) -> Vec3 {
+    aces_fitted(color * exposure).map(srgb_from_linear)
 }
 
 /// Dither to add before rounding to 8 bits, so that slow gradients do not band: triangular noise, within half a step

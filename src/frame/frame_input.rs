@@ -12,7 +12,7 @@ use crate::settings::{BlendOrder, DebugView, Settings};
 
 /// Input of [`Renderer::prepare`](crate::Renderer::prepare) for one frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct FrameInput<'a> {
     /// The camera.
     pub view: View,
     /// Depth of the opaque scene, already rendered in this encoder or an earlier one.
@@ -23,7 +23,7 @@ pub struct Frame<'a> {
     /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
     /// Particle systems, in any order. They are drawn far to near.
-    pub systems: &'a [System<'a>],
+    pub systems: &'a [ParticleSystem<'a>],
     /// Multiplies all light that the smoke sends to the viewer, for hosts whose target holds exposed light. 1 leaves it
     /// in the units of the lights. From 0 on.
     pub exposure: f32,
@@ -36,7 +36,7 @@ pub struct Frame<'a> {
     pub debug_views: &'a [DebugView],
 }
 
-impl<'a> Frame<'a> {
+impl<'a> FrameInput<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
         let debug_views = &[DebugView::Final];
@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Depth of the opaque scene at full resolution, with `TEXTURE_BINDING` usage, as large as the host's colour target.
+/// Depth of the opaque scene at full resolution, with `TEXTURE_BINDING` usage, as large as the host's color target.
 /// Single-sampled, but for [`SceneDepth::Multisampled`]. `docs/depth.md` has a table of which depth is read and which is
 /// tested.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +105,7 @@ impl<'a> SceneDepth<'a> {
 
 /// One particle system: sprites that are accumulated together and lit as one body.
 #[derive(Clone, Copy, Debug)]
-pub struct System<'a> {
+pub struct ParticleSystem<'a> {
     /// Identifies the system from frame to frame, whatever its position in the list. Must be unique within a frame.
     pub key: u64,
     /// The sprites, in any order.
@@ -129,7 +129,7 @@ pub struct System<'a> {
     pub material: &'a Material,
 }
 
-impl<'a> System<'a> {
+impl<'a> ParticleSystem<'a> {
     /// System with a measured box. `key`: any number that the frame's other systems do not have.
     pub const fn new(key: u64, particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
         Self { key, particles, world_from_particles: Mat4::IDENTITY, bounds: None, depth: None, settings, material }
@@ -137,7 +137,7 @@ impl<'a> System<'a> {
 }
 
 /// Particles on the GPU, in the layout of [`Particle`]. With `STORAGE` usage and an `offset` that is a multiple of 16, the
-/// GPU measures them, and the smoke is lit as that of a slice; without, as if it filled `System::bounds`.
+/// GPU measures them, and the smoke is lit as that of a slice; without, as if it filled `ParticleSystem::bounds`.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleBuffer<'a> {
     /// Contains `count` particles from `offset` on. `VERTEX` usage.
@@ -178,11 +178,11 @@ pub enum Particles<'a> {
     /// Particles in memory. [`Renderer::prepare`](crate::Renderer::prepare) sorts and uploads them. A sprite with a
     /// number that is not finite or out of range is skipped.
     Slice(&'a [Particle]),
-    /// Particles on the GPU. Requires `System::bounds`.
+    /// Particles on the GPU. Requires `ParticleSystem::bounds`.
     Buffer(ParticleBuffer<'a>),
     /// Particles of an emitter at one time. The path `tiled` evaluates them on the GPU, with differences from
     /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre
-    /// and second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is
+    /// and second. Other paths evaluate them on the CPU. If `ParticleSystem::bounds` is `None`, the box is
     /// [`EmitterSnapshot::bounds`]. The mean depth is taken from a sample of about a thousand.
     Emitter(&'a EmitterSnapshot),
 }

@@ -1,4 +1,4 @@
-//! Lights of a host: world space, linear colour, metres.
+//! Lights of a host: world space, linear color, metres.
 
 use glam::{Mat4, Vec3};
 
@@ -24,8 +24,8 @@ choice! {
 }
 
 settings! {
-    /// One light. A white, unshadowed texel of a diffuse ramp sends `colour · intensity / distance²` to the viewer, or
-    /// `colour · intensity` under a directional light: candela or lux, divided by π, light smoke as a white matte surface.
+    /// One light. A white, unshadowed texel of a diffuse ramp sends `color · intensity / distance²` to the viewer, or
+    /// `color · intensity` under a directional light: candela or lux, divided by π, light smoke as a white matte surface.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Light {
         /// Type of the light.
@@ -39,8 +39,8 @@ settings! {
         direction: Vec3 = Vec3::NEG_Y, vector(-1.0e3..=1.0e3, "");
         /// Linear RGB, usually 0 to 1. Tints the light on smoke and scene.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        colour: Vec3 = Vec3::ONE, colour(0.0..=100.0);
-        /// Multiplies `colour`. Higher: brighter. Point and spot: at one metre. Directional: everywhere. Any unit that
+        color: Vec3 = Vec3::ONE, color(0.0..=100.0);
+        /// Multiplies `color`. Higher: brighter. Point and spot: at one metre. Directional: everywhere. Any unit that
         /// fits the scene: a sun of 120 000 lux works like one of 1. Light is limited to what half floats can hold.
         intensity: f32 = 1.0, number(0.0..=1.0e9, "");
         /// Distance at which a point or spot light has faded to nothing, metres; infinite: never. Lower is cheaper,
@@ -76,7 +76,7 @@ impl Light {
             inverse_range: if directional { 0.0 } else { 1.0 / self.range },
             direction: space_from_world.transform_vector3(self.direction).normalize_or(Vec3::NEG_Y),
             directional: if directional { 1.0 } else { 0.0 },
-            colour: self.colour * self.intensity,
+            color: self.color * self.intensity,
             specular_scatter: self.specular_scatter,
             spot_scale,
             spot_offset,

@@ -16,7 +16,7 @@ pub struct View {
     pub clip_from_view: Mat4,
     /// Size of the view, pixels.
     pub size: UVec2,
-    /// Upper left pixel of the view in the host's colour target and scene depth. (0, 0), except for split screens,
+    /// Upper left pixel of the view in the host's color target and scene depth. (0, 0), except for split screens,
     /// viewports of an editor, and images that are drawn into a part of a larger target.
     pub origin: UVec2,
 }

@@ -18,13 +18,13 @@ settings! {
         brazier: bool = true, flag;
         /// Linear RGB of the sky overhead. It lights the scene, not the smoke.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        zenith: Vec3 = Vec3::new(0.045, 0.07, 0.14), colour(0.0..=100.0);
+        zenith: Vec3 = Vec3::new(0.045, 0.07, 0.14), color(0.0..=100.0);
         /// Linear RGB of the sky at the horizon, behind the smoke.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        horizon: Vec3 = Vec3::new(0.22, 0.19, 0.2), colour(0.0..=100.0);
+        horizon: Vec3 = Vec3::new(0.22, 0.19, 0.2), color(0.0..=100.0);
         /// Linear RGB of the light that the ground reflects to the undersides of the scene.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        ground: Vec3 = Vec3::new(0.03, 0.028, 0.026), colour(0.0..=100.0);
+        ground: Vec3 = Vec3::new(0.03, 0.028, 0.026), color(0.0..=100.0);
     }
 }
 

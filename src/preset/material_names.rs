@@ -33,18 +33,18 @@ settings! {
         /// from below.
         y_down: bool = false, flag;
         "ramps and noise":
-        /// Light by dot(n, l) and, if it has rows, by amount times boost: the colours of shade, terminator and lit
+        /// Light by dot(n, l) and, if it has rows, by amount times boost: the colors of shade, terminator and lit
         /// side.
         diffuse_ramp: String = "diffuse_soft".into(), image(ImageRole::Ramp);
         /// The same for light from behind: a glowing rim, a dark middle.
         backlight_ramp: String = "backlight_traced_ash".into(), image(ImageRole::Ramp);
-        /// Light by amount: the colours of thin and thick smoke, independent of the lights.
+        /// Light by amount: the colors of thin and thick smoke, independent of the lights.
         soft_scatter_ramp: String = "scatter_mist".into(), image(ImageRole::Ramp);
         /// Glow by distance² and amount: the look of a light that shines through smoke.
         specular_ramp: String = "specular_halo".into(), image(ImageRole::Ramp);
         /// Painted lit sphere: light by paint alone.
         motif: String = "motif_studio".into(), image(ImageRole::Motif);
-        /// Colour by age: from flame to ash.
+        /// Color by age: from flame to ash.
         age_ramp: String = "age_smoke".into(), image(ImageRole::Ramp);
         /// Coverage by amount: soft, wispy or sharp silhouettes.
         coverage_ramp: String = "coverage_soft".into(), image(ImageRole::Ramp);

@@ -6,11 +6,11 @@ use crate::error::FieldError;
 /// Describes the host's render pass. All fields are fixed for the lifetime of a [`Renderer`](crate::Renderer).
 #[derive(Clone, Copy, Debug)]
 pub struct Descriptor<'a> {
-    /// Format of the view that is the first colour attachment. It must be blendable. haze writes linear light: use
+    /// Format of the view that is the first color attachment. It must be blendable. haze writes linear light: use
     /// `Rgba16Float` for HDR. If the texture holds sRGB-encoded values (`Rgba8Unorm`, `Bgra8Unorm`), attach a view in the
     /// format that ends in `Srgb`, so that the hardware blends linear light.
     pub color_format: wgpu::TextureFormat,
-    /// Formats of the pass's further colour attachments (velocity, object IDs …), in order, at most 7; `None` for an
+    /// Formats of the pass's further color attachments (velocity, object IDs …), in order, at most 7; `None` for an
     /// unused index. haze does not write to them.
     pub further_color_formats: &'a [Option<wgpu::TextureFormat>],
     /// Format of the pass's depth attachment, `None` if it has none.

@@ -6,14 +6,14 @@ use super::context::Shared;
 use super::frame_bindings::FrameBindings;
 use super::gpu::Gpu;
 use super::plan::PipelineInputs;
-use crate::frame::Frame;
+use crate::frame::FrameInput;
 use crate::view_setup::ViewGeometry;
 
 /// A frame, with the resources that every system needs.
 pub(crate) struct FrameContext<'a> {
     pub gpu: Gpu<'a>,
     pub shared: &'a Shared,
-    pub frame: &'a Frame<'a>,
+    pub frame: &'a FrameInput<'a>,
     pub view: &'a ViewGeometry,
     /// Size of the host's targets, pixels.
     pub host_size: UVec2,

@@ -30,7 +30,7 @@ mod validate_frame;
 mod warm_up;
 
 use crate::error::{Error, FieldError};
-use crate::frame::{Frame, SceneDepth};
+use crate::frame::{FrameInput, SceneDepth};
 use crate::settings::DebugView;
 use crate::view_setup::{ResolvedSettings, ViewGeometry};
 
@@ -158,7 +158,7 @@ impl Renderer {
     /// [`Error::Field`] names the view, light, setting or system that is not valid. It names `prepare` if the commands
     /// of the previous call were neither submitted nor dropped. After an error, [`render`](Self::render) draws nothing
     /// until a `prepare` succeeds.
-    pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &Frame<'_>) -> Result<(), Error> {
+    pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
         self.order.clear();
         self.validate_submitted()?;
         let context = self.context.clone();
@@ -175,7 +175,7 @@ impl Renderer {
         };
         let resolved = self.resolved_depth.as_ref().map(|resolved| resolved.target.clone());
         let scene_depth = resolved.as_ref().map_or(frame.scene_depth, SceneDepth::Buffer);
-        let frame = &Frame { scene_depth, ..*frame };
+        let frame = &FrameInput { scene_depth, ..*frame };
         let inputs = self.pipeline_inputs(&view, frame.scene_depth.kind(), frame.debug_views);
         // Bind group 0 of every system: view and scene depth.
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
@@ -231,7 +231,7 @@ impl Renderer {
     }
 
     /// Records a debug view instead of the final image. Draws nothing unless `debug_view` is one of the frame's
-    /// [`debug_views`](Frame::debug_views). After one `prepare`, any number of debug views can be drawn.
+    /// [`debug_views`](FrameInput::debug_views). After one `prepare`, any number of debug views can be drawn.
     pub fn render_debug_view(&self, pass: &mut wgpu::RenderPass<'_>, debug_view: DebugView) {
         self.record_systems(pass, self.order.iter(), debug_view);
     }
@@ -244,7 +244,7 @@ impl Renderer {
         self.record_systems(pass, visible, DebugView::Final);
     }
 
-    /// Returns the view depth of a system's smoke, metres, by which [`render`](Self::render) sorts: `System::depth`, or
+    /// Returns the view depth of a system's smoke, metres, by which [`render`](Self::render) sorts: `ParticleSystem::depth`, or
     /// the measured one. `None` if the system with this key is out of sight.
     pub fn depth_of(&self, key: u64) -> Option<f32> {
         let visible = self.order.iter().find(|visible| self.states[visible.state].key == key)?;
@@ -326,7 +326,7 @@ impl Renderer {
 
     /// Keeps one state per system of the frame, found by its key. Drops states whose system has been absent for more
     /// than 120 frames.
-    fn sync_system_states(&mut self, frame: &Frame<'_>) {
+    fn sync_system_states(&mut self, frame: &FrameInput<'_>) {
         let is_missing = |state: &SystemState| !frame.systems.iter().any(|system| system.key == state.key);
         self.states.retain_mut(|state| {
             let is_missing = is_missing(state);

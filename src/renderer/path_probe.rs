@@ -12,7 +12,7 @@ use super::context::Context;
 use super::descriptor::Descriptor;
 use super::gpu::record::{begin_pass, written_depth};
 use crate::error::Error;
-use crate::frame::{Frame, Material, Particle, Particles, SceneDepth, System, View};
+use crate::frame::{FrameInput, Material, Particle, ParticleSystem, Particles, SceneDepth, View};
 use crate::preset::MaterialNames;
 use crate::settings::{Layers, RenderPath, Settings};
 
@@ -176,8 +176,8 @@ impl ProbeScene {
         let mut encoder =
             self.renderer.context().device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         drop(begin_pass(&mut encoder, "haze probe", &[], Some(written_depth(&self.depth)), None));
-        let systems = [System::new(0, Particles::Slice(&self.particles), &settings, &self.material)];
-        let frame = Frame { systems: &systems, ..Frame::new(self.view, SceneDepth::Buffer(&self.depth)) };
+        let systems = [ParticleSystem::new(0, Particles::Slice(&self.particles), &settings, &self.material)];
+        let frame = FrameInput { systems: &systems, ..FrameInput::new(self.view, SceneDepth::Buffer(&self.depth)) };
         self.renderer.prepare(&mut encoder, &frame)?;
         let started = Instant::now();
         submit(encoder)?;

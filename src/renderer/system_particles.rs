@@ -10,7 +10,7 @@ use super::sprite_instances::Sprites;
 use super::system_passes::ParticlePass;
 use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles};
 use super::validate_frame::is_readable_by_compute;
-use crate::frame::{Bounds, Particle, Particles, System};
+use crate::frame::{Bounds, Particle, ParticleSystem, Particles};
 use crate::settings::{RenderPath, Settings};
 use crate::view_setup::{ParticleMeasures, ParticleSpace, ViewGeometry};
 
@@ -37,7 +37,7 @@ impl SystemParticles {
         &mut self,
         view: &ViewGeometry,
         space: &ParticleSpace,
-        system: &System<'_>,
+        system: &ParticleSystem<'_>,
         settings: &Settings,
     ) -> Bounds {
         if let Particles::Emitter(emission) = system.particles {
@@ -100,7 +100,7 @@ impl SystemParticles {
     pub fn measure_pass(
         &mut self,
         context: &FrameContext<'_>,
-        host: &System<'_>,
+        host: &ParticleSystem<'_>,
         settings: &Settings,
         groups: &Groups,
         system: &wgpu::Buffer,

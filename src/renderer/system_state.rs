@@ -21,7 +21,7 @@ use super::targets::TargetViews;
 use super::tiled::TiledSystem;
 use super::validate_frame::tiled_unavailable_reason;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use crate::frame::System;
+use crate::frame::ParticleSystem;
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
     ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, light_uniforms,
@@ -201,7 +201,7 @@ impl SystemState {
     }
 
     /// Places the system in the view, uploads its data, and prepares targets and pipelines.
-    pub fn write(&mut self, context: &FrameContext<'_>, system: &System<'_>) {
+    pub fn write(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) {
         self.prepared = self.prepare(context, system);
         let is_deferred = matches!(self.passes(), Some(SystemPasses::Deferred(_)));
         if self.frames_without_targets.tick(!is_deferred) {
@@ -217,7 +217,7 @@ impl SystemState {
         self.particles.release_unused(is_released, is_measured, particle_pass);
     }
 
-    fn prepare(&mut self, context: &FrameContext<'_>, system: &System<'_>) -> Option<PreparedSystem> {
+    fn prepare(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) -> Option<PreparedSystem> {
         let FrameContext { gpu, shared, frame, view, .. } = context;
         let material = &system.material.info;
         let space = ParticleSpace::new(view, &system.world_from_particles);
@@ -294,7 +294,7 @@ impl SystemState {
 fn choose(
     path_chooser: &mut PathChooser,
     shared: &Shared,
-    system: &System<'_>,
+    system: &ParticleSystem<'_>,
     workload: Option<&PathWorkload>,
 ) -> Option<PathChoice> {
     let Some(workload) = workload.filter(|_| system.settings.path == RenderPath::Auto) else {

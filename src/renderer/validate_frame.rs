@@ -13,7 +13,7 @@ use crate::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
     validate_world_from_particles,
 };
-use crate::frame::{AliveCount, Frame, Particle, ParticleBuffer, Particles, SceneDepth, System, View};
+use crate::frame::{AliveCount, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, View};
 use crate::settings::{DepthSource, RenderPath, Technique};
 use crate::view_setup::AttachmentSet;
 
@@ -21,7 +21,7 @@ use crate::view_setup::AttachmentSet;
 ///
 /// # Errors
 /// Names the first field that is not valid.
-pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> Result<(), FieldError> {
+pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &FrameInput<'_>) -> Result<(), FieldError> {
     validate_frame_numbers(frame.exposure, frame.time, frame.up)?;
     let size = validate_scene_depth(shared, frame)?;
     if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
@@ -49,7 +49,7 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> R
 }
 
 /// Returns the size of the host's targets, pixels.
-pub(crate) fn host_size(frame: &Frame<'_>) -> UVec2 {
+pub(crate) fn host_size(frame: &FrameInput<'_>) -> UVec2 {
     frame.target_size.unwrap_or_else(|| depth_size(&frame.scene_depth))
 }
 
@@ -59,7 +59,7 @@ fn depth_size(scene_depth: &SceneDepth<'_>) -> UVec2 {
     UVec2::new(texture.width(), texture.height())
 }
 
-fn validate_scene_depth(shared: &Shared, frame: &Frame<'_>) -> Result<UVec2, FieldError> {
+fn validate_scene_depth(shared: &Shared, frame: &FrameInput<'_>) -> Result<UVec2, FieldError> {
     let size = depth_size(&frame.scene_depth);
     if let Some(target_size) = frame.target_size {
         let is_level = |level: u32| (size >> level).max(UVec2::ONE) == target_size;
@@ -129,7 +129,12 @@ fn validate_depth_format_and_usage(
     Ok(())
 }
 
-fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
+fn validate_system(
+    shared: &Shared,
+    index: usize,
+    frame: &FrameInput<'_>,
+    system: &ParticleSystem<'_>,
+) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
     if !system.settings.is_forward() {
         validate_attachments(index, AttachmentSet::of(system.settings), system.settings.accumulate.format)?;
@@ -170,7 +175,7 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
 }
 
 /// Returns the reason why the path `auto` cannot choose `tiled` for a system; `None` if it can.
-pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &System<'_>) -> Option<PathReason> {
+pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &ParticleSystem<'_>) -> Option<PathReason> {
     let Some(tiled) = &shared.pipelines.tiled else { return Some(PathReason::TiledUnsupported) };
     let (count, is_readable) = match system.particles {
         Particles::Slice(particles) => (particles.len() as u64, true),
@@ -204,7 +209,11 @@ fn validate_alive_count(alive: &AliveCount<'_>, field: &impl Fn(&str) -> String)
     Ok(())
 }
 
-fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
+fn validate_particles(
+    shared: &Shared,
+    system: &ParticleSystem<'_>,
+    field: &impl Fn(&str) -> String,
+) -> Result<(), FieldError> {
     let size = size_of::<Particle>() as u64;
     let is_tiled = system.settings.path == RenderPath::Tiled;
     let needs_sorting = system.particles.need_sorting(system.settings);

@@ -57,11 +57,11 @@ pub trait FieldVisitor {
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str);
 
     /// Linear RGB.
-    fn colour(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>) {
+    fn color(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>) {
         self.vector(name, value, range, "");
     }
 
-    /// sRGB colour with 8 bits a channel.
+    /// sRGB color with 8 bits a channel.
     fn srgb(&mut self, _name: &'static str, _value: &mut [u8; 3]) {}
 
     /// Boolean.

@@ -52,7 +52,7 @@ choice! {
     /// Dependence of soft scatter on the amount.
     #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     SoftScatterMode {
-        /// From `scatter_colour` to `ambient_colour` by a smoothstep.
+        /// From `scatter_color` to `ambient_color` by a smoothstep.
         #[default]
         Smoothstep = "smoothstep",
         /// From a painted ramp over the amount.
@@ -95,9 +95,9 @@ settings! {
         backlight: Backlight = Backlight::default(), choice;
         /// Multiplies the diffuse light of all lights. Higher: brighter smoke in the same scene.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
-        /// Linear RGB colour of smoke that is lit by six-way maps, which have no colour of their own.
+        /// Linear RGB color of smoke that is lit by six-way maps, which have no color of their own.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        six_way_colour: Vec3 = Vec3::ONE, colour(0.0..=1.0);
+        six_way_color: Vec3 = Vec3::ONE, color(0.0..=1.0);
         /// Mix of six-way maps for light from between their sides. 0: even. Towards 1: smoke that scatters light
         /// forward, with a glow close around a light behind it.
         six_way_anisotropy: f32 = 0.2, number(0.0..=0.95, "");
@@ -108,19 +108,19 @@ settings! {
     /// Soft scatter: even backlight of thin smoke, which darkens as the amount grows.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SoftScatter {
-        /// Curve between two colours, or a painted ramp.
+        /// Curve between two colors, or a painted ramp.
         mode: SoftScatterMode = SoftScatterMode::default(), choice;
-        /// Amount at which `scatter_colour` begins to fade. Higher: the pale rim reaches further in.
+        /// Amount at which `scatter_color` begins to fade. Higher: the pale rim reaches further in.
         scatter_amount: f32 = 0.0, number(0.0..=1.0, "");
-        /// Range of amounts, after that, over which it changes to `ambient_colour`. Lower: a sharp edge. Higher: a slow
+        /// Range of amounts, after that, over which it changes to `ambient_color`. Lower: a sharp edge. Higher: a slow
         /// change.
         scatter_smooth: f32 = 0.7, number(0.0..=1.0, "");
         /// Linear RGB of thin smoke, which lets light through from all around.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        scatter_colour: Vec3 = Vec3::new(0.05, 0.055, 0.065), colour(0.0..=100.0);
+        scatter_color: Vec3 = Vec3::new(0.05, 0.055, 0.065), color(0.0..=100.0);
         /// Linear RGB of thick smoke. Higher: brightens parts that no light reaches.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-        ambient_colour: Vec3 = Vec3::new(0.012, 0.013, 0.017), colour(0.0..=100.0);
+        ambient_color: Vec3 = Vec3::new(0.012, 0.013, 0.017), color(0.0..=100.0);
         /// Multiplies soft scatter. Higher: milky smoke. Lower: dark shade.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
     }

@@ -92,9 +92,9 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         centre: extent.centre,
         smoke_far: extent.far,
         opacity: accumulate.opacity,
-        scatter_colour: settings.soft_scatter.scatter_colour * exposure,
+        scatter_color: settings.soft_scatter.scatter_color * exposure,
         scatter_amount: settings.soft_scatter.scatter_amount,
-        ambient_colour: settings.soft_scatter.ambient_colour * exposure,
+        ambient_color: settings.soft_scatter.ambient_color * exposure,
         scatter_smooth: settings.soft_scatter.scatter_smooth,
         target_from_ndc: target_from_ndc(&rect, view.size),
         target_origin: rect.origin.as_vec2(),
@@ -104,7 +104,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         smoke_depth_limit: (farthest.min(projected.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         alive_count: u32::MAX,
         padding: [0.0; 2],
-        six_way_colour: settings.diffuse.six_way_colour,
+        six_way_color: settings.diffuse.six_way_color,
         six_way_anisotropy: settings.diffuse.six_way_anisotropy,
         sprite_size: material.sprite_size,
         frame_count: material.frame_count,
@@ -121,7 +121,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         light_count: lights.len() as u32,
         size: settings.sprite.size,
         motion: settings.sprite.motion,
-        age_colour: settings.sprite.age_colour,
+        age_color: settings.sprite.age_color,
         detail_lod: material.detail.map_or(0.0, |detail| detail.lod),
         billboard_radius: settings.spherical_billboard.radius,
         billboard_density: settings.spherical_billboard.density,
@@ -163,13 +163,13 @@ fn spherical_harmonics(
     let to_viewer = direction_to_viewer(centre, orthographic);
     for light in lights {
         let sample = sample_light(light, centre);
-        let colour = light.colour * sample.attenuation;
+        let color = light.color * sample.attenuation;
         let backlight = match settings.diffuse.backlight {
             Backlight::Same => 0.0,
             Backlight::Ramp => backlight_weight(sample.direction, to_viewer),
         };
         let zonal = std::array::from_fn(|l| material.zonal[l].lerp(material.backlight_zonal[l], backlight));
-        add_light(&mut sum, &zonal, sample.direction, colour);
+        add_light(&mut sum, &zonal, sample.direction, color);
     }
     sum
 }

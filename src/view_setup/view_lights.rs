@@ -6,7 +6,7 @@ use super::view_geometry::ViewGeometry;
 use crate::formula::uniforms::LightUniform;
 use crate::frame::{Bounds, Light, LightKind};
 
-/// Writes the lights that reach the bounding box to `out`, in view space. `exposure` multiplies their colours.
+/// Writes the lights that reach the bounding box to `out`, in view space. `exposure` multiplies their colors.
 pub fn light_uniforms(
     view: &ViewGeometry,
     lights: &[Light],
@@ -17,11 +17,11 @@ pub fn light_uniforms(
     out.clear();
     let reaches = |light: &&Light| {
         let nearest = light.position.clamp(bounds.min, bounds.max);
-        let lit = light.intensity > 0.0 && light.colour != Vec3::ZERO;
+        let lit = light.intensity > 0.0 && light.color != Vec3::ZERO;
         lit && (light.kind == LightKind::Directional || nearest.distance(light.position) < light.range)
     };
     out.extend(lights.iter().filter(reaches).map(|light| {
         let uniform = light.uniform(&view.view_from_world);
-        LightUniform { colour: uniform.colour * exposure, ..uniform }
+        LightUniform { color: uniform.color * exposure, ..uniform }
     }));
 }

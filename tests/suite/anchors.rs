@@ -10,7 +10,7 @@ use haze::formula::lighting::{
 use haze::formula::normal::{accumulation_from_normal, normal_from_accumulation, rotate_normal};
 use haze::formula::soft_fade::{fade_contrast, fade_exponential, near_fade, soft_fade};
 use haze::formula::technique::{density_amount, depth_sprite_depth, ray_sphere, spherical_billboard_amount};
-use haze::formula::{colour, depth};
+use haze::formula::{color, depth};
 use haze::glam::{Vec2, Vec3, Vec4, Vec4Swizzles, vec2, vec3};
 use haze::settings::{FadeCurve, NormalDecode, NormalEncoding};
 use haze_reference::blend_unit::premultiplied_over;
@@ -256,13 +256,13 @@ fn spherical_harmonics_match_published_values() {
     }
 }
 
-// colour
+// color
 
 #[test]
 fn srgb_matches_the_standard() {
     // IEC 61966-2-1.
     for (linear, encoded) in [(0.0, 0.0), (0.001, 0.012_92), (0.214_041, 0.5), (0.5, 0.735_357), (1.0, 1.0)] {
-        assert_close(colour::srgb_from_linear(linear), encoded);
-        assert_close(colour::linear_from_srgb(encoded), linear);
+        assert_close(color::srgb_from_linear(linear), encoded);
+        assert_close(color::linear_from_srgb(encoded), linear);
     }
 }

@@ -117,11 +117,11 @@ impl Column {
         let of_light = |to_light: Vec3| {
             let light = Light { kind: LightKind::Directional, direction: -to_light, ..Light::default() };
             let mut picture = Image::new(size, Vec4::ZERO);
-            let frame = haze_reference::Frame {
+            let frame = haze_reference::FrameInput {
                 view,
                 scene_depth: &Image::new(size, 1.0),
                 lights: &[light],
-                systems: &[haze_reference::System::new(&self.particles, settings, material)],
+                systems: &[haze_reference::ParticleSystem::new(&self.particles, settings, material)],
                 exposure: 1.0,
                 time: 0.0,
                 up: Vec3::Y,
@@ -155,7 +155,7 @@ impl Column {
         };
         let mut six_way = Settings { lighting: Lighting::SixWay, ..settings };
         six_way.diffuse.six_way_anisotropy = maps.anisotropy;
-        six_way.diffuse.six_way_colour = maps.colour;
+        six_way.diffuse.six_way_color = maps.color;
         [settings, six_way].map(|settings| self.drawn(&settings, &material))
     }
 }
@@ -213,7 +213,7 @@ fn save(folder: &Path, medium: &str, rows: &[&LightImages]) {
         let row = rows[(y / side) as usize];
         let exposure = exposures[(y / side) as usize];
         let texel = row[(x / side) as usize].load(UVec2::new(x % side, y % side).as_ivec2()) * exposure / white;
-        let code = texel.to_array().map(|light| haze::formula::colour::srgb_from_linear(light.clamp(0.0, 1.0)));
+        let code = texel.to_array().map(|light| haze::formula::color::srgb_from_linear(light.clamp(0.0, 1.0)));
         image::Rgb(code.map(|code| (code * 255.0).round() as u8))
     });
     let (width, height) = picture.dimensions();

@@ -97,7 +97,7 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| s.settings.accumulate.encoding = NormalEncoding::Biased,
     |s, _| s.settings.path = RenderPath::Forward,
     |s, _| (s.settings.path, s.settings.accumulate.opacity) = (RenderPath::Tiled, 1.0),
-    |s, _| (s.settings.path, s.settings.sprite.age_colour) = (RenderPath::Forward, 0.5),
+    |s, _| (s.settings.path, s.settings.sprite.age_color) = (RenderPath::Forward, 0.5),
     |s, l| (s.settings.accumulate.order, l.kind) = (BlendOrder::Weighted, LightKind::Directional),
     |s, l| {
         (s.settings.accumulate.scale, s.settings.soft_fade.curve, l.kind) = (1, FadeCurve::Contrast, LightKind::Spot);

@@ -6,7 +6,7 @@
 //! variables, which start with the values of [`fixture`], and replaces every texture by a test texture of its kind.
 
 mod blending;
-mod colour;
+mod color;
 mod compute;
 mod depth;
 mod diffuse_bake;
@@ -64,7 +64,7 @@ struct Formula {
 fn formulas() -> Vec<Formula> {
     let all = [
         blending::formulas(),
-        colour::formulas(),
+        color::formulas(),
         depth::formulas(),
         diffuse_bake::formulas(),
         emitter::formulas(),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{UVec2, Vec4};
 use haze::builtin;
-use haze::formula::colour::srgb_from_linear;
+use haze::formula::color::srgb_from_linear;
 use haze::image::Image;
 use haze::image::{CompressionEffort, read_png, write_png};
 use haze::settings::{DebugView, Technique};

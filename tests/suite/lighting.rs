@@ -4,7 +4,7 @@ use glam::{UVec2, Vec3, Vec4, vec3};
 use haze::image::Image;
 use haze::settings::{DebugView, DiffuseMode, RenderPath, Technique};
 use haze::{Light, LightKind, Particle};
-use haze_reference::{Frame, System};
+use haze_reference::{FrameInput, ParticleSystem};
 
 use crate::gpu::gpu;
 use crate::psnr::{MIN_PSNR, psnr};
@@ -61,9 +61,12 @@ fn new_sprite_changes_the_image_in_proportion_to_its_amount() {
 #[test]
 fn nan_depth_is_an_error_that_names_the_field() {
     let scene = TestScene::new(SIZE);
-    let system = System { depth: Some(f32::NAN), ..System::new(&scene.particles, &scene.settings, &scene.material) };
+    let system = ParticleSystem {
+        depth: Some(f32::NAN),
+        ..ParticleSystem::new(&scene.particles, &scene.settings, &scene.material)
+    };
     let depth = scene.ndc_depth();
-    let frame = Frame { systems: &[system], ..Frame::new(scene.view, &depth) };
+    let frame = FrameInput { systems: &[system], ..FrameInput::new(scene.view, &depth) };
     let error = haze_reference::render(&frame, &mut Image::new(SIZE, Vec4::ZERO)).unwrap_err();
     assert_eq!(error.to_string(), "systems[0].depth: NaN is not valid; expected a finite number of metres, or None");
 }
@@ -173,8 +176,8 @@ fn exposure_multiplies_all_light_of_the_smoke() {
         (scene.settings.path, scene.settings.diffuse.mode) = (path, mode);
         let mut brighter = scene.clone();
         brighter.lights.iter_mut().for_each(|light| light.intensity *= 3.0);
-        brighter.settings.soft_scatter.scatter_colour *= 3.0;
-        brighter.settings.soft_scatter.ambient_colour *= 3.0;
+        brighter.settings.soft_scatter.scatter_color *= 3.0;
+        brighter.settings.soft_scatter.ambient_color *= 3.0;
         scene.exposure = 3.0;
         let (on_cpu, on_gpu) = (scene.on_cpu(), scene.on_gpu(gpu()).picture);
         assert!(largest_difference(&on_cpu, &brighter.on_cpu()) < 1.0e-4, "{mode:?}");

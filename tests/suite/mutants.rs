@@ -18,7 +18,7 @@ type Mutant = (&'static str, &'static str, &'static str, &'static str);
 
 const MUTANTS: &[Mutant] = &[
     (
-        // Gives the image of a blend state with the factor SrcAlpha for colour.
+        // Gives the image of a blend state with the factor SrcAlpha for color.
         "wrong blend factor",
         "accumulate.wgsl",
         "return accumulated_from(accumulated, ",

@@ -2,7 +2,7 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec4, vec3};
-use haze::formula::colour::overdraw_colour;
+use haze::formula::color::overdraw_color;
 use haze::image::Image;
 use haze::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze::{Overdraw, Particle, Particles, View, wgpu};
@@ -34,14 +34,14 @@ fn overdraw(scene: &TestScene) -> Overdraw {
 
 /// Decodes the number of layers of every covered pixel from an image of the overdraw debug view.
 fn layers(picture: &Image<Vec4>) -> Vec<u32> {
-    let colours: Vec<_> = (0..=60).map(|layers| overdraw_colour(layers as f32)).collect();
+    let colors: Vec<_> = (0..=60).map(|layers| overdraw_color(layers as f32)).collect();
     let layers = |texel: &Vec4| {
-        let off = |colour: &glam::Vec3| (texel.truncate() - colour).abs().max_element();
-        // Tolerance for half floats; the colours of two layer counts differ by at least 0.02.
-        colours
+        let off = |color: &glam::Vec3| (texel.truncate() - color).abs().max_element();
+        // Tolerance for half floats; the colors of two layer counts differ by at least 0.02.
+        colors
             .iter()
-            .position(|colour| off(colour) < 0.005)
-            .unwrap_or_else(|| panic!("{texel} is the colour of no layer count")) as u32
+            .position(|color| off(color) < 0.005)
+            .unwrap_or_else(|| panic!("{texel} is the color of no layer count")) as u32
     };
     picture.texels.iter().filter(|texel| **texel != BACKDROP).map(layers).collect()
 }
@@ -154,7 +154,7 @@ fn shaded(gpu: &Headless, scene: &TestScene) -> (u64, Overdraw) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("host"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &host.colour.create_view(&wgpu::TextureViewDescriptor::default()),
+                view: &host.color.create_view(&wgpu::TextureViewDescriptor::default()),
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations::default(),

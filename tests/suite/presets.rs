@@ -300,10 +300,10 @@ fn half_resolution_stays_close_to_full_resolution() {
 #[test]
 fn systems_are_drawn_far_to_near_in_any_list_order() {
     let mut shot = shot("column", UVec2::new(160, 90));
-    // A second column of another colour, in front of the first.
+    // A second column of another color, in front of the first.
     let mut nearer = shot.preset.systems[0].clone();
     nearer.emitter.position = glam::vec3(0.3, 0.3, 2.0);
-    nearer.settings.soft_scatter.scatter_colour = glam::vec3(0.5, 0.0, 0.0);
+    nearer.settings.soft_scatter.scatter_color = glam::vec3(0.5, 0.0, 0.0);
     shot.preset.systems.push(nearer);
     let material = shot.materials[0].clone();
     shot.materials.push(material);

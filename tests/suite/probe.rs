@@ -69,16 +69,16 @@ fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, pro
 }
 
 #[test]
-fn probed_colour_matches_the_image() {
+fn probed_color_matches_the_image() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
         let Some((captured, pictures)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
         let probes = captured.with_shot(shot.clone()).probe(&pixels()).unwrap();
         if shot.preset.systems.iter().any(|system| system.settings.is_forward()) {
-            assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}: a colour of a forward system", preset.name);
+            assert!(probes.iter().all(|probe| probe.color.is_none()), "{}: a color of a forward system", preset.name);
             continue;
         }
-        assert_matches_image(preset.name, |probe| probe.colour.map(|colour| colour.xyz()), &probes, &pictures[0]);
+        assert_matches_image(preset.name, |probe| probe.color.map(|color| color.xyz()), &probes, &pictures[0]);
     }
 }
 

@@ -22,7 +22,7 @@ pub fn psnr(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
 }
 
 /// Returns the peak signal-to-noise ratio of two images of smoke, dB. Only pixels that differ from their background by
-/// more than 1/255 in either image are counted; the others contain no smoke. Linear HDR colour is clamped to 0..4 and
+/// more than 1/255 in either image are counted; the others contain no smoke. Linear HDR color is clamped to 0..4 and
 /// has peak 4; alpha has peak 1.
 pub fn psnr_over(pictures: [&Image<Vec4>; 2], behind: [&Image<Vec4>; 2]) -> f32 {
     let [a, b] = pictures.map(|picture| &picture.texels);

@@ -183,7 +183,7 @@ fn wgsl_constants_match_rust() {
     assert_eq!(constant(&accumulate, "MAX_MAGNITUDE"), f64::from(frame::MAX_MAGNITUDE));
     assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(formula::sprite::MOTION_RANGE));
     assert_eq!(constant(&transfer, "SURFACE_DEPTH_TOLERANCE"), f64::from(formula::upsample::SURFACE_DEPTH_TOLERANCE));
-    assert_eq!(constant(&transfer, "MAX_HALF_FLOAT_LIGHT"), f64::from(formula::colour::MAX_HALF_FLOAT_LIGHT));
+    assert_eq!(constant(&transfer, "MAX_HALF_FLOAT_LIGHT"), f64::from(formula::color::MAX_HALF_FLOAT_LIGHT));
     assert_eq!(constant(&transfer, "SMOKE_DEPTH_TOLERANCE"), f64::from(formula::upsample::SMOKE_DEPTH_TOLERANCE));
     assert_eq!(constant(&transfer, "VISIBILITY_TAPS"), f64::from(formula::lighting::VISIBILITY_TAPS));
     let accumulate = composed("tile_accumulate.wgsl");

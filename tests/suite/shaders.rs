@@ -112,21 +112,21 @@ fn place(file: &str, what: &str) -> String {
 
 #[test]
 fn shader_errors_report_file_line_and_column() {
-    let refused = |from: &str, to: &str| ShaderFolder::new().edit("lib/colour.wgsl", from, to).refusal();
+    let refused = |from: &str, to: &str| ShaderFolder::new().edit("lib/color.wgsl", from, to).refusal();
     let says = |from: &str, to: &str, what: &str, reason: &str| {
-        assert_eq!(refused(from, to), format!("{}: {reason}", place("lib/colour.wgsl", what)), "{to}");
+        assert_eq!(refused(from, to), format!("{}: {reason}", place("lib/color.wgsl", what)), "{to}");
     };
     let shown = "saturate(light)";
     says(shown, "saturat(light)", shown, "no definition in scope for identifier: `saturat`");
     // An error in the validation of a function is reported at the expression that causes it.
-    let sum = "Function 'srgb_colour' is invalid: Operation Add can't work with vec3<f32> and vec2<f32>";
+    let sum = "Function 'srgb_color' is invalid: Operation Add can't work with vec3<f32> and vec2<f32>";
     says(shown, "saturate(light) + vec2f(f32(1u ^ 2u))", shown, sum);
     let returned =
         "Function 'srgb_from_linear' is invalid: The `return` expression does not match the declared return type";
     says("return linear * 12.92", "return vec3f(linear * 12.92)", "linear * 12.92", returned);
     // Columns count characters, not bytes; a tab is one character.
     let behind = refused("    let shown", "\t/* ü→ü */ let shown: vec2f");
-    let place_of_shown = place("lib/colour.wgsl", shown);
+    let place_of_shown = place("lib/color.wgsl", shown);
     let line = place_of_shown.strip_suffix(":17").unwrap();
     assert!(behind.starts_with(&format!("{line}:16: ")), "{behind}");
     let behind = refused("saturate(light)", "/* ü→ü */ saturat(light)");
@@ -139,10 +139,10 @@ fn shader_errors_report_file_line_and_column() {
         "`{` is never closed",
     );
     let unended = refused("fn bounded_light", "/* fn bounded_light");
-    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/colour.wgsl", "fn bounded_light")));
+    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/color.wgsl", "fn bounded_light")));
     // The error may be in an embedded file that no longer matches the edited one.
-    let renamed = refused("fn overdraw_colour", "fn overdrawn_colour");
-    let called = place("transfer.wgsl", "overdraw_colour");
+    let renamed = refused("fn overdraw_color", "fn overdrawn_color");
+    let called = place("transfer.wgsl", "overdraw_color");
     assert!(renamed.starts_with(&format!("builtin:/{called}: no definition in scope")), "{renamed}");
 }
 
@@ -211,14 +211,14 @@ fn missing_and_circular_imports_are_reported_at_the_import_line() {
     let imports = |import: &str| {
         let folder = ShaderFolder::new();
         folder.edit(
-            "lib/colour.wgsl",
+            "lib/color.wgsl",
             "const MAX_HALF_FLOAT_LIGHT",
             &format!("#import \"{import}\"\nconst MAX_HALF_FLOAT_LIGHT"),
         );
         folder
             .write("lib/round.wgsl", "#import \"lib/about.wgsl\"\n")
             .write("lib/about.wgsl", "\n#import \"lib/round.wgsl\"");
-        (folder.refusal(), place("lib/colour.wgsl", "const MAX_HALF_FLOAT_LIGHT").replace(":1", ":9"))
+        (folder.refusal(), place("lib/color.wgsl", "const MAX_HALF_FLOAT_LIGHT").replace(":1", ":9"))
     };
     let (unknown, place) = imports("lib/nothing.wgsl");
     assert_eq!(unknown, format!("{place}: there is no shader file \"lib/nothing.wgsl\" to import"));
@@ -229,27 +229,27 @@ fn missing_and_circular_imports_are_reported_at_the_import_line() {
     }
     let circle = "circular import: lib/round.wgsl → lib/about.wgsl → lib/round.wgsl";
     assert_eq!(imports("lib/round.wgsl").0, format!("lib/about.wgsl:2:9: {circle}"));
-    let (itself, place) = imports("lib/colour.wgsl");
-    assert_eq!(itself, format!("{place}: circular import: lib/colour.wgsl → lib/colour.wgsl"));
+    let (itself, place) = imports("lib/color.wgsl");
+    assert_eq!(itself, format!("{place}: circular import: lib/color.wgsl → lib/color.wgsl"));
 }
 
 #[test]
 fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
     let plain = draw(None);
     let folder = ShaderFolder::new();
-    folder.edit("lib/colour.wgsl", "return min(light, vec3f(", "return min(light * TINT, vec3f(");
+    folder.edit("lib/color.wgsl", "return min(light, vec3f(", "return min(light * TINT, vec3f(");
     assert!(folder.refusal().contains("`TINT`"));
     // TINT is defined in a separate file, which the others import.
     folder.edit("lib/blending.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
     folder.edit("lib/normal.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
-    let text = std::fs::read_to_string(folder.0.path().join("lib/colour.wgsl")).unwrap();
-    folder.write("lib/colour.wgsl", format!("#import \"mine/tint.wgsl\"\n{text}"));
+    let text = std::fs::read_to_string(folder.0.path().join("lib/color.wgsl")).unwrap();
+    folder.write("lib/color.wgsl", format!("#import \"mine/tint.wgsl\"\n{text}"));
     folder.write("mine/tint.wgsl", "const TINT = vec3f(0.5);\n");
     assert_ne!(folder.picture(), plain);
     folder.write("mine/tint.wgsl", "const TINT = vec3f(1.0);\n");
     assert_eq!(folder.picture(), plain);
     let read: Vec<_> = Sources::from_folder(folder.0.path()).unwrap().paths().map(Path::to_owned).collect();
-    let files = ["lib/blending.wgsl", "lib/colour.wgsl", "lib/normal.wgsl", "mine/tint.wgsl"];
+    let files = ["lib/blending.wgsl", "lib/color.wgsl", "lib/normal.wgsl", "mine/tint.wgsl"];
     assert_eq!(read, files.map(|file| folder.0.path().join(file)));
 }
 
@@ -261,9 +261,9 @@ fn byte_order_marks_and_crlf_line_endings_are_accepted() {
         folder.write(file, format!("\u{feff}{}", text.replace('\n', "\r\n")));
     }
     assert_eq!(folder.picture(), plain);
-    let text = shader::source("lib/colour.wgsl").unwrap().replace('\n', "\r\n");
-    folder.write("lib/colour.wgsl", format!("\u{feff}{}", text.replace("saturate(light)", "saturat(light)")));
-    let place = place("lib/colour.wgsl", "saturate(light)");
+    let text = shader::source("lib/color.wgsl").unwrap().replace('\n', "\r\n");
+    folder.write("lib/color.wgsl", format!("\u{feff}{}", text.replace("saturate(light)", "saturat(light)")));
+    let place = place("lib/color.wgsl", "saturate(light)");
     assert_eq!(folder.refusal(), format!("{place}: no definition in scope for identifier: `saturat`"));
 }
 

@@ -42,7 +42,7 @@ const MODES: &[(&str, Change)] = &[
     ("lit at the target's resolution", |s| s.accumulate.lighting_resolution = LightingResolution::Target),
     ("host depth", |s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1)),
     ("anisotropy", |s| s.diffuse.six_way_anisotropy = 0.7),
-    ("colour", |s| s.diffuse.six_way_colour = vec3(0.2, 0.5, 1.0)),
+    ("color", |s| s.diffuse.six_way_color = vec3(0.2, 0.5, 1.0)),
     // Modes that bake light by normal have no effect here.
     ("cubemap", |s| s.diffuse.mode = DiffuseMode::Cubemap),
 ];

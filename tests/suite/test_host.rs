@@ -5,7 +5,8 @@ mod textures;
 use glam::{UVec2, Vec4};
 use haze::image::Image;
 use haze::{
-    Context, Descriptor, Error, Frame, Particle, ParticleBuffer, Particles, Renderer, SceneDepth, System, Timing, wgpu,
+    Context, Descriptor, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, Renderer, SceneDepth,
+    Timing, wgpu,
 };
 use haze_demo::headless::Headless;
 
@@ -18,12 +19,12 @@ use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 #[derive(Clone, Debug)]
 pub struct HostKind {
     pub color_format: wgpu::TextureFormat,
-    /// Formats of the additional colour attachments of the pass.
+    /// Formats of the additional color attachments of the pass.
     pub additional_attachments: Vec<wgpu::TextureFormat>,
     pub depth_format: wgpu::TextureFormat,
     /// Sample count of the pass. The depth buffer passed to haze has one sample, but for [`DepthKind::Multisampled`].
     pub samples: u32,
-    /// Format of the colour texture, if the attachment is a view of it in another format.
+    /// Format of the color texture, if the attachment is a view of it in another format.
     pub stored_format: Option<wgpu::TextureFormat>,
     /// True to put one sample of each pixel of the multisampled depth buffer on the near plane.
     pub has_near_sample: bool,
@@ -52,9 +53,9 @@ pub struct Host {
     pub renderer: Renderer,
     pub material: haze::Material,
     size: UVec2,
-    /// Single-sampled colour target, which tests read back.
-    pub colour: wgpu::Texture,
-    /// The colour attachment that the smoke is drawn on, then the additional attachments.
+    /// Single-sampled color target, which tests read back.
+    pub color: wgpu::Texture,
+    /// The color attachment that the smoke is drawn on, then the additional attachments.
     attachments: Vec<wgpu::TextureView>,
     resolved: Option<wgpu::TextureView>,
     /// Single-sampled depth buffer passed to haze.
@@ -113,18 +114,18 @@ impl Host {
         let material = context.create_material(&scene.material)?;
         let size = kind.target_size.unwrap_or(scene.view.size);
         let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let colour = match kind.stored_format {
+        let color = match kind.stored_format {
             Some(format) => target_with_view_format(gpu, size, format, kind.color_format),
-            None => gpu.target("host colour", size, kind.color_format),
+            None => gpu.target("host color", size, kind.color_format),
         };
-        let resolved = (kind.samples > 1).then(|| whole(&colour));
+        let resolved = (kind.samples > 1).then(|| whole(&color));
         let mut attachments: Vec<_> = std::iter::once(kind.color_format)
             .chain(kind.additional_attachments.iter().copied())
             .map(|format| whole(&target(gpu, size, format, kind.samples)))
             .collect();
         if resolved.is_none() {
             let format = Some(kind.color_format);
-            attachments[0] = colour.create_view(&wgpu::TextureViewDescriptor { format, ..Default::default() });
+            attachments[0] = color.create_view(&wgpu::TextureViewDescriptor { format, ..Default::default() });
         }
         let depth = depth_buffer(gpu, scene, size, 1);
         let attached_depth =
@@ -143,7 +144,7 @@ impl Host {
             renderer,
             material,
             size,
-            colour,
+            color,
             attachments,
             resolved,
             samples: attached_depth.create_view(&depth_aspect),
@@ -187,22 +188,25 @@ impl Host {
         particles: Particles<'_>,
     ) -> Result<(), Error> {
         let (bounds, world_from_particles) = (scene.bounds, scene.world_from_particles);
-        let system =
-            System { bounds, world_from_particles, ..System::new(0, particles, &scene.settings, &self.material) };
+        let system = ParticleSystem {
+            bounds,
+            world_from_particles,
+            ..ParticleSystem::new(0, particles, &scene.settings, &self.material)
+        };
         let scene_depth = match scene.depth {
             DepthKind::Buffer => SceneDepth::Buffer(&self.depth),
             DepthKind::Multisampled => SceneDepth::Multisampled(&self.samples),
             DepthKind::Linear => SceneDepth::Linear(&self.linear),
             DepthKind::Both => SceneDepth::Both { buffer: &self.depth, linear: &self.linear },
         };
-        let frame = Frame {
+        let frame = FrameInput {
             lights: &scene.lights,
             systems: &[system],
             target_size: scene.host.target_size,
             exposure: scene.exposure,
             time: scene.time,
             debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
-            ..Frame::new(scene.view, scene_depth)
+            ..FrameInput::new(scene.view, scene_depth)
         };
         self.renderer.prepare(encoder, &frame)
     }
@@ -250,9 +254,9 @@ impl Host {
         draw(&mut pass);
     }
 
-    /// Reads back the colour target as floats. sRGB formats are decoded to linear light.
+    /// Reads back the color target as floats. sRGB formats are decoded to linear light.
     pub fn picture(&self, gpu: &Headless) -> Result<Image<Vec4>, Error> {
-        Ok(Image { size: self.size, texels: gpu.read_rgba16float(&convert_to_rgba16float(gpu, &self.colour))? })
+        Ok(Image { size: self.size, texels: gpu.read_rgba16float(&convert_to_rgba16float(gpu, &self.color))? })
     }
 
     /// Reads back additional attachment number `index`.

@@ -59,7 +59,7 @@ pub enum DepthKind {
     Both,
 }
 
-/// Scene colour behind the smoke: far from the colour of any lit sprite, exact in f16, and translucent, so that the
+/// Scene color behind the smoke: far from the color of any lit sprite, exact in f16, and translucent, so that the
 /// smoke's own alpha shows.
 pub const BACKDROP: Vec4 = Vec4::new(0.125, 0.25, 0.5, 0.25);
 
@@ -157,7 +157,7 @@ impl TestScene {
             lights: vec![
                 Light {
                     position: vec3(-4.0, 2.0, -4.0),
-                    colour: vec3(1.0, 0.6, 0.3),
+                    color: vec3(1.0, 0.6, 0.3),
                     intensity: 20.0,
                     ..Light::default()
                 },
@@ -229,14 +229,14 @@ impl TestScene {
 
     pub fn try_on_cpu(&self) -> Result<Image<Vec4>, FieldError> {
         let mut picture = Image::new(self.view.size, BACKDROP);
-        let frame = haze_reference::Frame {
+        let frame = haze_reference::FrameInput {
             view: self.view,
             scene_depth: &self.ndc_depth(),
             lights: &self.lights,
-            systems: &[haze_reference::System {
+            systems: &[haze_reference::ParticleSystem {
                 world_from_particles: self.world_from_particles,
                 bounds: self.bounds,
-                ..haze_reference::System::new(&self.particles, &self.settings, &self.material)
+                ..haze_reference::ParticleSystem::new(&self.particles, &self.settings, &self.material)
             }],
             exposure: self.exposure,
             time: self.time,

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use haze::settings::{DiffuseMode, LightingResolution, RenderPath};
-use haze::{Context, Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
+use haze::{Context, Error, FrameInput, FrameTimes, ParticleSystem, Particles, SceneDepth, Settings, Timing, wgpu};
 use haze_demo::headless::Headless;
 
 use crate::gpu::{can_test, gpu, has_independent_devices};
@@ -147,12 +147,14 @@ fn pass_times_add_up_over_systems() {
     let mut measure = |settings: &[&Settings]| {
         let systems: Vec<_> = (0..)
             .zip(settings)
-            .map(|(key, settings)| System::new(key, Particles::Slice(&scene.particles), settings, &host.material))
+            .map(|(key, settings)| {
+                ParticleSystem::new(key, Particles::Slice(&scene.particles), settings, &host.material)
+            })
             .collect();
-        let frame = Frame {
+        let frame = FrameInput {
             lights: &scene.lights,
             systems: &systems,
-            ..Frame::new(scene.view, SceneDepth::Buffer(&host.depth))
+            ..FrameInput::new(scene.view, SceneDepth::Buffer(&host.depth))
         };
         let seen = timing.latest().map(|times| times.frame);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

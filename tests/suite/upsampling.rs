@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2, Vec4, vec3};
 use haze::builtin;
-use haze::formula::colour::srgb_from_linear;
+use haze::formula::color::srgb_from_linear;
 use haze::image::Image;
 use haze::settings::{DebugView, LightingResolution, Upsample};
 use haze_demo::shot::Shot;

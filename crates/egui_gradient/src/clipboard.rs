@@ -6,7 +6,7 @@ use haze::assets::json;
 use haze::error::Error;
 use haze::settings::validate;
 use haze_author::ramp::gradient::check_not_empty;
-use haze_author::ramp::{HexColour, RampRow, RampStop};
+use haze_author::ramp::{HexColor, RampRow, RampStop};
 
 /// Returns the row as JSON, as in a recipe.
 pub fn to_text(row: &RampRow) -> String {
@@ -14,10 +14,10 @@ pub fn to_text(row: &RampRow) -> String {
     serde_json::to_string_pretty(row).unwrap_or_default()
 }
 
-/// Parses a colour: `#rrggbb` or `rrggbb`.
-pub fn colour(text: &str) -> Result<HexColour, String> {
+/// Parses a color: `#rrggbb` or `rrggbb`.
+pub fn color(text: &str) -> Result<HexColor, String> {
     let text = text.trim();
-    HexColour::try_from(format!("#{text}")).or_else(|_| HexColour::try_from(text.to_owned()))
+    HexColor::try_from(format!("#{text}")).or_else(|_| HexColor::try_from(text.to_owned()))
 }
 
 /// Parses the stops of a copied row and sorts them.
@@ -33,26 +33,26 @@ pub fn parse(text: &str) -> Result<Vec<RampStop>, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haze_author::ramp::{Curve, HexColour};
+    use haze_author::ramp::{Curve, HexColor};
 
     #[test]
     fn copied_stops_are_pasted_unchanged() {
         let stops = vec![
-            RampStop::new(0.0, HexColour([255, 240, 210])),
-            RampStop { curve: Curve::Constant, ..RampStop::new(0.3, HexColour([1, 2, 3])) },
-            RampStop::new(0.3, HexColour([0; 3])),
+            RampStop::new(0.0, HexColor([255, 240, 210])),
+            RampStop { curve: Curve::Constant, ..RampStop::new(0.3, HexColor([1, 2, 3])) },
+            RampStop::new(0.3, HexColor([0; 3])),
         ];
         let row = RampRow { at: 0.5, curve: Curve::Ease, stops };
         assert_eq!(parse(&to_text(&row)).unwrap(), row.stops);
     }
 
     #[test]
-    fn a_colour_may_be_written_without_the_hash_sign() {
+    fn a_color_may_be_written_without_the_hash_sign() {
         for text in ["#ff8000", " FF8000\n"] {
-            assert_eq!(colour(text), Ok(HexColour([255, 128, 0])));
+            assert_eq!(color(text), Ok(HexColor([255, 128, 0])));
         }
         for text in ["##ff8000", "ff800", "#ff80000", "+f8000"] {
-            assert!(colour(text).unwrap_err().starts_with(&format!("{text:?} is not valid")), "{text}");
+            assert!(color(text).unwrap_err().starts_with(&format!("{text:?} is not valid")), "{text}");
         }
     }
 
@@ -61,8 +61,8 @@ mod tests {
         for (text, said) in [
             ("a word", "pasted text:1:1"),
             (r#"{ "stops": [] }"#, "stops"),
-            (r##"{ "stops": [{ "at": 2, "colour": "#000000" }] }"##, "stops[0].at"),
-            (r##"{ "stops": [{ "at": 1, "colour": "black" }] }"##, "#rrggbb"),
+            (r##"{ "stops": [{ "at": 2, "color": "#000000" }] }"##, "stops[0].at"),
+            (r##"{ "stops": [{ "at": 1, "color": "black" }] }"##, "#rrggbb"),
         ] {
             let error = parse(text).unwrap_err().to_string();
             assert!(error.contains(said), "{text}: {error}");

@@ -3,15 +3,15 @@
 use egui::{self, Ui};
 use glam::Vec3;
 
-use super::edit_context::{EditContext, MOVE, RECOLOUR, REMOVE};
+use super::edit_context::{EditContext, MOVE, RECOLOR, REMOVE};
 use super::eyedropper::{Eyedropper, EyedropperResult};
 use super::number::{self, NumberInput};
-use super::paint::colour32;
+use super::paint::color32;
 use super::selection::Selection;
 use super::{clipboard, gradient_strip, stop_operations};
 use haze_author::ramp::fit_stops::fit_row;
 use haze_author::ramp::template::TEMPLATES;
-use haze_author::ramp::{Blend, Curve, HexColour, RampStop};
+use haze_author::ramp::{Blend, Curve, HexColor, RampStop};
 
 /// Hover texts of the curves, in the order of [`Curve::ALL`].
 const CURVES: [&str; 4] = ["smooth, without overshoot", "linear", "flat at both ends", "a hard edge at the next stop"];
@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
         };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| position_field(ui, context, &lead));
     });
-    ui.horizontal(|ui| colour_and_curve(ui, context, &lead));
+    ui.horizontal(|ui| color_and_curve(ui, context, &lead));
     ui.horizontal(|ui| {
         hsv_fields(ui, context, &lead);
         eyedropper_button(ui, context);
@@ -71,19 +71,19 @@ fn position_field(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
     }
 }
 
-fn colour_and_curve(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
-    let (mut colour, mut curve) = (lead.colour, lead.curve);
-    let label = ui.label("colour");
-    if ui.color_edit_button_srgb(&mut colour.0).labelled_by(label.id).changed() {
-        context.recolour(colour);
+fn color_and_curve(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
+    let (mut color, mut curve) = (lead.color, lead.curve);
+    let label = ui.label("color");
+    if ui.color_edit_button_srgb(&mut color.0).labelled_by(label.id).changed() {
+        context.recolor(color);
     }
-    let mut text = context.editor.typed.take().unwrap_or_else(|| colour.into());
+    let mut text = context.editor.typed.take().unwrap_or_else(|| color.into());
     let field = ui.add(egui::TextEdit::singleline(&mut text).desired_width(66.0)).labelled_by(label.id);
     let field = field.on_hover_text("sRGB, #rrggbb");
     if field.lost_focus() {
-        match clipboard::colour(&text) {
-            Ok(typed) if typed == colour => {}
-            Ok(typed) => context.recolour(typed),
+        match clipboard::color(&text) {
+            Ok(typed) if typed == color => {}
+            Ok(typed) => context.recolor(typed),
             Err(reason) => context.refused = Some(reason),
         }
     } else if field.has_focus() {
@@ -102,10 +102,10 @@ fn colour_and_curve(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop)
     }
 }
 
-/// Draws fields for hue, saturation and value of the colour.
+/// Draws fields for hue, saturation and value of the color.
 fn hsv_fields(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
-    let known = context.editor.hsv.filter(|(known, _)| *known == lead.colour);
-    let shown = known.map_or_else(|| lead.colour.hsv(), |(_, hsv)| hsv);
+    let known = context.editor.hsv.filter(|(known, _)| *known == lead.color);
+    let shown = known.map_or_else(|| lead.color.hsv(), |(_, hsv)| hsv);
     for (channel, (name, letter, most, unit)) in
         [("hue", "H ", 360.0, "°"), ("saturation", "S ", 100.0, "%"), ("value", "V ", 100.0, "%")]
             .into_iter()
@@ -121,7 +121,7 @@ fn hsv_fields(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
             label: Some(name.into()),
             ..egui::WidgetInfo::drag_value(true, number)
         });
-        response.on_hover_text(format!("{name} of the sRGB colour; +10 or *0.5 changes each selected stop"));
+        response.on_hover_text(format!("{name} of the sRGB color; +10 or *0.5 changes each selected stop"));
         if let Some(typed) = typed {
             let changed = |hsv: Vec3| {
                 let mut hsv = hsv;
@@ -129,11 +129,11 @@ fn hsv_fields(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
                 hsv
             };
             let of_lead = changed(shown);
-            context.edit_each(RECOLOUR, |stop| {
-                let hsv = if stop.colour == lead.colour { of_lead } else { changed(stop.colour.hsv()) };
-                stop.colour = HexColour::from_hsv(hsv);
+            context.edit_each(RECOLOR, |stop| {
+                let hsv = if stop.color == lead.color { of_lead } else { changed(stop.color.hsv()) };
+                stop.color = HexColor::from_hsv(hsv);
             });
-            context.editor.hsv = Some((HexColour::from_hsv(of_lead), of_lead));
+            context.editor.hsv = Some((HexColor::from_hsv(of_lead), of_lead));
         }
     }
 }
@@ -145,31 +145,31 @@ const ERROR: f32 = 10.0;
 pub fn update_eyedropper(ui: &Ui, context: &mut EditContext<'_>, blend: Blend) {
     let Some(mut eyedropper) = context.editor.eyedropper.take() else { return };
     match eyedropper.update(ui, &mut context.editor.sample_size) {
-        EyedropperResult::Pointed(colours) => {
+        EyedropperResult::Pointed(colors) => {
             if let Some(Ok(gradient)) =
-                preview(context, &colours, blend).map(|stops| gradient_strip::gradient(&stops, blend))
+                preview(context, &colors, blend).map(|stops| gradient_strip::gradient(&stops, blend))
             {
-                let colour = |at: f32| colour32(gradient_strip::colour_at(&gradient, at));
-                eyedropper.magnifier(ui, context.editor.sample_size, &colours, colour);
+                let color = |at: f32| color32(gradient_strip::color_at(&gradient, at));
+                eyedropper.magnifier(ui, context.editor.sample_size, &colors, color);
             }
             context.editor.eyedropper = Some(eyedropper);
         }
-        EyedropperResult::Done(colours) => match colours.as_slice() {
+        EyedropperResult::Done(colors) => match colors.as_slice() {
             [] => {}
-            [colour] => context.recolour(HexColour::from_srgb(*colour / 255.0)),
+            [color] => context.recolor(HexColor::from_srgb(*color / 255.0)),
             row => context.replace("gradient of a stroke", fit_row(row, blend, ERROR)),
         },
     }
 }
 
-/// Returns the stops that the eyedropper's current colours would give.
-fn preview(context: &EditContext<'_>, colours: &[Vec3], blend: Blend) -> Option<Vec<RampStop>> {
-    match colours {
+/// Returns the stops that the eyedropper's current colors would give.
+fn preview(context: &EditContext<'_>, colors: &[Vec3], blend: Blend) -> Option<Vec<RampStop>> {
+    match colors {
         [] => None,
-        [colour] => {
+        [color] => {
             let mut stops = context.stops.clone();
             let selected = context.editor.selection.iter();
-            selected.for_each(|index| stops[index].colour = HexColour::from_srgb(*colour / 255.0));
+            selected.for_each(|index| stops[index].color = HexColor::from_srgb(*color / 255.0));
             Some(stops)
         }
         row => Some(fit_row(row, blend, ERROR)),
@@ -177,11 +177,11 @@ fn preview(context: &EditContext<'_>, colours: &[Vec3], blend: Blend) -> Option<
 }
 
 fn eyedropper_button(ui: &mut Ui, context: &mut EditContext<'_>) {
-    let about = "Click anywhere in the window to give its colour to the selected stops, or draw a stroke to take the gradient \
+    let about = "Click anywhere in the window to give its color to the selected stops, or draw a stroke to take the gradient \
                  along it. Wheel, or 1, 3 and 5: pixels across that are averaged. Keys: arrows move, with Shift ten times as far; \
-                 Enter takes the colour, Space begins a stroke. Escape cancels";
+                 Enter takes the color, Space begins a stroke. Escape cancels";
     let is_on = context.editor.eyedropper.is_some();
-    if ui.selectable_label(is_on, "Take a colour").on_hover_text(about).clicked() {
+    if ui.selectable_label(is_on, "Take a color").on_hover_text(about).clicked() {
         context.editor.eyedropper = Some(Eyedropper::default());
     }
 }

@@ -7,7 +7,7 @@ use super::clipboard;
 use super::eyedropper::Eyedropper;
 use super::screenshot_sampling::SampleSize;
 use super::selection::Selection;
-use haze_author::ramp::{Blend, HexColour, RampRow, RampStop};
+use haze_author::ramp::{Blend, HexColor, RampRow, RampStop};
 
 /// State of an editor across frames.
 #[derive(Clone, Debug, Default)]
@@ -24,15 +24,15 @@ pub struct EditorState {
     pub eyedropper: Option<Eyedropper>,
     /// Sample size of the eyedropper.
     pub sample_size: SampleSize,
-    /// Last colour set by hue, saturation and value, with these values: keeps the hue of greys, which have none.
-    pub hsv: Option<(HexColour, Vec3)>,
+    /// Last color set by hue, saturation and value, with these values: keeps the hue of greys, which have none.
+    pub hsv: Option<(HexColor, Vec3)>,
     /// Name of the undo step in progress, until the pointer or key is released.
     pub pending: Option<&'static str>,
     /// True if a handle has keyboard focus.
     pub has_keyboard: bool,
     /// True if the clipboard's contents were requested.
     pub awaits_paste: bool,
-    /// Text of the colour being typed.
+    /// Text of the color being typed.
     pub typed: Option<String>,
 }
 
@@ -85,9 +85,9 @@ impl Snap {
 /// Display options of a gradient besides its stops.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DisplayOptions<'a> {
-    /// Colour space for blending.
+    /// Color space for blending.
     pub blend: Blend,
-    /// Histograms of lookups along the gradient, heights 0 to 1, drawn below the strip in the given colours.
+    /// Histograms of lookups along the gradient, heights 0 to 1, drawn below the strip in the given colors.
     pub histograms: &'a [(Color32, &'a [f32])],
     /// Marked positions on the gradient, 0 to 1.
     pub marks: &'a [(f32, Color32)],
@@ -105,7 +105,7 @@ pub struct EditContext<'a> {
 }
 
 /// Undo names of edits, for one stop and for several.
-pub const RECOLOUR: [&str; 2] = ["colour of a stop", "colour of stops"];
+pub const RECOLOR: [&str; 2] = ["color of a stop", "color of stops"];
 pub const REMOVE: [&str; 2] = ["remove a stop", "remove stops"];
 pub const MOVE: [&str; 2] = ["move a stop", "move stops"];
 
@@ -133,9 +133,9 @@ impl EditContext<'_> {
         });
     }
 
-    /// Sets the colour of the selected stops.
-    pub fn recolour(&mut self, colour: HexColour) {
-        self.edit_each(RECOLOUR, |stop| stop.colour = colour);
+    /// Sets the color of the selected stops.
+    pub fn recolor(&mut self, color: HexColor) {
+        self.edit_each(RECOLOR, |stop| stop.color = color);
     }
 
     /// Replaces all stops.
@@ -194,8 +194,8 @@ impl EditContext<'_> {
         }
         if let Some(pasted) = pasted {
             self.editor.awaits_paste = false;
-            match (clipboard::colour(&pasted), clipboard::parse(&pasted)) {
-                (Ok(colour), _) => self.recolour(colour),
+            match (clipboard::color(&pasted), clipboard::parse(&pasted)) {
+                (Ok(color), _) => self.recolor(color),
                 (_, Ok(stops)) => self.replace("paste stops", stops),
                 (_, Err(error)) => self.refused = Some(format!("nothing is pasted: {error}")),
             }

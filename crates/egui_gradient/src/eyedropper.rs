@@ -1,5 +1,5 @@
-//! Eyedropper: picks colours from anywhere in the window, one by a click or a gradient along a stroke. While it is
-//! active, the window shows a screenshot of itself, so the picked colours are exactly the visible ones.
+//! Eyedropper: picks colors from anywhere in the window, one by a click or a gradient along a stroke. While it is
+//! active, the window shows a screenshot of itself, so the picked colors are exactly the visible ones.
 
 use std::sync::{Arc, OnceLock};
 
@@ -10,8 +10,8 @@ use egui::{
 use glam::Vec3;
 
 use super::paint;
-use super::screenshot_sampling::{SampleSize, pixel_at, pixel_colour, sample_colours};
-use haze_author::ramp::HexColour;
+use super::screenshot_sampling::{SampleSize, pixel_at, pixel_color, sample_colors};
+use haze_author::ramp::HexColor;
 
 /// State of an active eyedropper: waits for a screenshot of the window, then for a click or a stroke by pointer or
 /// keys.
@@ -31,11 +31,11 @@ pub struct Eyedropper {
     is_released: bool,
 }
 
-/// Picked sRGB colours, 0 to 255: one, those along a stroke, or none.
+/// Picked sRGB colors, 0 to 255: one, those along a stroke, or none.
 pub enum EyedropperResult {
-    /// Colours at the current position; the eyedropper stays active.
+    /// Colors at the current position; the eyedropper stays active.
     Pointed(Vec<Vec3>),
-    /// Final colours. Empty if Escape cancelled the eyedropper.
+    /// Final colors. Empty if Escape cancelled the eyedropper.
     Done(Vec<Vec3>),
 }
 
@@ -51,13 +51,13 @@ impl Eyedropper {
         self.keys(ui, sample_size);
         let here = [self.at];
         let stroke = if self.stroke.is_empty() { &here[..] } else { &self.stroke };
-        let colours = self
+        let colors = self
             .screenshot
             .get()
-            .map(|screenshot| sample_colours(screenshot, stroke, ui.pixels_per_point(), *sample_size));
-        match colours {
-            Some(colours) if self.is_released => EyedropperResult::Done(colours),
-            colours => EyedropperResult::Pointed(colours.unwrap_or_default()),
+            .map(|screenshot| sample_colors(screenshot, stroke, ui.pixels_per_point(), *sample_size));
+        match colors {
+            Some(colors) if self.is_released => EyedropperResult::Done(colors),
+            colors => EyedropperResult::Pointed(colors.unwrap_or_default()),
         }
     }
 
@@ -91,7 +91,7 @@ impl Eyedropper {
         let cover = Area::new(id).order(Order::Foreground).fixed_pos(window.min).constrain(false);
         let response = cover.show(ui.ctx(), |ui| ui.allocate_response(window.size(), Sense::click_and_drag())).inner;
         let response = response.on_hover_cursor(CursorIcon::Crosshair);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "take a colour"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "take a color"));
         // Takes all keys.
         response.request_focus();
         let filter = EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
@@ -106,8 +106,8 @@ impl Eyedropper {
             let all = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             painter.image(picture.id(), Rect::from_min_size(Pos2::ZERO, size), all, Color32::WHITE);
         }
-        for (width, colour) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
-            painter.line(self.stroke.clone(), Stroke::new(width, colour));
+        for (width, color) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
+            painter.line(self.stroke.clone(), Stroke::new(width, color));
         }
     }
 
@@ -188,13 +188,13 @@ impl Eyedropper {
         }
     }
 
-    /// Draws a magnifier: pixels around the position, the colour that would be picked, and below the resulting
-    /// gradient, where `gradient` returns the colour at a position.
-    pub fn magnifier(&self, ui: &Ui, sample_size: SampleSize, colours: &[Vec3], gradient: impl Fn(f32) -> Color32) {
+    /// Draws a magnifier: pixels around the position, the color that would be picked, and below the resulting
+    /// gradient, where `gradient` returns the color at a position.
+    pub fn magnifier(&self, ui: &Ui, sample_size: SampleSize, colors: &[Vec3], gradient: impl Fn(f32) -> Color32) {
         /// Number of magnified pixels across, and the size of each in points.
         const SEEN: i32 = 11;
         const CELL: f32 = 8.0;
-        let (Some(screenshot), Some(colour)) = (self.screenshot.get(), colours.last()) else { return };
+        let (Some(screenshot), Some(color)) = (self.screenshot.get(), colors.last()) else { return };
         // Placed on the side with more room.
         let (x, y) = (self.at.x > ui.ctx().viewport_rect().center().x, self.at.y > ui.ctx().viewport_rect().center().y);
         let side = |is_far: bool| if is_far { egui::Align::Max } else { egui::Align::Min };
@@ -209,8 +209,8 @@ impl Eyedropper {
                 let cell =
                     |x: i32, y: i32| Rect::from_min_size(seen.min + vec2(x as f32, y as f32) * CELL, Vec2::splat(CELL));
                 for (x, y) in (0..SEEN).flat_map(|y| (0..SEEN).map(move |x| (x, y))) {
-                    let pixel = pixel_colour(screenshot, [centre[0] + x - SEEN / 2, centre[1] + y - SEEN / 2]);
-                    mesh.add_colored_rect(cell(x, y), colour32(pixel));
+                    let pixel = pixel_color(screenshot, [centre[0] + x - SEEN / 2, centre[1] + y - SEEN / 2]);
+                    mesh.add_colored_rect(cell(x, y), color32(pixel));
                 }
                 ui.painter().add(mesh);
                 let (first, last) = (SEEN / 2 - sample_size.reach(), SEEN / 2 + sample_size.reach());
@@ -224,16 +224,16 @@ impl Eyedropper {
                     );
                 }
                 let (_, swatch) = ui.allocate_space(vec2(seen.width(), 12.0));
-                ui.painter().rect_filled(swatch, 0.0, colour32(*colour));
+                ui.painter().rect_filled(swatch, 0.0, color32(*color));
                 let (_, strip) = ui.allocate_space(vec2(seen.width(), 12.0));
                 paint::gradient(ui, strip, gradient);
-                let hex = String::from(HexColour::from_srgb(*colour / 255.0));
+                let hex = String::from(HexColor::from_srgb(*color / 255.0));
                 ui.label(format!("{hex}  {0}×{0}", sample_size as i32));
             });
         });
     }
 }
 
-fn colour32(colour: Vec3) -> Color32 {
-    paint::colour32(HexColour::from_srgb(colour / 255.0))
+fn color32(color: Vec3) -> Color32 {
+    paint::color32(HexColor::from_srgb(color / 255.0))
 }

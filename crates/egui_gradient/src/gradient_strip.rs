@@ -4,12 +4,12 @@ use egui::{self, Color32, CursorIcon, Rect, Sense, Stroke, StrokeKind, Ui, vec2}
 
 use super::edit_context::{DisplayOptions, EditContext};
 use super::handles::{self, GAP, strip_position};
-use super::paint::{borders, colour32, gradient as paint_gradient, histogram, readout, ticks};
+use super::paint::{borders, color32, gradient as paint_gradient, histogram, readout, ticks};
 use super::selection::Selection;
 use super::stop_operations;
 use haze::error::FieldError;
-use haze::formula::colour::srgb_from_linear;
-use haze_author::ramp::{Blend, Gradient, HexColour, RampRecipe, RampRow, RampStop};
+use haze::formula::color::srgb_from_linear;
+use haze_author::ramp::{Blend, Gradient, HexColor, RampRecipe, RampRow, RampStop};
 
 /// Heights of the strip, of the lane for handles below it, and of histograms, points.
 const STRIP: f32 = 30.0;
@@ -34,15 +34,15 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, options: &DisplayOptions
     };
     let pointed_at = strip_input(ui, context, strip, &gradient);
     ticks(ui, context.stops, strip);
-    for &(place, colour) in options.marks {
-        for (width, colour) in [(4.0, Color32::BLACK), (2.0, colour)] {
-            ui.painter().vline(strip.left() + place * strip.width(), strip.y_range(), Stroke::new(width, colour));
+    for &(place, color) in options.marks {
+        for (width, color) in [(4.0, Color32::BLACK), (2.0, color)] {
+            ui.painter().vline(strip.left() + place * strip.width(), strip.y_range(), Stroke::new(width, color));
         }
     }
     handles::show(ui, context, strip, lane);
     if has_histogram {
         ui.painter().rect_filled(below, 0.0, ui.visuals().extreme_bg_color);
-        options.histograms.iter().for_each(|(colour, bins)| histogram(ui, below, bins, *colour));
+        options.histograms.iter().for_each(|(color, bins)| histogram(ui, below, bins, *color));
     }
     pointed_at
 }
@@ -53,16 +53,16 @@ pub fn gradient(stops: &[RampStop], blend: Blend) -> Result<Gradient, FieldError
     RampRecipe { blend, rows, ..RampRecipe::default() }.gradient()
 }
 
-/// Returns the sRGB colour at a position.
-pub fn colour_at(gradient: &Gradient, at: f32) -> HexColour {
-    HexColour::from_srgb(gradient.sample(at, 0.0).map(|light| srgb_from_linear(light.min(1.0))))
+/// Returns the sRGB color at a position.
+pub fn color_at(gradient: &Gradient, at: f32) -> HexColor {
+    HexColor::from_srgb(gradient.sample(at, 0.0).map(|light| srgb_from_linear(light.min(1.0))))
 }
 
 /// Draws the gradient. A click on it, or the start of a drag, adds a stop. Returns the hovered position.
 fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &Gradient) -> Option<f32> {
     let response = ui.interact(strip, ui.scope_id().with("strip"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "gradient: add a stop"));
-    paint_gradient(ui, strip, |at| colour32(colour_at(gradient, at)));
+    paint_gradient(ui, strip, |at| color32(color_at(gradient, at)));
     let parts = context.editor.snap.now(ui).filter(|_| response.hovered() || context.editor.dragged.is_some());
     borders(ui, strip, parts);
     let visuals = ui.style().interact(&response);
@@ -86,10 +86,10 @@ fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &G
     };
     if let Some(place) = added {
         let at = stop_operations::snap_to_parts(place, snap.now(ui));
-        let colour = colour_at(gradient, at);
+        let color = color_at(gradient, at);
         let before = (context.stops.clone(), context.editor.selection.clone());
         context.edit("add a stop", |stops, selection| {
-            *selection = Selection::one(stop_operations::add(stops, at, colour));
+            *selection = Selection::one(stop_operations::add(stops, at, color));
         });
         if let Some(origin) = origin.filter(|_| response.drag_started()) {
             handles::begin_drag(context, origin.x, place, before, true);
@@ -98,9 +98,9 @@ fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &G
     }
     let hovered = response.hover_pos().filter(|_| context.editor.dragged.is_none())?;
     ui.set_cursor_icon(CursorIcon::Crosshair);
-    response.on_hover_text_at_pointer("Click or drag to add a stop with this colour. Ctrl snaps");
+    response.on_hover_text_at_pointer("Click or drag to add a stop with this color. Ctrl snaps");
     let at = place(hovered.x);
-    let colour = colour_at(gradient, at);
-    readout(ui, hovered.x, strip, colour32(colour), format!("{at:.4}  {}", String::from(colour)));
+    let color = color_at(gradient, at);
+    readout(ui, hovered.x, strip, color32(color), format!("{at:.4}  {}", String::from(color)));
     Some(at)
 }

@@ -4,7 +4,7 @@ use egui::{self, CursorIcon, EventFilter, Id, Key, Modifiers, PointerButton, Rec
 use egui::{pos2, vec2};
 
 use super::edit_context::{Drag, EditContext, MOVE, REMOVE, Selected};
-use super::paint::{colour32, handle, readout};
+use super::paint::{color32, handle, readout};
 use super::selection::Selection;
 use super::{handle_layout, stop_operations};
 
@@ -94,14 +94,14 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
         if response.has_focus() {
             focused = Some(index);
         }
-        drawn.push((index, rect, lane.left() + wanted, colour32(stop.colour), response.hovered()));
+        drawn.push((index, rect, lane.left() + wanted, color32(stop.color), response.hovered()));
         if context.editor.dragged.is_none() && response.hovered() {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
             let text = format!(
                 "{name}: {} at {:.4}. Drag: Ctrl snaps to equal parts, Shift to other stops; Alt at the start moves a copy, \
                  Alt during the drag slows it to a tenth; Escape cancels. Click: Shift selects a range, Ctrl adds. Arrow keys: \
                  Shift ten times as far, Ctrl to the next part. Delete or the middle button removes",
-                String::from(stop.colour),
+                String::from(stop.color),
                 stop.at
             );
             response.on_hover_text(text);
@@ -110,9 +110,9 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
     // Selected handles are drawn over the others, the lead over all.
     let (_, selection) = &before;
     drawn.sort_by_key(|(index, ..)| (selection.contains(*index), *index == selection.lead()));
-    for (index, rect, x, colour, is_hovered) in drawn {
+    for (index, rect, x, color, is_hovered) in drawn {
         let states = (selection.contains(index), is_hovered, focused == Some(index));
-        handle(ui, rect, pos2(x, strip.bottom()), colour, states);
+        handle(ui, rect, pos2(x, strip.bottom()), color, states);
     }
     context.editor.has_keyboard = focused.is_some();
     if let Some(index) = focused {
@@ -262,7 +262,7 @@ fn update_drag(ui: &Ui, context: &mut EditContext<'_>, strip: Rect) {
     context.requests_focus |= context.editor.selection.lead() != led;
     drag.now.clone_from(context.stops);
     if let (Some(lead), Some(was)) = (context.lead(), drag.from.0.get(drag.from.1.lead())) {
-        let mut text = format!("{:.4}  {}", lead.at, String::from(lead.colour));
+        let mut text = format!("{:.4}  {}", lead.at, String::from(lead.color));
         match drag.from.1.count() {
             1 => {}
             count => text += &format!("  {:+.4}, {count} stops", lead.at - was.at),
@@ -270,7 +270,7 @@ fn update_drag(ui: &Ui, context: &mut EditContext<'_>, strip: Rect) {
         if is_fine {
             text += "  fine";
         }
-        readout(ui, strip.left() + lead.at * strip.width(), strip, colour32(lead.colour), text);
+        readout(ui, strip.left() + lead.at * strip.width(), strip, color32(lead.color), text);
     }
     context.editor.dragged = Some(drag);
 }

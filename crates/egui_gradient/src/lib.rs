@@ -1,16 +1,16 @@
 //! Gradient editor for egui. Edits the stops of one row of a ramp recipe on a strip that shows the gradient.
 //!
-//! A click on the strip adds a stop with the colour at that position. Stops are dragged, nudged with the arrow keys
+//! A click on the strip adds a stop with the color at that position. Stops are dragged, nudged with the arrow keys
 //! (Shift: ten times as far) and removed with Delete. During a drag, Ctrl snaps to equal parts (ten by default), Shift
 //! snaps to another stop, and Alt slows the drag to a tenth. A drag that begins with Alt moves a copy. Escape cancels a
 //! drag. Handles of stops that are close together are spread out, so that each can be grabbed.
 //!
 //! Several stops are selected as in lists: Shift with a click or the up and down keys selects a range; Ctrl with a
 //! click, or Ctrl with the up and down keys and Space, toggles one stop; Ctrl+A selects all; a drag below the strip
-//! selects the stops in its range. Selected stops are moved, coloured, removed, distributed, flipped and mirrored
+//! selects the stops in its range. Selected stops are moved, colored, removed, distributed, flipped and mirrored
 //! together. Tab moves from stop to stop. Number fields accept changes such as `+0.1` or `*2`.
 //!
-//! An eyedropper picks a colour from anywhere in the window, or a gradient along a stroke, with a magnifier and a
+//! An eyedropper picks a color from anywhere in the window, or a gradient along a stroke, with a magnifier and a
 //! preview of the gradient. The host must serve egui's screenshot requests, as eframe does.
 //! `examples/gradient_editor.rs` shows an editor in a window.
 //!
@@ -84,7 +84,7 @@ impl GradientEditor {
             };
             edited.pointed_at = gradient_strip::show(ui, &mut context, options);
             context.clipboard(ui, at);
-            // Before the controls, so that the click that activates the eyedropper picks no colour.
+            // Before the controls, so that the click that activates the eyedropper picks no color.
             controls::update_eyedropper(ui, &mut context, options.blend);
             controls::show(ui, &mut context, at);
             is_held = is_interacting(ui, context.editor.has_keyboard);

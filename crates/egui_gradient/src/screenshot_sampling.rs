@@ -1,11 +1,11 @@
-//! Samples colours from a screenshot for the eyedropper.
+//! Samples colors from a screenshot for the eyedropper.
 
 use egui::{ColorImage, Key, Pos2};
 use glam::Vec3;
 
 /// Minimum length of a stroke, points. Shorter ones count as clicks.
 const CLICK: f32 = 6.0;
-/// Number of colours along a stroke, each the mean over its part. Finer detail would be noise.
+/// Number of colors along a stroke, each the mean over its part. Finer detail would be noise.
 const PARTS: usize = 32;
 
 /// Sample size: side of the square of pixels that are averaged.
@@ -39,8 +39,8 @@ pub fn pixel_at(screenshot: &ColorImage, at: Pos2, pixels_per_point: f32) -> [i3
     [at.x.min(width).max(0.0) as i32, at.y.min(height).max(0.0) as i32]
 }
 
-/// Returns the colour of a pixel, 0 to 255. Positions outside are clamped to the border.
-pub fn pixel_colour(screenshot: &ColorImage, [x, y]: [i32; 2]) -> Vec3 {
+/// Returns the color of a pixel, 0 to 255. Positions outside are clamped to the border.
+pub fn pixel_color(screenshot: &ColorImage, [x, y]: [i32; 2]) -> Vec3 {
     let [width, height] = screenshot.size;
     let inside = |at: i32, side: usize| usize::try_from(at).unwrap_or(0).min(side.saturating_sub(1));
     let pixel = screenshot.pixels.get(inside(y, height) * width + inside(x, width)).copied().unwrap_or_default();
@@ -49,20 +49,20 @@ pub fn pixel_colour(screenshot: &ColorImage, [x, y]: [i32; 2]) -> Vec3 {
 }
 
 /// Returns the mean sRGB code of the pixels around one, as in a blurred image.
-fn mean_colour(screenshot: &ColorImage, [x, y]: [i32; 2], sample_size: SampleSize) -> Vec3 {
+fn mean_color(screenshot: &ColorImage, [x, y]: [i32; 2], sample_size: SampleSize) -> Vec3 {
     let reach = sample_size.reach();
     let around = (-reach..=reach).flat_map(|down| (-reach..=reach).map(move |right| [x + right, y + down]));
-    around.map(|at| pixel_colour(screenshot, at)).sum::<Vec3>() / (sample_size as i32 * sample_size as i32) as f32
+    around.map(|at| pixel_color(screenshot, at)).sum::<Vec3>() / (sample_size as i32 * sample_size as i32) as f32
 }
 
-/// Returns the sRGB colours along a stroke, 0 to 255; one colour for a click.
-pub fn sample_colours(
+/// Returns the sRGB colors along a stroke, 0 to 255; one color for a click.
+pub fn sample_colors(
     screenshot: &ColorImage,
     stroke: &[Pos2],
     pixels_per_point: f32,
     sample_size: SampleSize,
 ) -> Vec<Vec3> {
-    let pixel = |at: Pos2| mean_colour(screenshot, pixel_at(screenshot, at, pixels_per_point), sample_size);
+    let pixel = |at: Pos2| mean_color(screenshot, pixel_at(screenshot, at, pixels_per_point), sample_size);
     let Some(first) = stroke.first().filter(|_| !screenshot.pixels.is_empty()) else { return Vec::new() };
     let length: f32 = stroke.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     if length < CLICK {
@@ -104,11 +104,11 @@ mod tests {
             (pos2(20.7, 30.2), 2.0, [41.0, 60.0]),
             (pos2(900.0, -5.0), 1.0, [199.0, 0.0]),
         ] {
-            let colours = sample_colours(&picture(), &[at, at + vec2(1.0, 1.0)], scale, SampleSize::One);
-            assert_eq!(colours, [Vec3::new(expected[0], expected[1], 9.0)]);
+            let colors = sample_colors(&picture(), &[at, at + vec2(1.0, 1.0)], scale, SampleSize::One);
+            assert_eq!(colors, [Vec3::new(expected[0], expected[1], 9.0)]);
         }
-        assert!(sample_colours(&ColorImage::default(), &[pos2(1.0, 1.0)], 1.0, SampleSize::One).is_empty());
-        assert!(sample_colours(&picture(), &[], 1.0, SampleSize::One).is_empty());
+        assert!(sample_colors(&ColorImage::default(), &[pos2(1.0, 1.0)], 1.0, SampleSize::One).is_empty());
+        assert!(sample_colors(&picture(), &[], 1.0, SampleSize::One).is_empty());
     }
 
     #[test]
@@ -117,11 +117,11 @@ mod tests {
         let mut noisy = picture();
         noisy.pixels[30 * 200 + 20] = Color32::from_rgb(245, 30, 9);
         for (sample_size, expected) in [(SampleSize::One, 245.0), (SampleSize::Three, 45.0), (SampleSize::Five, 29.0)] {
-            let taken = sample_colours(&noisy, &at, 1.0, sample_size)[0];
+            let taken = sample_colors(&noisy, &at, 1.0, sample_size)[0];
             assert!(taken.abs_diff_eq(Vec3::new(expected, 30.0, 9.0), 1.0e-3), "{sample_size:?}: {taken}");
         }
         // At a corner the border pixels are repeated.
-        let corner = sample_colours(&picture(), &[pos2(0.0, 0.0)], 1.0, SampleSize::Three)[0];
+        let corner = sample_colors(&picture(), &[pos2(0.0, 0.0)], 1.0, SampleSize::Three)[0];
         assert!(corner.abs_diff_eq(Vec3::new(1.0 / 3.0, 1.0 / 3.0, 9.0), 1.0e-3), "{corner}");
         let sizes = [-1, 1, 1, 1].map(|by| SampleSize::Three.stepped(by));
         assert_eq!(sizes, [SampleSize::One, SampleSize::Five, SampleSize::Five, SampleSize::Five]);
@@ -129,16 +129,16 @@ mod tests {
     }
 
     #[test]
-    fn a_stroke_samples_colours_along_its_path() {
+    fn a_stroke_samples_colors_along_its_path() {
         // Positions along a stroke are measured by path length, also on the way back.
         let there = [pos2(0.0, 50.5), pos2(100.0, 50.5), pos2(180.0, 50.5)];
-        let row = sample_colours(&picture(), &there, 1.0, SampleSize::One);
+        let row = sample_colors(&picture(), &there, 1.0, SampleSize::One);
         assert_eq!(row.len(), PARTS);
-        for (index, colour) in row.iter().enumerate() {
+        for (index, color) in row.iter().enumerate() {
             let expected = (index as f32 + 0.5) / PARTS as f32 * 180.0 - 0.5;
-            assert!((colour.x - expected).abs() < 1.0 && (colour.y - 50.0).abs() < 1.0e-3, "{index}: {colour}");
+            assert!((color.x - expected).abs() < 1.0 && (color.y - 50.0).abs() < 1.0e-3, "{index}: {color}");
         }
-        let back = sample_colours(&picture(), &[there[0], there[1], there[0]], 1.0, SampleSize::One);
+        let back = sample_colors(&picture(), &[there[0], there[1], there[0]], 1.0, SampleSize::One);
         assert!((back[PARTS - 1].x - back[0].x).abs() < 1.0 && (back[PARTS / 2].x - 98.0).abs() < 3.0, "{back:?}");
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::selection::Selection;
-use haze_author::ramp::{Curve, HexColour, RampStop};
+use haze_author::ramp::{Curve, HexColor, RampStop};
 
 /// Sorts stops by position, stably.
 pub fn sort(stops: &mut [RampStop]) {
@@ -21,11 +21,11 @@ fn sort_selected(stops: &mut [RampStop], selection: &mut Selection) {
 }
 
 /// Adds a stop with the curve of the previous one. Returns its index.
-pub fn add(stops: &mut Vec<RampStop>, at: f32, colour: HexColour) -> usize {
+pub fn add(stops: &mut Vec<RampStop>, at: f32, color: HexColor) -> usize {
     let index = stops.partition_point(|stop| stop.at <= at);
     let neighbour = stops.get(index.saturating_sub(1));
     let curve = neighbour.map_or(Curve::default(), |stop| stop.curve);
-    stops.insert(index, RampStop { at, colour, curve });
+    stops.insert(index, RampStop { at, color, curve });
     index
 }
 
@@ -148,7 +148,7 @@ pub fn mirror(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     mirrored.iter_mut().for_each(|stop| stop.at = f32::midpoint(stop.at, from).clamp(from, middle));
     let back = reversed(&mirrored, from + to, middle, to);
     if let (Some(last), Some(first)) = (mirrored.last(), back.first())
-        && (last.at, last.colour) == (first.at, first.colour)
+        && (last.at, last.color) == (first.at, first.color)
     {
         // The two halves share the middle stop.
         mirrored.pop();
@@ -158,7 +158,7 @@ pub fn mirror(stops: &mut Vec<RampStop>, selection: &mut Selection) {
 }
 
 /// Returns the stops in reverse, each at `sum` minus its position, clamped to `from`..`to`. Each curve stays with its
-/// segment. A constant segment keeps its colour, which then comes from its other end.
+/// segment. A constant segment keeps its color, which then comes from its other end.
 fn reversed(stops: &[RampStop], sum: f32, from: f32, to: f32) -> Vec<RampStop> {
     let Some(last) = stops.last() else { return Vec::new() };
     // True if the segment after a stop is constant and not empty.
@@ -172,16 +172,16 @@ fn reversed(stops: &[RampStop], sum: f32, from: f32, to: f32) -> Vec<RampStop> {
         let is_last = index + 1 == stops.len();
         let before = index.checked_sub(1).map(|before| (&stops[before], is_held(before)));
         if let Some((before, true)) = before {
-            // The stop's own colour must be kept as well, unless the segment after it holds it already.
+            // The stop's own color must be kept as well, unless the segment after it holds it already.
             if is_last {
-                flipped.push(RampStop { at: from, colour: stop.colour, curve: Curve::Constant });
+                flipped.push(RampStop { at: from, color: stop.color, curve: Curve::Constant });
             } else if !is_held(index) {
                 flipped.push(RampStop { at, ..stop.clone() });
             }
-            flipped.push(RampStop { at, colour: before.colour, curve: Curve::Constant });
+            flipped.push(RampStop { at, color: before.color, curve: Curve::Constant });
         } else if before.is_some() || !is_held(index) {
             let curve = before.map_or(last.curve, |(before, _)| before.curve);
-            flipped.push(RampStop { at, colour: stop.colour, curve });
+            flipped.push(RampStop { at, color: stop.color, curve });
         }
     }
     flipped

@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 mod clipboard;
-mod colours;
+mod colors;
 mod drags;
 mod harness;
 mod several;
@@ -15,17 +15,17 @@ mod several;
 use super::*;
 use harness::*;
 use haze_author::ramp::template::{TEMPLATES, Template};
-use haze_author::ramp::{Curve, HexColour};
+use haze_author::ramp::{Curve, HexColor};
 
 #[test]
-fn a_click_adds_a_stop_with_the_colour_at_that_position() {
+fn a_click_adds_a_stop_with_the_color_at_that_position() {
     let mut harness = host(&[(0.0, 0), (1.0, 255)]);
     let at = on_strip(&harness, 0.25);
     let expected = {
         let rows = vec![harness.state().row.clone()];
         let recipe = haze_author::ramp::RampRecipe { rows, ..Default::default() };
         let light = recipe.gradient().unwrap().sample(0.25, 0.0).x;
-        (haze::formula::colour::srgb_from_linear(light) * 255.0).round() as u8
+        (haze::formula::color::srgb_from_linear(light) * 255.0).round() as u8
     };
     click(&mut harness, at, NONE);
     assert_eq!(places(&harness), [0.0, 0.25, 1.0]);
@@ -127,7 +127,7 @@ fn stops_are_edited_by_keyboard_alone() {
 }
 
 #[test]
-fn positions_and_colours_can_be_typed() {
+fn positions_and_colors_can_be_typed() {
     let mut harness = host(&[(0.0, 0), (0.5, 10), (1.0, 20)]);
     harness.get_by_label("next stop").click();
     harness.run_steps(2);
@@ -138,17 +138,17 @@ fn positions_and_colours_can_be_typed() {
     key(&mut harness, Key::Enter, NONE);
     assert_eq!((places(&harness), steps(&harness)), (vec![0.0, 0.125, 1.0], vec!["move a stop"]));
     for (text, is_good) in [("#ff8000", true), ("orange", false)] {
-        harness.get_by_role_and_label(Role::TextInput, "colour").click();
+        harness.get_by_role_and_label(Role::TextInput, "color").click();
         harness.run_steps(2);
         key(&mut harness, Key::A, Modifiers::COMMAND);
         harness.event(Event::Text(text.into()));
         harness.run_steps(2);
         key(&mut harness, Key::Enter, NONE);
-        assert_eq!(harness.state().row.stops[1].colour, HexColour([255, 128, 0]));
+        assert_eq!(harness.state().row.stops[1].color, HexColor([255, 128, 0]));
         assert_eq!(harness.state().refused.is_empty(), is_good);
     }
-    assert_eq!(steps(&harness), ["move a stop", "colour of a stop"]);
-    assert_eq!(harness.state().refused, [r##""orange" is not valid; expected an sRGB colour, "#rrggbb""##]);
+    assert_eq!(steps(&harness), ["move a stop", "color of a stop"]);
+    assert_eq!(harness.state().refused, [r##""orange" is not valid; expected an sRGB color, "#rrggbb""##]);
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn screenshots_of_the_editor() {
         harness.run_steps(3);
         harness.render().unwrap().save(folder.join(format!("gradient_drag_{name}.png"))).unwrap();
         button(&mut harness, from + Vec2::new(40.0, 0.0), false, NONE);
-        harness.get_by_label("Take a colour").click();
+        harness.get_by_label("Take a color").click();
         harness.run_steps(5);
         let at = on_strip(&harness, 0.6);
         harness.hover_at(at);

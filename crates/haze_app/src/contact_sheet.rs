@@ -12,7 +12,7 @@ const LABEL_HEIGHT: u32 = 28;
 const TEXT_HEIGHT: f32 = 20.0;
 /// Height of a footer line, pixels.
 const FOOTER_LINE_HEIGHT: u32 = 24;
-pub const TEXT_COLOUR: Rgb<u8> = Rgb([225, 225, 220]);
+pub const TEXT_COLOR: Rgb<u8> = Rgb([225, 225, 220]);
 pub const BACKGROUND: Rgb<u8> = Rgb([24, 25, 28]);
 
 /// Grid of cells of one size, row by row.
@@ -34,7 +34,7 @@ impl ContactSheet {
     /// Puts an image and its label into a cell.
     pub fn place(&mut self, index: u32, label: &str, picture: &RgbImage) {
         let corner = UVec2::new(index % self.columns, index / self.columns) * self.cell + MARGIN;
-        draw_text(&mut self.picture, corner.x as f32 + 2.0, corner.y as f32, TEXT_HEIGHT, TEXT_COLOUR, label);
+        draw_text(&mut self.picture, corner.x as f32 + 2.0, corner.y as f32, TEXT_HEIGHT, TEXT_COLOR, label);
         imageops::replace(&mut self.picture, picture, i64::from(corner.x), i64::from(corner.y + LABEL_HEIGHT));
     }
 
@@ -58,7 +58,7 @@ impl ContactSheet {
                 left,
                 (height + FOOTER_LINE_HEIGHT * line) as f32 - 4.0,
                 TEXT_HEIGHT,
-                TEXT_COLOUR,
+                TEXT_COLOR,
                 text,
             );
         }

@@ -3,7 +3,7 @@
 use glam::UVec2;
 use haze::Error;
 
-/// Bytes of memory per pixel between rendering and the file. The CPU renderer takes 40: colour 16, depth 4, and at full
+/// Bytes of memory per pixel between rendering and the file. The CPU renderer takes 40: color 16, depth 4, and at full
 /// scale accumulation 16 and reduced depth 4. A readback from the GPU takes 32: two buffers of 8, then 16. Half as much
 /// again allows for the allocator's overhead. Texture memory is checked by the driver.
 const BYTES_PER_PIXEL: u64 = 60;

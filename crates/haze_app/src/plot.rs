@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2};
 use image::{Rgb, RgbImage};
 
-use super::contact_sheet::{BACKGROUND, TEXT_COLOUR};
+use super::contact_sheet::{BACKGROUND, TEXT_COLOR};
 use super::text_drawing::draw_text;
 
 const GRID: Rgb<u8> = Rgb([58, 60, 66]);
@@ -15,10 +15,10 @@ const BOTTOM: f32 = 44.0;
 /// Half the width of a line, pixels.
 const HALF_WIDTH: f32 = 1.2;
 
-/// A function with its name and colour.
+/// A function with its name and color.
 pub struct Curve {
     pub name: &'static str,
-    pub colour: Rgb<u8>,
+    pub color: Rgb<u8>,
     pub function: Box<dyn Fn(f32) -> f32>,
 }
 
@@ -30,28 +30,28 @@ pub fn plot(size: UVec2, (from, to): (f32, f32), axis: &str, curves: &[Curve]) -
     for tenth in (0..=10).step_by(5) {
         let y = tenth as f32 / 10.0;
         line(&mut picture, GRID, &[place(from, y), place(to, y)]);
-        draw_text(&mut picture, 8.0, place(from, y).y - 9.0, 16.0, TEXT_COLOUR, &format!("{y:.1}"));
+        draw_text(&mut picture, 8.0, place(from, y).y - 9.0, 16.0, TEXT_COLOR, &format!("{y:.1}"));
     }
     let mut x = from;
     while x <= to + 1.0e-3 {
         line(&mut picture, GRID, &[place(x, 0.0), place(x, 1.0)]);
         let at = place(x, 0.0) + Vec2::new(-12.0, 4.0);
-        draw_text(&mut picture, at.x, at.y, 16.0, TEXT_COLOUR, &format!("{x:.1}"));
+        draw_text(&mut picture, at.x, at.y, 16.0, TEXT_COLOR, &format!("{x:.1}"));
         x += 0.5;
     }
-    draw_text(&mut picture, LEFT, size.y as f32 - 22.0, 16.0, TEXT_COLOUR, axis);
+    draw_text(&mut picture, LEFT, size.y as f32 - 22.0, 16.0, TEXT_COLOR, axis);
     for (index, curve) in curves.iter().enumerate() {
         let points: Vec<_> = (0..=400).map(|i| from + (to - from) * i as f32 / 400.0).collect();
         let points: Vec<_> = points.into_iter().map(|x| place(x, (curve.function)(x))).collect();
-        line(&mut picture, curve.colour, &points);
+        line(&mut picture, curve.color, &points);
         let at = Vec2::new(size.x as f32 - RIGHT + 14.0, TOP + 24.0 * index as f32);
-        draw_text(&mut picture, at.x, at.y, 18.0, curve.colour, curve.name);
+        draw_text(&mut picture, at.x, at.y, 18.0, curve.color, curve.name);
     }
     picture
 }
 
 /// Draws an antialiased line through points of ascending x.
-fn line(picture: &mut RgbImage, colour: Rgb<u8>, points: &[Vec2]) {
+fn line(picture: &mut RgbImage, color: Rgb<u8>, points: &[Vec2]) {
     for (&a, &b) in points.iter().zip(&points[1..]) {
         let reach = Vec2::splat(HALF_WIDTH + 1.0);
         let last = Vec2::new(picture.width() as f32, picture.height() as f32) - 1.0;
@@ -63,7 +63,7 @@ fn line(picture: &mut RgbImage, colour: Rgb<u8>, points: &[Vec2]) {
                 let along = ((p - a).dot(b - a) / (b - a).length_squared().max(1.0e-6)).clamp(0.0, 1.0);
                 let covered = (HALF_WIDTH + 0.5 - p.distance(a.lerp(b, along))).clamp(0.0, 1.0);
                 let pixel = picture.get_pixel_mut(x, y);
-                for (channel, ink) in pixel.0.iter_mut().zip(colour.0) {
+                for (channel, ink) in pixel.0.iter_mut().zip(color.0) {
                     // Overlapping segments blend towards the same ink.
                     let mixed = f32::from(*channel) + (f32::from(ink) - f32::from(*channel)) * covered;
                     *channel = mixed.round() as u8;

@@ -1,7 +1,7 @@
 //! Sheets of smoke puffs, path-traced beside the renderer's.
 
 use glam::{UVec2, Vec3};
-use haze::formula::colour::srgb_from_linear;
+use haze::formula::color::srgb_from_linear;
 use haze::image::Image;
 use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
 use image::imageops::{FilterType, resize};

@@ -4,7 +4,7 @@ use ab_glyph::{Font, FontRef, GlyphId, InvalidFont, PxScale, ScaleFont, point};
 use image::{Rgb, RgbImage};
 
 /// Draws `text`, `height` pixels high, with its upper left corner at (`x`, `y`); text beyond the image is cut off.
-pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, colour: Rgb<u8>, text: &str) {
+pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, color: Rgb<u8>, text: &str) {
     let Ok(font) = font() else { return };
     let baseline = y + font.as_scaled(PxScale::from(height)).ascent();
     for (id, left) in lay_out_glyphs(&font, height, text).0 {
@@ -16,7 +16,7 @@ pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, colour: Rg
                     (0..i64::from(picture.width())).contains(&px) && (0..i64::from(picture.height())).contains(&py);
                 if inside {
                     let pixel = picture.get_pixel_mut(px as u32, py as u32);
-                    for (channel, ink) in pixel.0.iter_mut().zip(colour.0) {
+                    for (channel, ink) in pixel.0.iter_mut().zip(color.0) {
                         let mixed = f32::from(*channel) + (f32::from(ink) - f32::from(*channel)) * coverage.min(1.0);
                         *channel = mixed.round() as u8;
                     }

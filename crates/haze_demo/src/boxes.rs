@@ -13,9 +13,9 @@ pub(crate) const SUN_DISTANCE: f32 = 60.0;
 pub(crate) const SUN_SPREAD: f32 = 0.02;
 /// Maximum width of the antialiased edge of a hard shadow, metres. `WIDEST_PIXEL` in scene.wgsl.
 pub(crate) const WIDEST_PIXEL: f32 = 0.1;
-/// Minimum radius of the body at which a shadow ray ends, metres: far above the rounding of coordinates. `MIN_LIGHT_RADIUS`
-/// in scene.wgsl.
-pub(crate) const MIN_LIGHT_RADIUS: f32 = 0.02;
+/// Distance before a light at which a shadow ray ends, metres: far above the rounding of coordinates, so that a light may
+/// stand in a surface, and small enough that its fixture casts shadows. `LIGHT_GAP` in scene.wgsl.
+pub(crate) const LIGHT_GAP: f32 = 0.02;
 
 /// A box, rotated about the vertical axis. `Box` in scene.wgsl.
 #[repr(C)]
@@ -28,7 +28,7 @@ pub(crate) struct SceneBox {
     /// Sine of the rotation.
     pub sin: f32,
     /// Linear reflectance; radiance for [`Surface::Glow`].
-    pub colour: Vec3,
+    pub color: Vec3,
     /// A [`Surface`].
     pub surface: u32,
 }
@@ -55,7 +55,7 @@ pub(crate) enum Surface {
     Plaster = 4,
     /// Emissive, casts no shadow.
     Glow = 5,
-    /// Uniform colour without procedural stains.
+    /// Uniform color without procedural stains.
     Even = 6,
 }
 

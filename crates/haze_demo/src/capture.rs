@@ -35,7 +35,7 @@ struct CapturedTarget {
 pub struct CapturedFrame {
     /// Depth buffer of the scene, 0..1.
     pub scene_depth: Image<f32>,
-    /// Scene colour without smoke, linear HDR.
+    /// Scene color without smoke, linear HDR.
     pub behind: Image<Vec4>,
     /// Targets of the systems; `None` for systems that are out of view or use the forward path.
     pub systems: Vec<Option<ProbeTextures>>,
@@ -78,11 +78,11 @@ impl Capture {
         let mut regions = self.readback.regions.iter();
         let (depth, behind) = (regions.next()?, regions.next()?);
         let scene_depth = depth.depths(&bytes, depth.size());
-        let behind = behind.colours(&bytes, 0, behind.size());
+        let behind = behind.colors(&bytes, 0, behind.size());
         let mut system = |target: &CapturedTarget| {
             let mut accumulation = AccumulatedTextures::default();
             for role in target.roles.iter() {
-                accumulation[role as usize] = Some(regions.next()?.colours(&bytes, 0, target.size));
+                accumulation[role as usize] = Some(regions.next()?.colors(&bytes, 0, target.size));
             }
             let reduced_depth = if target.has_depth {
                 let mut depth = regions.next()?.depths(&bytes, target.size);
@@ -94,8 +94,7 @@ impl Capture {
             let mut baked = Vec::new();
             if target.faces > 0 {
                 let region = regions.next()?;
-                baked =
-                    (0..target.faces as u32).map(|face| rgb(&region.colours(&bytes, face, region.size()))).collect();
+                baked = (0..target.faces as u32).map(|face| rgb(&region.colors(&bytes, face, region.size()))).collect();
             }
             Some(ProbeTextures { accumulation, reduced_depth, baked })
         };

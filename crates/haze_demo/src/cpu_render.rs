@@ -16,22 +16,23 @@ impl Shot {
     /// [`Error::Field`] if the preset was changed to invalid values.
     pub fn render_on_cpu(&self) -> Result<Image<Vec4>, Error> {
         let view = self.preset.camera.view(self.size);
-        let (mut colour, depth) = ray_caster::render(&self.scene(), &view);
+        let (mut color, depth) = ray_caster::render(&self.scene(), &view);
         if !self.shows_scene() {
-            colour.texels.fill(Vec4::W);
+            color.texels.fill(Vec4::W);
         }
         let particles = self.systems();
         let systems = self.reference_systems(&particles);
         let frame = self.reference_frame(&depth, &systems);
-        haze_reference::render(&frame, &mut colour)?;
-        Ok(colour)
+        haze_reference::render(&frame, &mut color)?;
+        Ok(color)
     }
 
     pub(super) fn reference_systems<'a>(
         &'a self,
         particles: &'a [(Vec<Particle>, Settings)],
-    ) -> Vec<haze_reference::System<'a>> {
-        let system = |((particles, settings), material)| haze_reference::System::new(particles, settings, material);
+    ) -> Vec<haze_reference::ParticleSystem<'a>> {
+        let system =
+            |((particles, settings), material)| haze_reference::ParticleSystem::new(particles, settings, material);
         let particles = particles.iter().map(|(particles, settings)| (particles.as_slice(), settings));
         particles.zip(&self.materials).map(system).collect()
     }
@@ -39,15 +40,15 @@ impl Shot {
     pub(super) fn reference_frame<'a>(
         &'a self,
         scene_depth: &'a Image<f32>,
-        systems: &'a [haze_reference::System<'a>],
-    ) -> haze_reference::Frame<'a> {
-        haze_reference::Frame {
+        systems: &'a [haze_reference::ParticleSystem<'a>],
+    ) -> haze_reference::FrameInput<'a> {
+        haze_reference::FrameInput {
             lights: &self.preset.lights,
             systems,
             time: self.preset.time,
             up: Vec3::Y,
             debug_view: self.debug_view,
-            ..haze_reference::Frame::new(self.preset.camera.view(self.size), scene_depth)
+            ..haze_reference::FrameInput::new(self.preset.camera.view(self.size), scene_depth)
         }
     }
 }

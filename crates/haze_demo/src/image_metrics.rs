@@ -26,8 +26,8 @@ impl PsnrReport {
     /// not tonemapped. `depth` is the scene's view depth, metres.
     pub fn compare(first: &Image<Vec4>, second: &Image<Vec4>, exposure: Vec2, depth: Option<&Image<f32>>) -> Self {
         let code = |image: &Image<Vec4>, at: IVec2, exposure| {
-            let colour = image.load(at).xyz();
-            if exposure == 0.0 { colour.saturate() } else { tonemapped(colour, exposure) }
+            let color = image.load(at).xyz();
+            if exposure == 0.0 { color.saturate() } else { tonemapped(color, exposure) }
         };
         let mut errors = Image::new(first.size, (0.0, false));
         errors.for_each(|at, error| {
@@ -96,7 +96,7 @@ impl Comparison {
         let [first, second, depth @ ..] = self.readback.regions.as_slice() else { return None };
         let size = first.size();
         let depth = depth.first().map(|region| region.depths(&bytes, size));
-        let [first, second] = [first, second].map(|region| region.colours(&bytes, 0, size));
+        let [first, second] = [first, second].map(|region| region.colors(&bytes, 0, size));
         Some(PsnrReport::compare(&first, &second, self.exposure, depth.as_ref()))
     }
 }

@@ -15,13 +15,13 @@ pub(crate) fn boxes(environment: &Environment) -> Vec<SceneBox> {
 }
 
 /// Creates a box with the centre of its underside at `foot`. `turn` is the rotation about the vertical axis, radians.
-fn box_on_ground(foot: Vec3, size: Vec3, turn: f32, colour: Vec3, surface: Surface) -> SceneBox {
+fn box_on_ground(foot: Vec3, size: Vec3, turn: f32, color: Vec3, surface: Surface) -> SceneBox {
     SceneBox {
         centre: foot + Vec3::Y * (0.5 * size.y),
         cos: turn.cos(),
         half_size: 0.5 * size,
         sin: turn.sin(),
-        colour,
+        color,
         surface: surface as u32,
     }
 }
@@ -155,6 +155,6 @@ mod tests {
     #[test]
     fn the_studio_is_uniformly_grey() {
         let boxes = boxes(&Environment { scene: SceneName::Studio, ..Environment::default() });
-        assert!(boxes.iter().all(|b| b.colour == Vec3::splat(0.18) && b.surface == Surface::Even as u32));
+        assert!(boxes.iter().all(|b| b.color == Vec3::splat(0.18) && b.surface == Surface::Even as u32));
     }
 }

@@ -8,13 +8,13 @@ use glam::{UVec2, Vec3, Vec4};
 use super::capture::Capture;
 pub use super::offscreen_context::OffscreenContext;
 use super::offscreen_context::UploadedMaterial;
-use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, SceneTargets, default_view, texture};
+use super::scene_renderer::{COLOR_FORMAT, DEPTH_FORMAT, SceneTargets, default_view, texture};
 use super::shot::{ParticleSource, Shot};
 use crate::headless::Headless;
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
-use haze::frame::{Frame, Light, Particles, SceneDepth, System, View};
+use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, View};
 use haze::preset::Environment;
 use haze::settings::DebugView;
 use haze::{Descriptor, MemoryUse, PathChoice, Renderer, SceneDepthKind, Timing, WarmUp};
@@ -70,7 +70,7 @@ impl OffscreenRenderer {
     /// [`Error::Field`] if the device cannot render to half floats.
     pub fn new(context: &OffscreenContext, exact_filtering: bool) -> Result<Self, Error> {
         let descriptor = Descriptor {
-            color_format: COLOUR_FORMAT,
+            color_format: COLOR_FORMAT,
             depth_format: context.attaches_depth.then_some(DEPTH_FORMAT),
             exact_filtering,
             ..Descriptor::default()
@@ -145,27 +145,27 @@ impl OffscreenRenderer {
                     ParticleSource::Particles(particles) => Particles::Slice(particles),
                     ParticleSource::EmitterSnapshot(emission) => Particles::Emitter(emission),
                 };
-                System::new(key, particles, settings, &uploaded.material)
+                ParticleSystem::new(key, particles, settings, &uploaded.material)
             })
             .collect();
         let depth = &sized.targets.depth;
-        let frame = Frame {
+        let frame = FrameInput {
             lights: &shot.preset.lights,
             systems: &systems,
             time: shot.preset.time,
             up: Vec3::Y,
             debug_views: stages,
-            ..Frame::new(view, sized.scene_depth())
+            ..FrameInput::new(view, sized.scene_depth())
         };
         self.renderer.prepare(encoder, &frame)?;
         for &stage in stages {
             let picture = sized.pictures[stage as usize]
-                .get_or_insert_with(|| texture(device, "demo picture", size, COLOUR_FORMAT));
+                .get_or_insert_with(|| texture(device, "demo picture", size, COLOR_FORMAT));
             // Debug views other than the final image are shown on black.
             let mut load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
             if stage == DebugView::Final {
-                let colour = &sized.targets.colour;
-                encoder.copy_texture_to_texture(colour.as_image_copy(), picture.as_image_copy(), colour.size());
+                let color = &sized.targets.color;
+                encoder.copy_texture_to_texture(color.as_image_copy(), picture.as_image_copy(), color.size());
                 load = wgpu::LoadOp::Load;
             }
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -222,7 +222,7 @@ impl OffscreenRenderer {
     pub fn capture(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Capture> {
         let targets = &self.sized.as_ref().filter(|_| self.context.copies_depth)?.targets;
         let systems: Vec<_> = (0..).zip(&self.materials).map(|(key, _)| self.renderer.targets(key)).collect();
-        let scene = [targets.depth.texture(), &targets.colour];
+        let scene = [targets.depth.texture(), &targets.color];
         Some(Capture::record(&self.context.device, encoder, scene, &systems))
     }
 
@@ -277,7 +277,7 @@ impl SizedTargets {
     }
 
     fn size(&self) -> UVec2 {
-        UVec2::new(self.targets.colour.width(), self.targets.colour.height())
+        UVec2::new(self.targets.color.width(), self.targets.color.height())
     }
 
     fn bytes(&self) -> u64 {

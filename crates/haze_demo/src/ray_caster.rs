@@ -1,4 +1,4 @@
-//! CPU ray caster for the demo scene: renders the same colour and depth as the GPU.
+//! CPU ray caster for the demo scene: renders the same color and depth as the GPU.
 
 use std::ops::RangeInclusive;
 
@@ -13,7 +13,7 @@ use haze::assets::image::Image;
 use haze::formula::depth::DepthConvention;
 use haze::frame::View;
 
-/// Renders linear colour with four samples per pixel, and depth 0..1 at pixel centres.
+/// Renders linear color with four samples per pixel, and depth 0..1 at pixel centres.
 pub(crate) fn render(scene: &Scene, view: &View) -> (Image<Vec4>, Image<f32>) {
     let caster = RayCaster {
         scene,
@@ -24,11 +24,11 @@ pub(crate) fn render(scene: &Scene, view: &View) -> (Image<Vec4>, Image<f32>) {
             .map_or(0.0..=f32::INFINITY, |depth| depth.near..=depth.far),
         tiles: boxes_by_tile(&scene.boxes, &(view.clip_from_view * view.view_from_world), view.size),
     };
-    let mut colour = Image::new(view.size, Vec4::ZERO);
-    colour.for_each(|at, texel| *texel = caster.colour(at).extend(1.0));
+    let mut color = Image::new(view.size, Vec4::ZERO);
+    color.for_each(|at, texel| *texel = caster.color(at).extend(1.0));
     let mut depth = Image::new(view.size, 1.0);
     depth.for_each(|at, texel| *texel = caster.depth(at));
-    (colour, depth)
+    (color, depth)
 }
 
 struct RayCaster<'a> {
@@ -131,7 +131,7 @@ impl RayCaster<'_> {
 
     /// Averages four samples, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
     /// sample if they lie on different faces, otherwise once at the pixel's centre.
-    fn colour(&self, at: UVec2) -> Vec3 {
+    fn color(&self, at: UVec2) -> Vec3 {
         const OFFSETS: [Vec2; 4] =
             [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
         let directions = OFFSETS.map(|offset| self.direction(at.as_vec2() + offset));
@@ -148,9 +148,9 @@ impl RayCaster<'_> {
         for (hit, direction) in hits.iter().zip(directions) {
             let reflectance =
                 hit.as_ref().map_or(Vec3::ONE, |hit| albedo(hit.surface, hit.local, hit.local_normal, hit.world));
-            let colour = reflectance * shared_light.unwrap_or_else(|| self.light(hit, direction, pixel_angle));
-            let weight = 1.0 / (1.0 + colour.max_element());
-            sum += colour * weight;
+            let color = reflectance * shared_light.unwrap_or_else(|| self.light(hit, direction, pixel_angle));
+            let weight = 1.0 / (1.0 + color.max_element());
+            sum += color * weight;
             weights += weight;
         }
         sum / weights

@@ -2,7 +2,7 @@
 // What    Draws boxes with procedural materials: paint (reflectance and face, 2x2 samples per pixel), depth, then light.
 //         scene_materials.wgsl is composed before this file.
 // Reads   scene, boxes and lights (uniforms), occluder masks; the light pass also reads paint.
-// Writes  paint, depth buffer and linear view depth, scene colour (linear HDR).
+// Writes  paint, depth buffer and linear view depth, scene color (linear HDR).
 // Blend   none.
 // Source  Karis, "Tone mapping", 2013, for the weights of the samples.
 // Space   world space, metres, y up. shading.rs implements the same functions on the CPU.
@@ -41,7 +41,7 @@ const AMBIENT_REACH: f32 = 0.7;
 const SUN_DISTANCE: f32 = 60.0;
 const SUN_SPREAD: f32 = 0.02;
 const WIDEST_PIXEL: f32 = 0.1;
-const MIN_LIGHT_RADIUS: f32 = 0.02;
+const LIGHT_GAP: f32 = 0.02;
 
 fn to_local(b: Box, v: vec3f) -> vec3f {
     return vec3f(v.x * b.cosine + v.z * b.sine, v.y, v.z * b.cosine - v.x * b.sine);
@@ -142,16 +142,15 @@ fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
         var distance = SUN_DISTANCE;
         var spread = SUN_SPREAD;
         if lights[i].directional < 0.5 {
-            // A ray ends at the body of its light, which may stand in a surface.
             let to_light = length(lights[i].position - world);
-            distance = to_light - max(lights[i].radius, MIN_LIGHT_RADIUS);
+            distance = to_light - LIGHT_GAP;
             spread = lights[i].radius / max(to_light, 0.1);
         }
         // An empty mask instead of a branch: llvmpipe executes both sides of a branch, but leaves a loop once no lane
         // is active.
         let boxes = select(vec4u(0u), boxes_at(i + 1u, world), is_lit);
         let visible = light_visibility(boxes, origin, sample.direction, distance, spread, min(pixel, WIDEST_PIXEL));
-        light += lights[i].colour * (max(facing, 0.0) * sample.attenuation * visible);
+        light += lights[i].color * (max(facing, 0.0) * sample.attenuation * visible);
     }
     return light;
 }
@@ -198,7 +197,7 @@ fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) insta
 @fragment
 fn paint_fragment(in: BoxVertex) -> @location(0) vec4f {
     let b = boxes[in.face / 6u];
-    var paint = b.colour;
+    var paint = b.color;
     if b.surface != SURFACE_GLOW && b.surface != SURFACE_EVEN {
         paint = albedo(b, in.local, in.local_normal, in.world);
     }
@@ -266,9 +265,9 @@ fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var weights = 0.0;
     for (var i = 0; i < 4; i++) {
         let reflectance = select(paints[i].rgb, vec3f(1.0), paints[i].a < 0.0);
-        let colour = reflectance * lit[select(i, 0, is_one_face)];
-        let weight = 1.0 / (1.0 + max(colour.r, max(colour.g, colour.b)));
-        sum += colour * weight;
+        let color = reflectance * lit[select(i, 0, is_one_face)];
+        let weight = 1.0 / (1.0 + max(color.r, max(color.g, color.b)));
+        sum += color * weight;
         weights += weight;
     }
     return vec4f(sum / weights, 1.0);

@@ -7,7 +7,7 @@ struct Box {
     cosine: f32,
     half_size: vec3f,
     sine: f32,
-    colour: vec3f,
+    color: vec3f,
     surface: u32,
 }
 
@@ -68,7 +68,7 @@ fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
         let size = vec2f(1.6, 1.6);
         let tile = floor(uv / size);
         let tone = 0.85 + 0.3 * hash(vec3i(vec2i(tile), 5));
-        return b.colour * tone * (0.55 + 0.7 * dirt) * mix(0.45, 1.0, joints(uv, size, 0.035));
+        return b.color * tone * (0.55 + 0.7 * dirt) * mix(0.45, 1.0, joints(uv, size, 0.035));
     }
     if b.surface == SURFACE_BRICK {
         let size = vec2f(0.48, 0.17);
@@ -77,7 +77,7 @@ fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
         let tile = vec3i(vec3f(floor(shifted / size), n.x * 3.0 + n.z));
         let tone = 0.7 + 0.6 * hash(tile);
         let tint = mix(vec3f(1.0), vec3f(1.15, 0.92, 0.8), hash(tile + vec3i(7, 3, 1)));
-        let brick = b.colour * tone * tint * (0.6 + 0.6 * dirt);
+        let brick = b.color * tone * tint * (0.6 + 0.6 * dirt);
         return mix(vec3f(0.16, 0.155, 0.15) * (0.6 + 0.6 * dirt), brick, joints(shifted, size, 0.02));
     }
     if b.surface == SURFACE_WOOD {
@@ -89,11 +89,11 @@ fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
         edge = select(edge, vec3f(10.0), abs(n) > vec3f(0.5));
         let framed = smoothstep(0.09, 0.075, min(edge.x, min(edge.y, edge.z)));
         let boards = tone * mix(0.5, 1.0, joints(vec2f(25.0, uv.y), vec2f(50.0, 0.2), 0.015));
-        return b.colour * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
+        return b.color * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
     }
     if b.surface == SURFACE_PLASTER {
         let damp = smoothstep(0.0, 1.2, world.y + dirt * 0.8 - 0.3);
-        return b.colour * (0.6 + 0.55 * dirt) * mix(0.6, 1.0, damp);
+        return b.color * (0.6 + 0.55 * dirt) * mix(0.6, 1.0, damp);
     }
-    return b.colour * (0.8 + 0.4 * dirt);
+    return b.color * (0.8 + 0.4 * dirt);
 }

@@ -11,7 +11,7 @@ use haze::formula::uniforms::LightUniform;
 use haze::frame::{MAX_LIGHTS, View};
 use haze::shader;
 
-pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
@@ -36,7 +36,7 @@ pub(crate) struct SceneRenderer {
 /// Targets and buffers of a scene at one size.
 #[derive(Debug)]
 pub(crate) struct SceneTargets {
-    pub colour: wgpu::Texture,
+    pub color: wgpu::Texture,
     pub depth: wgpu::TextureView,
     /// Linear view depth, if the adapter can render to `R32Float`.
     pub linear: Option<wgpu::TextureView>,
@@ -51,7 +51,7 @@ pub(crate) struct SceneTargets {
 impl SceneTargets {
     pub fn textures(&self) -> impl Iterator<Item = &wgpu::Texture> {
         let views = [&self.depth, &self.paint, &self.paint_depth].into_iter().chain(&self.linear);
-        std::iter::once(&self.colour).chain(views.map(wgpu::TextureView::texture))
+        std::iter::once(&self.color).chain(views.map(wgpu::TextureView::texture))
     }
 }
 
@@ -91,11 +91,11 @@ impl SceneRenderer {
         let linear = draws_linear.then_some(("linear_fragment", LINEAR_FORMAT));
         let scene_group = [Some(&scene_layout)];
         Self {
-            paint: pipeline("box_vertex", Some(("paint_fragment", COLOUR_FORMAT)), &scene_group, true),
+            paint: pipeline("box_vertex", Some(("paint_fragment", COLOR_FORMAT)), &scene_group, true),
             depth: pipeline("box_vertex", linear, &scene_group, true),
             light: pipeline(
                 "fullscreen_vertex",
-                Some(("light_fragment", COLOUR_FORMAT)),
+                Some(("light_fragment", COLOR_FORMAT)),
                 &[Some(&scene_layout), Some(&paint_layout)],
                 false,
             ),
@@ -111,7 +111,7 @@ impl SceneRenderer {
     pub fn targets(&self, size: UVec2) -> SceneTargets {
         let texture = |label, size, format| texture(&self.device, label, size, format);
         let target = |label, size, format| default_view(&texture(label, size, format));
-        let paint = target("demo scene paint", size * 2, COLOUR_FORMAT);
+        let paint = target("demo scene paint", size * 2, COLOR_FORMAT);
         let buffer = |size| {
             self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("demo scene"),
@@ -122,7 +122,7 @@ impl SceneRenderer {
         };
         let (boxes, lights) = (size_of::<[SceneBox; MAX_BOXES]>(), size_of::<[LightUniform; MAX_LIGHTS]>());
         SceneTargets {
-            colour: texture("demo scene colour", size, COLOUR_FORMAT),
+            color: texture("demo scene color", size, COLOR_FORMAT),
             depth: target("demo scene depth", size, DEPTH_FORMAT),
             linear: self.draws_linear.then(|| target("demo scene linear", size, LINEAR_FORMAT)),
             paint_depth: target("demo scene paint depth", size * 2, DEPTH_FORMAT),
@@ -174,7 +174,7 @@ impl SceneRenderer {
             pass.draw(0..36, 0..count);
         }
         {
-            let mut pass = begin_pass(encoder, Some((&default_view(&targets.colour), wgpu::Color::BLACK)), None);
+            let mut pass = begin_pass(encoder, Some((&default_view(&targets.color), wgpu::Color::BLACK)), None);
             pass.set_bind_group(0, &group, &[]);
             pass.set_bind_group(1, &targets.paint_group, &[]);
             pass.set_pipeline(&self.light);
@@ -275,10 +275,10 @@ const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::
 
 fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    colour: Option<(&wgpu::TextureView, wgpu::Color)>,
+    color: Option<(&wgpu::TextureView, wgpu::Color)>,
     depth: Option<&wgpu::TextureView>,
 ) -> wgpu::RenderPass<'a> {
-    let attachment = colour.map(|(view, clear)| wgpu::RenderPassColorAttachment {
+    let attachment = color.map(|(view, clear)| wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
         resolve_target: None,

@@ -3,8 +3,7 @@
 use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
 
 use super::boxes::{
-    AMBIENT_REACH, MIN_LIGHT_RADIUS, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance,
-    box_interval,
+    AMBIENT_REACH, LIGHT_GAP, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
 };
 use super::occluders::{BoxMask, indices};
 use super::scene::Scene;
@@ -60,14 +59,14 @@ pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     };
     let is = |surface: Surface| b.surface == surface as u32;
     if is(Surface::Glow) || is(Surface::Even) {
-        return b.colour;
+        return b.color;
     }
     let dirt = stains(world);
     if is(Surface::Slabs) {
         let size = Vec2::splat(1.6);
         let tile = (uv / size).floor().as_ivec2();
         let tone = 0.85 + 0.3 * hash(tile.extend(5));
-        return b.colour * tone * (0.55 + 0.7 * dirt) * mix(0.45, 1.0, joints(uv, size, 0.035));
+        return b.color * tone * (0.55 + 0.7 * dirt) * mix(0.45, 1.0, joints(uv, size, 0.035));
     }
     if is(Surface::Brick) {
         let size = Vec2::new(0.48, 0.17);
@@ -76,7 +75,7 @@ pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
         let tile = (shifted / size).floor().extend(n.x * 3.0 + n.z).as_ivec3();
         let tone = 0.7 + 0.6 * hash(tile);
         let tint = Vec3::ONE.lerp(Vec3::new(1.15, 0.92, 0.8), hash(tile.wrapping_add(IVec3::new(7, 3, 1))));
-        let brick = b.colour * tone * tint * (0.6 + 0.6 * dirt);
+        let brick = b.color * tone * tint * (0.6 + 0.6 * dirt);
         let mortar = Vec3::new(0.16, 0.155, 0.15) * (0.6 + 0.6 * dirt);
         return mortar.lerp(brick, joints(shifted, size, 0.02));
     }
@@ -88,13 +87,13 @@ pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
         let edge = Vec3::select(n.abs().cmpgt(Vec3::splat(0.5)), Vec3::splat(10.0), b.half_size - p.abs());
         let framed = smoothstep(0.09, 0.075, edge.min_element());
         let boards = tone * mix(0.5, 1.0, joints(Vec2::new(25.0, uv.y), Vec2::new(50.0, 0.2), 0.015));
-        return b.colour * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
+        return b.color * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
     }
     if is(Surface::Plaster) {
         let damp = smoothstep(0.0, 1.2, world.y + dirt * 0.8 - 0.3);
-        return b.colour * (0.6 + 0.55 * dirt) * mix(0.6, 1.0, damp);
+        return b.color * (0.6 + 0.55 * dirt) * mix(0.6, 1.0, damp);
     }
-    b.colour * (0.8 + 0.4 * dirt)
+    b.color * (0.8 + 0.4 * dirt)
 }
 
 /// Ray from a point to a light.
@@ -162,16 +161,15 @@ impl Scene {
         if facing <= 0.0 || sample.attenuation <= 0.0 {
             return Vec3::ZERO;
         }
-        // A ray ends at the body of its light, which may stand in a surface.
         let (distance, spread) = if light.directional > 0.5 {
             (SUN_DISTANCE, SUN_SPREAD)
         } else {
             let distance = (light.position - world).length();
-            (distance - light.radius.max(MIN_LIGHT_RADIUS), light.radius / distance.max(0.1))
+            (distance - LIGHT_GAP, light.radius / distance.max(0.1))
         };
         let boxes = self.occluders.at(1 + index, world);
         let ray = ShadowRay { origin: world + normal * 2.0e-3, direction: sample.direction, distance, spread };
         let visible = self.light_visibility(boxes, &ray, pixel.min(WIDEST_PIXEL));
-        light.colour * (facing * sample.attenuation * visible)
+        light.color * (facing * sample.attenuation * visible)
     }
 }

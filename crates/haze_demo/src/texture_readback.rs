@@ -61,8 +61,8 @@ impl BufferRegion {
         image
     }
 
-    /// Decodes a colour texture: four channels of 8 or 16 bits, or one of 16 or 32 bits.
-    pub fn colours(&self, bytes: &[u8], layer: u32, size: UVec2) -> Image<Vec4> {
+    /// Decodes a color texture: four channels of 8 or 16 bits, or one of 16 or 32 bits.
+    pub fn colors(&self, bytes: &[u8], layer: u32, size: UVec2) -> Image<Vec4> {
         let half = |texel: &[u8], channel: usize| {
             texel.get(2 * channel..2 * channel + 2).map_or(0.0, |b| f16::from_le_bytes([b[0], b[1]]).to_f32())
         };

@@ -1,5 +1,5 @@
 //! Tonemapping from linear HDR to sRGB: on the CPU for files, on the GPU for windows. Only the demo program tonemaps;
-//! the library never changes a host's colours.
+//! the library never changes a host's colors.
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbImage;
@@ -9,14 +9,14 @@ use haze::assets::image::Image;
 use haze::formula::tonemap::{dither, tonemapped};
 use haze::shader;
 
-/// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colours, unchanged values for
+/// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colors, unchanged values for
 /// data.
 pub fn tonemap(image: &Image<Vec4>, shot: &Shot) -> RgbImage {
     let exposure = exposure(shot);
     let mut rounded = Image::new(image.size, [0_u8; 3]);
     rounded.for_each(|at, out| {
-        let colour = image.load(at.as_ivec2()).xyz();
-        *out = quantise(if exposure == 0.0 { colour } else { tonemapped(colour, exposure) }, at);
+        let color = image.load(at.as_ivec2()).xyz();
+        *out = quantise(if exposure == 0.0 { color } else { tonemapped(color, exposure) }, at);
     });
     // Never the default: there is one texel per pixel.
     RgbImage::from_raw(image.size.x, image.size.y, rounded.texels.into_flattened()).unwrap_or_default()

@@ -30,11 +30,11 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return vec4f(vec2f(vec2u(index & 1u, index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-fn code(colour: vec3f, exposure: f32) -> vec3f {
+fn code(color: vec3f, exposure: f32) -> vec3f {
     if exposure == 0.0 {
-        return colour;
+        return color;
     }
-    return tonemapped(colour, exposure);
+    return tonemapped(color, exposure);
 }
 
 @fragment

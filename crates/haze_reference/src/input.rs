@@ -7,9 +7,9 @@ use haze::assets::material_assets::MaterialAssets;
 use haze::frame::{Bounds, Light, Particle, View};
 use haze::settings::{DebugView, Settings};
 
-/// One frame, like [`haze::Frame`], in memory.
+/// One frame, like [`haze::FrameInput`], in memory.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct FrameInput<'a> {
     /// The camera.
     pub view: View,
     /// Values of a depth buffer written with the view's projection, 0..1.
@@ -17,7 +17,7 @@ pub struct Frame<'a> {
     /// At most [`MAX_LIGHTS`](haze::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
     /// Particle systems, drawn far to near.
-    pub systems: &'a [System<'a>],
+    pub systems: &'a [ParticleSystem<'a>],
     /// Multiplies all light that the smoke sends to the viewer.
     pub exposure: f32,
     /// Seconds. The noise of volumetric sprites rises with time.
@@ -28,7 +28,7 @@ pub struct Frame<'a> {
     pub debug_view: DebugView,
 }
 
-impl<'a> Frame<'a> {
+impl<'a> FrameInput<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: &'a Image<f32>) -> Self {
         let debug_view = DebugView::Final;
@@ -36,9 +36,9 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// One particle system, like [`haze::System`], in memory.
+/// One particle system, like [`haze::ParticleSystem`], in memory.
 #[derive(Clone, Copy, Debug)]
-pub struct System<'a> {
+pub struct ParticleSystem<'a> {
     /// The sprites, in any order.
     pub particles: &'a [Particle],
     /// Places the particles in the world: rotation, translation and a uniform scale.
@@ -53,7 +53,7 @@ pub struct System<'a> {
     pub material: &'a MaterialAssets,
 }
 
-impl<'a> System<'a> {
+impl<'a> ParticleSystem<'a> {
     /// System with measured box and depth.
     pub const fn new(particles: &'a [Particle], settings: &'a Settings, material: &'a MaterialAssets) -> Self {
         Self { particles, world_from_particles: Mat4::IDENTITY, bounds: None, depth: None, settings, material }

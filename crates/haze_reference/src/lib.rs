@@ -17,7 +17,7 @@ use haze::settings::DebugView;
 
 use accumulated::AccumulatedTarget;
 pub use accumulated::AccumulatedTextures;
-pub use input::{Frame, System};
+pub use input::{FrameInput, ParticleSystem};
 pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
 use visible_system::visible_systems;
 
@@ -25,7 +25,7 @@ use visible_system::visible_systems;
 ///
 /// # Errors
 /// The first view, light or setting that is invalid; `picture` is untouched then.
-pub fn render(frame: &Frame<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldError> {
+pub fn render(frame: &FrameInput<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldError> {
     let systems = visible_systems(frame, picture.size)?;
     for (_, visible) in &systems {
         if visible.settings.is_forward() {

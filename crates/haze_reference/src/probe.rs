@@ -4,7 +4,7 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use super::blend_unit::premultiplied_over;
-use super::input::Frame;
+use super::input::FrameInput;
 use super::visible_system::{VisibleSystem, visible_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
@@ -31,8 +31,8 @@ pub struct ProbeTextures {
 pub struct Probe {
     /// Deferred systems whose box is drawn at the pixel and that have smoke there, far to near.
     pub systems: Vec<SystemProbe>,
-    /// Colour of the pixel, linear HDR. `None` if a system is forward, because those leave no texels.
-    pub colour: Option<Vec4>,
+    /// Color of the pixel, linear HDR. `None` if a system is forward, because those leave no texels.
+    pub color: Option<Vec4>,
 }
 
 /// Contribution of a system to a pixel.
@@ -54,7 +54,7 @@ pub struct SystemProbe {
     pub lights: Vec<LightProbe>,
     /// Diffuse light by the system's mode, times its intensity.
     pub diffuse: Vec3,
-    /// Weight of `ambient_colour` against `scatter_colour` in soft scatter; `None` if it comes from a ramp.
+    /// Weight of `ambient_color` against `scatter_color` in soft scatter; `None` if it comes from a ramp.
     pub soft_scatter_weight: Option<f32>,
     /// Soft scatter, times its intensity.
     pub soft_scatter: Vec3,
@@ -71,7 +71,7 @@ pub struct LightProbe {
     pub cosine: f32,
     /// Lookup coordinate of the diffuse ramp, 0 to 1.
     pub coordinate: f32,
-    /// Multiplies the light's colour.
+    /// Multiplies the light's color.
     pub attenuation: f32,
     /// Light added through the diffuse ramp or six-way maps, times the intensity of diffuse light. Modes other than
     /// `ramp` sum lights up differently.
@@ -95,7 +95,7 @@ pub struct GlowProbe {
 /// # Errors
 /// As [`render`](super::render), and for texels that do not have the system's size.
 pub fn probe(
-    frame: &Frame<'_>,
+    frame: &FrameInput<'_>,
     texels: &[Option<ProbeTextures>],
     behind: &Image<Vec4>,
     pixels: &[UVec2],
@@ -115,10 +115,10 @@ pub fn probe(
     }
     let has_forward = visible.iter().any(|(_, visible)| visible.settings.is_forward());
     let at = |&pixel: &UVec2| {
-        let mut colour = behind.load(pixel.as_ivec2());
+        let mut color = behind.load(pixel.as_ivec2());
         let systems =
-            systems.iter().filter_map(|(index, smoke)| smoke.probe_pixel(*index, pixel, &mut colour)).collect();
-        Probe { systems, colour: (!has_forward).then_some(colour) }
+            systems.iter().filter_map(|(index, smoke)| smoke.probe_pixel(*index, pixel, &mut color)).collect();
+        Probe { systems, color: (!has_forward).then_some(color) }
     };
     Ok(pixels.iter().map(at).collect())
 }
@@ -132,7 +132,7 @@ struct ProbedSystem<'a> {
 
 impl<'a> ProbedSystem<'a> {
     fn new(
-        frame: &Frame<'_>,
+        frame: &FrameInput<'_>,
         visible: &'a VisibleSystem<'a>,
         texels: &'a ProbeTextures,
         reduced_depth: &'a Image<f32>,
@@ -155,8 +155,8 @@ impl<'a> ProbedSystem<'a> {
         Ok(Self { accumulated, lights })
     }
 
-    /// Contribution of the system, which is blended over `colour`.
-    fn probe_pixel(&self, index: usize, at: UVec2, colour: &mut Vec4) -> Option<SystemProbe> {
+    /// Contribution of the system, which is blended over `color`.
+    fn probe_pixel(&self, index: usize, at: UVec2, color: &mut Vec4) -> Option<SystemProbe> {
         let smoke = &self.accumulated;
         let visible = smoke.visible;
         let pixel = at.as_vec2() + 0.5;
@@ -165,14 +165,14 @@ impl<'a> ProbedSystem<'a> {
             .then(|| smoke.transfer_fragment(DebugView::Final, pixel))
             .flatten();
         if let Some(blended) = blended {
-            *colour = premultiplied_over(blended, *colour);
+            *color = premultiplied_over(blended, *color);
         }
         let glows: Vec<_> = visible
             .lights
             .iter()
             .map(|light| smoke.glow_quad(light).and_then(|g| smoke.sample_glow(&g, pixel)))
             .collect();
-        *colour += glows.iter().flatten().map(|(_, glow)| *glow).sum::<Vec3>().extend(0.0);
+        *color += glows.iter().flatten().map(|(_, glow)| *glow).sum::<Vec3>().extend(0.0);
         let (amount, surface) = smoke.amount_and_surface(pixel);
         if amount <= 0.0 {
             return None;

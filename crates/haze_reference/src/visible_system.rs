@@ -2,7 +2,7 @@
 
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
-use super::input::{Frame, System};
+use super::input::{FrameInput, ParticleSystem};
 use haze::assets::image::Image;
 use haze::assets::material_assets::{MaterialAssets, MaterialInfo};
 use haze::error::FieldError;
@@ -48,7 +48,12 @@ pub struct VisibleSystem<'a> {
 
 impl<'a> VisibleSystem<'a> {
     /// Returns `None` if the system is not visible.
-    pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
+    pub fn new(
+        view: &ViewGeometry,
+        frame: &FrameInput<'a>,
+        system: &ParticleSystem<'a>,
+        material: &MaterialInfo,
+    ) -> Option<Self> {
         let space = ParticleSpace::new(view, &system.world_from_particles);
         let settings = ResolvedSettings::new(system.settings, space.scale, frame.view.size, material.frame_count, true);
         let mut measures = ParticleMeasures::default();
@@ -112,7 +117,10 @@ impl<'a> VisibleSystem<'a> {
 }
 
 /// Visible systems with their indices in the frame, far to near, for a picture of this size.
-pub fn visible_systems<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, VisibleSystem<'a>)>, FieldError> {
+pub fn visible_systems<'a>(
+    frame: &FrameInput<'a>,
+    picture: UVec2,
+) -> Result<Vec<(usize, VisibleSystem<'a>)>, FieldError> {
     // The picture is the view, whatever its origin in a host's targets.
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;

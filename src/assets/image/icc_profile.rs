@@ -3,7 +3,7 @@
 //! Not by the crate `moxcms`, which `image` uses: a direct dependency, whose version must follow that of `image`, for
 //! three tags and a curve.
 
-use crate::formula::colour::srgb_from_linear;
+use crate::formula::color::srgb_from_linear;
 
 /// True if an RGB or grey profile has the primaries and the transfer curve of sRGB, within 1.5 steps of 255.
 pub fn is_srgb(profile: &[u8]) -> bool {

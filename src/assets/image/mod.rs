@@ -2,7 +2,7 @@
 
 mod atomic_write;
 mod baked_png;
-mod colour_space;
+mod color_space;
 mod icc_profile;
 mod png;
 mod png_chunks;
@@ -11,7 +11,7 @@ mod png_chunks;
 pub use atomic_write::{FileIdentity, check_writable, write_file, write_state_file};
 #[doc(hidden)]
 pub use baked_png::{is_baked_png, write_baked_png};
-pub use colour_space::{colour_conversion_notes, decode_colour_png, read_colour_png};
+pub use color_space::{color_conversion_notes, decode_color_png, read_color_png};
 #[doc(hidden)]
 pub use png::{CompressionEffort, is_png, read_file, write_png};
 pub use png::{MAX_BYTES, MAX_SIDE, decode_png, read_png};

@@ -7,7 +7,7 @@ use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
 use super::atomic_write::write_file;
-use super::png_chunks::colour_tags;
+use super::png_chunks::color_tags;
 use crate::assets::bounded_read;
 use crate::assets::parallel::parallel_for_each;
 use crate::error::Error;
@@ -48,10 +48,10 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
     if width.max(height) > MAX_SIDE {
         return refuse(format!("{width}x{height} pixels; expected at most {MAX_SIDE}x{MAX_SIDE}"));
     }
-    let Some(tags) = colour_tags(bytes) else { return refuse(describe_decode_error(None)) };
+    let Some(tags) = color_tags(bytes) else { return refuse(describe_decode_error(None)) };
     // The decoder panics on such a palette (png 0.18.1, `Decoder::read_info`).
     if let Some(palette) = tags.palette_bytes.filter(|&palette| palette == 0 || palette % 3 != 0 || palette > 768) {
-        return refuse(format!("a palette of {palette} bytes; expected 3 bytes for each of 1 to 256 colours"));
+        return refuse(format!("a palette of {palette} bytes; expected 3 bytes for each of 1 to 256 colors"));
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_BYTES);

@@ -1,11 +1,11 @@
-//! Chunks of a PNG: checks that the file is complete, extracts its colour tags, and builds further chunks.
+//! Chunks of a PNG: checks that the file is complete, extracts its color tags, and builds further chunks.
 //!
-//! Not by `png::Info`, which lacks the name of the colour profile, and whose reader must decode all pixels to find a
+//! Not by `png::Info`, which lacks the name of the color profile, and whose reader must decode all pixels to find a
 //! truncated end.
 
-/// Colour tags of a PNG. (PNG 3, 4.3 "Colour spaces")
+/// Color tags of a PNG. (PNG 3, 4.3 "Color spaces")
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ColourTags {
+pub struct ColorTags {
     /// cICP: code points of primaries, transfer function and matrix, and the full-range flag.
     pub cicp: Option<[u8; 4]>,
     /// Name of the embedded ICC profile.
@@ -21,9 +21,9 @@ pub struct ColourTags {
 }
 
 /// Reads the tags without decoding pixels. `None` if the file ends before its last chunk does.
-pub fn colour_tags(bytes: &[u8]) -> Option<ColourTags> {
+pub fn color_tags(bytes: &[u8]) -> Option<ColorTags> {
     let mut rest = bytes.get(8..)?;
-    let mut tags = ColourTags::default();
+    let mut tags = ColorTags::default();
     let mut has_pixels = false;
     loop {
         let (length, after) = rest.split_first_chunk()?;
@@ -35,7 +35,7 @@ pub fn colour_tags(bytes: &[u8]) -> Option<ColourTags> {
         match kind {
             b"IEND" => return Some(tags),
             b"IDAT" => has_pixels = true,
-            // Colour chunks are only valid before the pixels.
+            // Color chunks are only valid before the pixels.
             _ if has_pixels => {}
             b"PLTE" => tags.palette_bytes = Some(data.len()),
             b"cICP" => tags.cicp = tags.cicp.or(data.try_into().ok()),

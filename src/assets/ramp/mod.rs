@@ -1,5 +1,5 @@
 //! Ramps: small lookup textures for lighting that an artist can paint. `ramps/README.md` describes axes, sizes and
-//! colour space.
+//! color space.
 
 mod ramp_role;
 
@@ -12,9 +12,9 @@ use glam::{UVec2, Vec3, Vec4};
 use half::f16;
 use image::DynamicImage;
 
-use crate::assets::image::{decode_colour_png, read_file};
+use crate::assets::image::{decode_color_png, read_file};
 use crate::error::Error;
-use crate::formula::colour::linear_from_srgb;
+use crate::formula::color::linear_from_srgb;
 use crate::formula::texture::Texture2d;
 
 /// A decoded ramp: linear RGB in half floats, as on the GPU. A 1D ramp has one row. A clone shares its texels.
@@ -25,35 +25,35 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// Builds a ramp from linear colours, row by row, starting with row 0 of the second axis.
+    /// Builds a ramp from linear colors, row by row, starting with row 0 of the second axis.
     ///
     /// # Panics
     /// Never: missing texels are black, surplus ones are dropped.
-    pub fn from_linear(size: UVec2, colours: impl IntoIterator<Item = Vec3>) -> Self {
+    pub fn from_linear(size: UVec2, colors: impl IntoIterator<Item = Vec3>) -> Self {
         let size = size.max(UVec2::ONE);
-        let mut texels: Vec<_> = colours
+        let mut texels: Vec<_> = colors
             .into_iter()
             .take((size.x * size.y) as usize)
-            .map(|colour| [colour.x, colour.y, colour.z, 1.0].map(f16::from_f32))
+            .map(|color| [color.x, color.y, color.z, 1.0].map(f16::from_f32))
             .collect();
         texels.resize((size.x * size.y) as usize, [f16::ZERO; 4]);
         Self { size, texels: texels.into() }
     }
 
     /// Converts an sRGB image of 8 or 16 bits per channel. Alpha is ignored;
-    /// [`decode_colour_png`] applies it. The bottom row is 0 on the second axis.
+    /// [`decode_color_png`] applies it. The bottom row is 0 on the second axis.
     pub fn from_image(picture: &DynamicImage) -> Self {
         let pixels = picture.to_rgb16();
         let size = UVec2::new(pixels.width(), pixels.height());
         let linear = |channel: u16| linear_from_srgb(f32::from(channel) / 65535.0);
-        let colours = pixels.rows().rev().flat_map(|row| row.map(|pixel| Vec3::from(pixel.0.map(linear))));
-        Self::from_linear(size, colours)
+        let colors = pixels.rows().rev().flat_map(|row| row.map(|pixel| Vec3::from(pixel.0.map(linear))));
+        Self::from_linear(size, colors)
     }
 
     /// Loads a PNG file.
     ///
     /// # Errors
-    /// As [`read_colour_png`](crate::image::read_colour_png).
+    /// As [`read_color_png`](crate::image::read_color_png).
     pub fn load(path: &Path) -> Result<Self, Error> {
         Self::decode(path, &read_file(path)?)
     }
@@ -61,9 +61,9 @@ impl Ramp {
     /// Decodes the bytes of a PNG file. `path` is only named in errors.
     ///
     /// # Errors
-    /// As [`decode_colour_png`].
+    /// As [`decode_color_png`].
     pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
-        Ok(Self::from_image(&decode_colour_png(path, bytes)?))
+        Ok(Self::from_image(&decode_color_png(path, bytes)?))
     }
 
     /// Returns the size, texels.

@@ -17,7 +17,7 @@ choice! {
         Specular = "specular",
         /// Coverage by amount.
         Coverage = "coverage",
-        /// Particle colour by age.
+        /// Particle color by age.
         Age = "age",
     }
 }

@@ -4,7 +4,7 @@ use super::error_scopes::with_error_scopes;
 use super::pipeline::read_only_depth;
 use crate::error::FieldError;
 
-/// Maximum number of colour attachments of a pass.
+/// Maximum number of color attachments of a pass.
 pub(crate) const MAX_ATTACHMENTS: usize = 8;
 
 /// Formats and sample count of a pass.
@@ -18,7 +18,7 @@ pub(crate) struct HostPass {
 }
 
 impl HostPass {
-    /// Returns a pass with one colour attachment and nothing else.
+    /// Returns a pass with one color attachment and nothing else.
     pub const fn color_only(color_format: wgpu::TextureFormat) -> Self {
         Self {
             color_format,
@@ -29,14 +29,14 @@ impl HostPass {
         }
     }
 
-    /// Returns the pass with further colour attachments; `None` if there are more than a pass can have.
+    /// Returns the pass with further color attachments; `None` if there are more than a pass can have.
     pub fn with_further(mut self, formats: &[Option<wgpu::TextureFormat>]) -> Option<Self> {
         self.further.get_mut(..formats.len())?.copy_from_slice(formats);
         self.further_count = formats.len();
         Some(self)
     }
 
-    /// Returns the pass's colour targets: the first is blended, the others are not written.
+    /// Returns the pass's color targets: the first is blended, the others are not written.
     pub fn color_targets(&self, blend: wgpu::BlendState) -> Vec<Option<wgpu::ColorTargetState>> {
         let first = wgpu::ColorTargetState {
             format: self.color_format,

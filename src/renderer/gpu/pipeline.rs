@@ -225,16 +225,16 @@ pub(crate) use enum_constant;
 /// ONE, ONE_MINUS_SRC_ALPHA: source over destination, both premultiplied.
 pub(crate) const PREMULTIPLIED_OVER: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
-/// ONE, ONE on colour; alpha is not changed.
+/// ONE, ONE on color; alpha is not changed.
 pub(crate) const ADDITIVE: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: KEEP_DESTINATION };
 
-/// ONE, ONE on colour; ONE, ONE_MINUS_SRC_ALPHA on alpha.
+/// ONE, ONE on color; ONE, ONE_MINUS_SRC_ALPHA on alpha.
 pub(crate) const WEIGHTED_SUM: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: wgpu::BlendComponent::OVER };
 
-/// ONE, ONE on colour and alpha.
+/// ONE, ONE on color and alpha.
 pub(crate) const ADD_ALL: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: ADD };
 
-/// DST, ZERO on colour: destination times source; alpha is not changed.
+/// DST, ZERO on color: destination times source; alpha is not changed.
 pub(crate) const MULTIPLY: wgpu::BlendState = wgpu::BlendState {
     color: wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::Dst,
@@ -256,7 +256,7 @@ const KEEP_DESTINATION: wgpu::BlendComponent = wgpu::BlendComponent {
     operation: wgpu::BlendOperation::Add,
 };
 
-/// Returns a colour target with or without blending.
+/// Returns a color target with or without blending.
 pub(crate) fn color_target(
     format: wgpu::TextureFormat,
     blend: Option<wgpu::BlendState>,

@@ -2,7 +2,7 @@
 
 use super::timing::Timing;
 
-/// Returns a colour attachment that is cleared to zero.
+/// Returns a color attachment that is cleared to zero.
 pub(crate) fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     Some(wgpu::RenderPassColorAttachment {
         view,

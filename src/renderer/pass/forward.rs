@@ -1,7 +1,7 @@
 //! forward: lights and blends every sprite fragment at full resolution, the classic way.
 //!
 //! Reads: particles back to front, sprite flipbook, detail map or noise, scene depth, lights, ramps.
-//! Writes: the host's colour target.
+//! Writes: the host's color target.
 //! Blend: alpha, additive or multiply.
 //! Source: OTEE "Typical game particles so far".
 
@@ -20,7 +20,7 @@ pub(crate) struct ForwardKey {
     pub host: HostPass,
     pub blend_mode: BlendMode,
     pub sprite: SpriteKey,
-    pub age_colour: bool,
+    pub age_color: bool,
     /// True if sprites show through the scene: there is no depth test.
     pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
@@ -45,7 +45,7 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
         targets: key.host.color_targets(blend),
         constants: key.sprite.constants([
             enum_constant!("BLEND_MODE", key.blend_mode),
-            bool_constant("AGE_COLOUR", key.age_colour),
+            bool_constant("AGE_COLOR", key.age_color),
             bool_constant("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
             enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
             enum_constant!("BACKLIGHT", key.backlight),

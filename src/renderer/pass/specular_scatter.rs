@@ -1,7 +1,7 @@
 //! specular_scatter: adds the glow of lights behind the smoke, one quad of constant pixel size around each light.
 //!
 //! Reads: accumulation target, reduced depth, scene depth, lights, specular ramp.
-//! Writes: the host's colour target.
+//! Writes: the host's color target.
 //! Blend: ONE, ONE.
 //! Source: OTEE "Specular scattering".
 

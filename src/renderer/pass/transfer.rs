@@ -2,7 +2,7 @@
 //! light_target.
 //!
 //! Reads: accumulation target, reduced depth, scene depth, lights, ramps.
-//! Writes: the host's colour target.
+//! Writes: the host's color target.
 //! Blend: ONE, ONE_MINUS_SRC_ALPHA.
 //! Source: OTEE "Transfer & lighting".
 

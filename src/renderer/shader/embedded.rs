@@ -36,7 +36,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/attachments.wgsl",
     "lib/bindings.wgsl",
     "lib/blending.wgsl",
-    "lib/colour.wgsl",
+    "lib/color.wgsl",
     "lib/depth.wgsl",
     "lib/diffuse.wgsl",
     "lib/diffuse_bake.wgsl",

@@ -63,7 +63,7 @@ const ATTACHMENTS: [Attachment; AttachmentRole::ALL.len()] = [
     },
 ];
 
-/// WebGPU's default limit on the colour attachments of a pass, bytes per sample.
+/// WebGPU's default limit on the color attachments of a pass, bytes per sample.
 const MAX_BYTES_PER_SAMPLE: u32 = 32;
 
 /// Formats of the textures that tile_accumulate writes, by slot. Slots that a system does not use have the placeholders'

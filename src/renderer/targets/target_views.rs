@@ -27,6 +27,6 @@ pub struct TargetViews<'a> {
     pub scale: u32,
     /// View depth that is stored as 1, metres. All depths beyond it are equal to this system.
     pub depth_limit: f32,
-    /// View depth of the plane on which light is evaluated, metres. See [`System::depth`](crate::System::depth).
+    /// View depth of the plane on which light is evaluated, metres. See [`ParticleSystem::depth`](crate::ParticleSystem::depth).
     pub lit_depth: f32,
 }

@@ -14,7 +14,7 @@ use haze::view_setup::{AttachmentRole, ResolvedSettings, SpriteTrim};
 use haze::{Light, LightKind, MaterialAssets};
 use haze_reference::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use haze_reference::visible_system::{VisibleSystem, visible_systems};
-use haze_reference::{Frame, System};
+use haze_reference::{FrameInput, ParticleSystem};
 
 use super::inputs::{test_noise, test_ramp, test_sprite, test_sprite_sheet};
 use crate::test_scene::TestScene;
@@ -22,19 +22,19 @@ use crate::test_scene::TestScene;
 /// Size of the view and of the accumulation target: that of the test ramp, which takes the place of every 2D texture.
 pub const SIZE: UVec2 = UVec2::new(8, 4);
 
-/// The test ramp as colours with alpha 1, as a texture lookup returns it.
-pub static COLOURS: LazyLock<Image<Vec4>> = LazyLock::new(|| {
+/// The test ramp as colors with alpha 1, as a texture lookup returns it.
+pub static COLORS: LazyLock<Image<Vec4>> = LazyLock::new(|| {
     let ramp = test_ramp();
     let texels = (0..SIZE.x * SIZE.y).map(|i| ramp.texel(UVec2::new(i % SIZE.x, i / SIZE.x)).extend(1.0)).collect();
     Image { size: SIZE, texels }
 });
 
 /// Textures of every role, all with the test ramp.
-static TEXTURES: LazyLock<AccumulatedTextures> = LazyLock::new(|| AttachmentRole::ALL.map(|_| Some(COLOURS.clone())));
+static TEXTURES: LazyLock<AccumulatedTextures> = LazyLock::new(|| AttachmentRole::ALL.map(|_| Some(COLORS.clone())));
 
 /// Red channel of the test ramp: the scene's depth buffer, and the reduced depth over the depth limit.
 pub static DEPTHS: LazyLock<Image<f32>> =
-    LazyLock::new(|| Image { size: SIZE, texels: COLOURS.texels.iter().map(|texel| texel.x).collect() });
+    LazyLock::new(|| Image { size: SIZE, texels: COLORS.texels.iter().map(|texel| texel.x).collect() });
 
 /// Images of the system: the test ramp, the test sprite and the test noise.
 pub static MATERIAL: LazyLock<MaterialAssets> = LazyLock::new(|| {
@@ -70,8 +70,8 @@ static SYSTEM: LazyLock<VisibleSystem<'static>> = LazyLock::new(|| {
     scene.lights.push(Light { kind: LightKind::Directional, direction: vec3(0.3, -1.0, -0.4), ..Light::default() });
     scene.settings.accumulate.scale = 1;
     let scene: &'static TestScene = Box::leak(Box::new(scene));
-    let systems = Box::leak(Box::new([System::new(&scene.particles, &scene.settings, &WITHOUT_SIX_WAY)]));
-    let frame = Frame { lights: &scene.lights, systems, ..Frame::new(scene.view, &DEPTHS) };
+    let systems = Box::leak(Box::new([ParticleSystem::new(&scene.particles, &scene.settings, &WITHOUT_SIX_WAY)]));
+    let frame = FrameInput { lights: &scene.lights, systems, ..FrameInput::new(scene.view, &DEPTHS) };
     let (_, mut visible) = visible_systems(&frame, SIZE).unwrap().swap_remove(0);
     let system = &mut visible.system;
     (system.target_origin, system.target_size) = (Vec2::ZERO, SIZE.as_vec2());

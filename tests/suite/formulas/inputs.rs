@@ -58,13 +58,13 @@ pub fn v4(x: &[f32]) -> Vec4 {
     Vec4::from_slice(x)
 }
 
-/// Returns a ramp of 8x4 texels with different pseudo-random colours.
+/// Returns a ramp of 8x4 texels with different pseudo-random colors.
 pub fn test_ramp() -> Ramp {
-    let colour = |i: u32| {
+    let color = |i: u32| {
         let hash = pcg3d(UVec3::new(i, 1, 2));
         vec3(unit(hash.x), unit(hash.y), unit(hash.z)) * 2.0
     };
-    Ramp::from_linear(UVec2::new(8, 4), (0..32).map(colour))
+    Ramp::from_linear(UVec2::new(8, 4), (0..32).map(color))
 }
 
 /// Returns the image of [`test_sprite`].

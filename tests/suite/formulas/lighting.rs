@@ -13,7 +13,7 @@ fn light(x: &[f32]) -> LightUniform {
         inverse_range: x[3],
         direction: v3(&x[4..]),
         directional: x[7],
-        colour: Vec3::ONE,
+        color: Vec3::ONE,
         specular_scatter: 1.0,
         spot_scale: x[8],
         spot_offset: x[9],

@@ -10,7 +10,7 @@ use haze_reference::pass::transfer::Surface;
 use haze_reference::visible_system::VisibleSystem;
 
 use super::Formula;
-use super::fixture::{COLOURS, DEFAULTS, DEPTHS, SIZE, accumulated_target, visible_system};
+use super::fixture::{COLORS, DEFAULTS, DEPTHS, SIZE, accumulated_target, visible_system};
 use super::inputs::{TRANSCENDENTAL, count, random, unit_vectors, v2, v3, v4, with_choices};
 
 const SIDE: (f32, f32) = (-1.0, 1.0);
@@ -72,7 +72,7 @@ fn accumulated() -> Vec<Formula> {
             name: "clamped_texel",
             file: "lib/accumulated.wgsl",
             wgsl: "let at = clamped_texel(vec2i(floor(vec2f(x(0), x(1))))); y4(0, textureLoad(test_ramp, at, 0));",
-            reference: |x| COLOURS.load(v2(x).floor().as_ivec2()).to_array().to_vec(),
+            reference: |x| COLORS.load(v2(x).floor().as_ivec2()).to_array().to_vec(),
             cases: random(50, &[(-5.0, 14.0), (-5.0, 9.0)]),
             tolerance: 1e-5,
             mutants: &[
@@ -93,7 +93,7 @@ fn accumulated() -> Vec<Formula> {
                     visible.system.smoke_depth_limit = 6.0;
                 };
                 let pixel = v2(&x[1..]);
-                with_target(&settings, change, |target| target.sample_target(&COLOURS, pixel).to_array().to_vec())
+                with_target(&settings, change, |target| target.sample_target(&COLORS, pixel).to_array().to_vec())
             },
             cases: with_choices(count(Upsample::ALL), &[(-0.5, 7.9), (-0.5, 3.9), (0.0, 1.0)]),
             tolerance: 2e-3,
@@ -137,7 +137,7 @@ fn diffuse() -> Vec<Formula> {
             ),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("sum += falloff * lights[i].colour * light.attenuation;", "sum += falloff * lights[i].colour;"),
+                ("sum += falloff * lights[i].color * light.attenuation;", "sum += falloff * lights[i].color;"),
                 (
                     "diffuse_coordinate(normal, light.direction), covered",
                     "diffuse_coordinate(normal, light.direction), 0.5",
@@ -152,11 +152,11 @@ fn diffuse() -> Vec<Formula> {
             name: "diffuse_from_six_way",
             file: "lib/diffuse.wgsl",
             wgsl: "let s = SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
-                   system.six_way_colour = vec3f(0.9, 0.7, 0.5); \
+                   system.six_way_color = vec3f(0.9, 0.7, 0.5); \
                    y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8))));",
             reference: |x| {
                 let mut visible = visible_system(&DEFAULTS);
-                visible.system.six_way_colour = Vec3::new(0.9, 0.7, 0.5);
+                visible.system.six_way_color = Vec3::new(0.9, 0.7, 0.5);
                 let six_way = SixWay { positive: v3(x), negative: v3(&x[3..]) };
                 visible.diffuse_from_six_way(&six_way, v3(&x[6..])).to_array().to_vec()
             },
@@ -166,7 +166,7 @@ fn diffuse() -> Vec<Formula> {
             ),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("return sum * system.six_way_colour", "return sum"),
+                ("return sum * system.six_way_color", "return sum"),
                 ("(response * light.attenuation)", "response"),
             ],
         },
@@ -184,8 +184,8 @@ fn diffuse() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 (
-                    "mix(system.scatter_colour, system.ambient_colour, weight)",
-                    "mix(system.ambient_colour, system.scatter_colour, weight)",
+                    "mix(system.scatter_color, system.ambient_color, weight)",
+                    "mix(system.ambient_color, system.scatter_color, weight)",
                 ),
                 ("linear_sampler, amount) * system.soft_scatter_intensity", "linear_sampler, amount)"),
             ],

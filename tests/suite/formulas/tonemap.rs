@@ -25,8 +25,8 @@ pub fn formulas() -> Vec<Formula> {
             cases: random(60, &[(0.0, 2.0), (0.0, 2.0), (0.0, 2.0), (0.1, 4.0)]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("aces_fitted(colour * exposure)", "aces_fitted(colour)"),
-                ("srgb_colour(aces_fitted", "(aces_fitted"),
+                ("aces_fitted(color * exposure)", "aces_fitted(color)"),
+                ("srgb_color(aces_fitted", "(aces_fitted"),
             ],
         },
         Formula {

@@ -188,7 +188,7 @@ fn srgb_view_of_a_gamma_target_blends_smoke_and_glow_in_linear_light() {
         let mut picture = scene.on_gpu(gpu()).picture;
         // The texture is read back as what it stores: code.
         picture.for_each(|_, texel| {
-            *texel = texel.truncate().map(haze::formula::colour::linear_from_srgb).extend(texel.w);
+            *texel = texel.truncate().map(haze::formula::color::linear_from_srgb).extend(texel.w);
         });
         let psnr = psnr(&picture, &expected);
         assert!(psnr >= 55.0, "{}: {psnr:.1} dB", path.name());
@@ -287,7 +287,7 @@ fn unreadable_scene_depth_is_rejected() {
         ("two layers", whole(&texture(2, 1, usage))),
         ("four samples", whole(&texture(1, 4, usage))),
         ("not to be sampled", whole(&texture(1, 1, wgpu::TextureUsages::RENDER_ATTACHMENT))),
-        ("a colour", whole(&host.colour)),
+        ("a color", whole(&host.color)),
     ];
     for (name, view) in cases {
         let own = std::mem::replace(&mut host.depth, view);

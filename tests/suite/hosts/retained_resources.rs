@@ -2,7 +2,9 @@
 
 use glam::{Mat4, UVec2, Vec3, vec3};
 use haze::settings::*;
-use haze::{Bounds, Error, Frame, Particle, ParticleBuffer, Particles, SceneDepth, Settings, System, View, wgpu};
+use haze::{
+    Bounds, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, Settings, View, wgpu,
+};
 use haze_demo::headless::Headless;
 
 use super::{SIZE, encoder, rejected_field};
@@ -78,10 +80,11 @@ impl SystemsFixture {
         let systems: Vec<_> = systems
             .iter()
             .map(|(key, particles, settings)| {
-                System::new(*key, Particles::Slice(particles), settings, &self.host.material)
+                ParticleSystem::new(*key, Particles::Slice(particles), settings, &self.host.material)
             })
             .collect();
-        let frame = Frame { systems: &systems, ..Frame::new(self.scene.view, SceneDepth::Linear(&self.host.linear)) };
+        let frame =
+            FrameInput { systems: &systems, ..FrameInput::new(self.scene.view, SceneDepth::Linear(&self.host.linear)) };
         let mut encoder = encoder(gpu);
         self.host.renderer.prepare(&mut encoder, &frame)?;
         gpu.submit(encoder)

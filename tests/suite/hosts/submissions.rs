@@ -1,7 +1,7 @@
 //! Several views in one submission, and a second `prepare` before the first is submitted.
 
 use glam::{Mat4, vec3};
-use haze::{Frame, Particles, SceneDepth, System};
+use haze::{FrameInput, ParticleSystem, Particles, SceneDepth};
 
 use super::{SIZE, encoder, rejected_field, slice};
 use crate::gpu::gpu;
@@ -79,9 +79,12 @@ fn systems_can_be_drawn_one_by_one_between_objects_of_the_host() {
     behind.iter_mut().for_each(|particle| particle.position += vec3(0.4, 0.2, -1.5));
     let (material, linear) = (host.material.clone(), host.linear.clone());
     let systems = [(7, &scene.particles), (3, &behind)]
-        .map(|(key, particles)| System::new(key, Particles::Slice(particles), &scene.settings, &material));
-    let frame =
-        Frame { lights: &scene.lights, systems: &systems, ..Frame::new(scene.view, SceneDepth::Linear(&linear)) };
+        .map(|(key, particles)| ParticleSystem::new(key, Particles::Slice(particles), &scene.settings, &material));
+    let frame = FrameInput {
+        lights: &scene.lights,
+        systems: &systems,
+        ..FrameInput::new(scene.view, SceneDepth::Linear(&linear))
+    };
     let mut draw = |is_single: bool| {
         let mut encoder = encoder(gpu());
         host.renderer.prepare(&mut encoder, &frame).unwrap();

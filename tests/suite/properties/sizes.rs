@@ -123,7 +123,7 @@ fn largest_light_count_matches_the_reference_and_one_more_light_is_rejected() {
     let mut scene = TestScene::new(SIZE);
     let light = |i: usize| Light {
         position: vec3((i % 16) as f32 - 8.0, (i / 16) as f32 - 4.0, -4.0),
-        colour: vec3((i % 3) as f32, (i % 5) as f32, (i % 7) as f32) * 0.1,
+        color: vec3((i % 3) as f32, (i % 5) as f32, (i % 7) as f32) * 0.1,
         range: 4.0,
         specular_scatter: 0.0,
         ..Light::default()

@@ -24,7 +24,7 @@ fn gpu_and_cpu_agree_on_every_sprite_setting() {
         ("motion", |s| s.settings.sprite.motion = 1.0),
         ("debug sprite", |s| s.settings.sprite.debug_sprite = true),
         ("debug loop", |s| s.settings.sprite.debug_loop = 3),
-        ("age colour", |s| (s.settings.path, s.settings.sprite.age_colour) = (RenderPath::Forward, 0.8)),
+        ("age color", |s| (s.settings.path, s.settings.sprite.age_color) = (RenderPath::Forward, 0.8)),
     ];
     for (name, change) in changes {
         for technique in [Technique::Soft, Technique::SphericalBillboard] {

@@ -16,7 +16,7 @@ pub(super) fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, s
     create(gpu, size, format, sample_count, sampled, &[])
 }
 
-/// Creates a colour target that stores one format and is drawn to through a view of another.
+/// Creates a color target that stores one format and is drawn to through a view of another.
 pub(super) fn target_with_view_format(
     gpu: &Headless,
     size: UVec2,
@@ -92,7 +92,7 @@ pub(super) fn depth_buffer(gpu: &Headless, scene: &TestScene, size: UVec2, sampl
     depth
 }
 
-/// Converts any colour texture to `Rgba16Float`.
+/// Converts any color texture to `Rgba16Float`.
 pub fn convert_to_rgba16float(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
     if texture.format() == wgpu::TextureFormat::Rgba16Float && texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
         return texture.clone();

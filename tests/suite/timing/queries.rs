@@ -41,7 +41,7 @@ fn host_pass_queries_from_before_a_second_prepare_are_harmless() {
     let timestamp_writes = timing.host_pass("host");
     let mut encoder = encoder();
     host.prepare(&mut encoder, &scene, Particles::Slice(&scene.particles)).unwrap();
-    let view = host.colour.create_view(&wgpu::TextureViewDescriptor::default());
+    let view = host.color.create_view(&wgpu::TextureViewDescriptor::default());
     let attachment = wgpu::RenderPassColorAttachment {
         view: &view,
         depth_slice: None,

@@ -6,7 +6,7 @@ use super::*;
 use haze_author::ramp::{RampRecipe, RampRow};
 
 fn stops(list: &[(f32, u8, Curve)]) -> Vec<RampStop> {
-    list.iter().map(|&(at, grey, curve)| RampStop { curve, ..RampStop::new(at, HexColour([grey; 3])) }).collect()
+    list.iter().map(|&(at, grey, curve)| RampStop { curve, ..RampStop::new(at, HexColor([grey; 3])) }).collect()
 }
 
 fn places(stops: &[RampStop]) -> Vec<f32> {
@@ -14,7 +14,7 @@ fn places(stops: &[RampStop]) -> Vec<f32> {
 }
 
 fn greys(stops: &[RampStop]) -> Vec<u8> {
-    stops.iter().map(|stop| stop.colour.0[0]).collect()
+    stops.iter().map(|stop| stop.color.0[0]).collect()
 }
 
 const SMOOTH: Curve = Curve::Monotone;
@@ -56,9 +56,9 @@ fn a_stop_changes_order_only_if_it_moves_past_another() {
 #[test]
 fn added_stops_are_inserted_in_order_and_the_last_stop_cannot_be_removed() {
     let mut list = stops(&[(0.2, 0, Curve::Ease), (0.2, 1, Curve::Constant), (0.8, 2, SMOOTH)]);
-    assert_eq!(add(&mut list, 0.2, HexColour([9; 3])), 2);
+    assert_eq!(add(&mut list, 0.2, HexColor([9; 3])), 2);
     assert_eq!((greys(&list), list[2].curve), (vec![0, 1, 9, 2], Curve::Constant));
-    assert_eq!(add(&mut list, 0.1, HexColour([8; 3])), 0);
+    assert_eq!(add(&mut list, 0.1, HexColor([8; 3])), 0);
     assert_eq!(list[0].curve, Curve::Ease);
     assert_eq!(removed(&mut list, 4), 3);
     while list.len() > 1 {
@@ -246,8 +246,8 @@ proptest! {
         let mut selection = Selection::one(selected[0]);
         selected[1..].iter().for_each(|index| selection.toggle(*index));
         selection.clamp_to(list.len());
-        // Selected stops are marked by a colour. Mirroring and removal change the number of marked stops.
-        selection.iter().for_each(|index| list[index].colour = HexColour([9; 3]));
+        // Selected stops are marked by a color. Mirroring and removal change the number of marked stops.
+        selection.iter().for_each(|index| list[index].color = HexColor([9; 3]));
         match what {
             0 => move_to(&mut list, &mut selection, at),
             1 => scale(&mut list, &mut selection, at),
@@ -261,7 +261,7 @@ proptest! {
         prop_assert!(list.iter().all(|stop| (0.0..=1.0).contains(&stop.at)));
         prop_assert!(selection.iter().all(|index| index < list.len()) && selection.contains(selection.lead()));
         if what < 4 {
-            let marked = list.iter().map(|stop| stop.colour == HexColour([9; 3]));
+            let marked = list.iter().map(|stop| stop.color == HexColor([9; 3]));
             prop_assert!(marked.enumerate().all(|(index, is)| is == selection.contains(index)));
         }
     }
@@ -270,12 +270,12 @@ proptest! {
     fn moving_a_stop_keeps_the_order(
         list in prop::collection::vec(0.0f32..=1.0, 1..8), index in 0usize..8, at in -1.0f32..2.0,
     ) {
-        let mut list: Vec<_> = list.into_iter().map(|at| RampStop::new(at, HexColour([0; 3]))).collect();
+        let mut list: Vec<_> = list.into_iter().map(|at| RampStop::new(at, HexColor([0; 3]))).collect();
         sort(&mut list);
         let index = index % list.len();
-        list[index].colour = HexColour([9; 3]);
+        list[index].color = HexColor([9; 3]);
         let index = moved(&mut list, index, at);
-        prop_assert_eq!((list[index].colour, list[index].at), (HexColour([9; 3]), at.clamp(0.0, 1.0)));
+        prop_assert_eq!((list[index].color, list[index].at), (HexColor([9; 3]), at.clamp(0.0, 1.0)));
         prop_assert!(list.is_sorted_by(|a, b| a.at <= b.at));
     }
 }

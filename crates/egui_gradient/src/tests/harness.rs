@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::{DisplayOptions, GradientEditor};
-use haze_author::ramp::{HexColour, RampRow, RampStop};
+use haze_author::ramp::{HexColor, RampRow, RampStop};
 
 /// An editor, and the results that its host has received.
 #[derive(Default)]
@@ -18,7 +18,7 @@ pub struct Host {
 }
 
 pub fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
-    let stop = |&(at, grey): &(f32, u8)| RampStop::new(at, HexColour([grey; 3]));
+    let stop = |&(at, grey): &(f32, u8)| RampStop::new(at, HexColor([grey; 3]));
     let row = RampRow { at: 0.5, stops: stops.iter().map(stop).collect(), ..RampRow::default() };
     let show = |ui: &mut Ui, host: &mut Host| {
         let bins = [0.0, 1.0, 0.25];
@@ -43,7 +43,7 @@ pub fn places(harness: &Harness<'_, Host>) -> Vec<f32> {
 }
 
 pub fn greys(harness: &Harness<'_, Host>) -> Vec<u8> {
-    harness.state().row.stops.iter().map(|stop| stop.colour.0[0]).collect()
+    harness.state().row.stops.iter().map(|stop| stop.color.0[0]).collect()
 }
 
 pub fn steps(harness: &Harness<'_, Host>) -> Vec<&'static str> {

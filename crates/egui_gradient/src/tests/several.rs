@@ -109,7 +109,7 @@ fn buttons_and_fields_change_several_stops() {
     press(&mut harness, "Mirror");
     assert_eq!(greys(&harness), [0, 30, 20, 10, 20, 30, 40]);
     assert_eq!(selected(&harness), [1, 2, 3, 4, 5]);
-    harness.get_by_role_and_label(Role::TextInput, "colour").click();
+    harness.get_by_role_and_label(Role::TextInput, "color").click();
     harness.run_steps(2);
     key(&mut harness, Key::A, CTRL);
     harness.event(Event::Text("#070707".into()));
@@ -120,7 +120,7 @@ fn buttons_and_fields_change_several_stops() {
     assert_eq!(greys(&harness), [0, 40]);
     assert_eq!(
         steps(&harness),
-        ["distribute a part", "flip a part", "mirror a part", "colour of stops", "remove stops"]
+        ["distribute a part", "flip a part", "mirror a part", "color of stops", "remove stops"]
     );
 }
 
@@ -165,7 +165,7 @@ fn relative_changes_can_be_typed() {
 }
 
 #[test]
-fn relative_colour_changes_apply_to_each_selected_stop() {
+fn relative_color_changes_apply_to_each_selected_stop() {
     let mut harness = host(&[(0.0, 200), (0.5, 100), (1.0, 40)]);
     click_handle(&mut harness, 0, NONE);
     click_handle(&mut harness, 1, SHIFT);
@@ -175,5 +175,5 @@ fn relative_colour_changes_apply_to_each_selected_stop() {
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
     harness.run_steps(3);
-    assert_eq!((greys(&harness), steps(&harness)), (vec![100, 50, 40], vec!["colour of stops"]));
+    assert_eq!((greys(&harness), steps(&harness)), (vec![100, 50, 40], vec!["color of stops"]));
 }

@@ -224,7 +224,7 @@ impl<'a> CaseBench<'a> {
         let system = shot.preset.systems.first()?;
         let settings = system.settings;
         let is_forward = settings.path == RenderPath::Forward;
-        // Forward smoke is blended directly into the scene colour.
+        // Forward smoke is blended directly into the scene color.
         let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
         let overdraw = running.offscreen.renderer().overdraw();
         let fragments = overdraw.fragments;

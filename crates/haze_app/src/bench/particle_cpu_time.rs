@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use haze::settings::BlendOrder;
-use haze::{Context, Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
+use haze::{Context, Descriptor, Error, FrameInput, ParticleSystem, Particles, Renderer, SceneDepth, wgpu};
 use haze_author::particle_files;
 use haze_demo::headless::Headless;
 
@@ -41,11 +41,11 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
         particle_files::particles(system, None, shot.preset.time, &mut particles);
         let mut found = vec![started.elapsed()];
         for (renderer, material, settings) in &mut renderers {
-            let systems = [System::new(0, Particles::Slice(&particles), settings, material)];
-            let frame = Frame {
+            let systems = [ParticleSystem::new(0, Particles::Slice(&particles), settings, material)];
+            let frame = FrameInput {
                 lights: &shot.preset.lights,
                 systems: &systems,
-                ..Frame::new(view, SceneDepth::Buffer(&depth))
+                ..FrameInput::new(view, SceneDepth::Buffer(&depth))
             };
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let started = Instant::now();

@@ -14,7 +14,7 @@ pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
     /// Field, named by its path or the end of it, and its values: `accumulate.scale=1,2,4`. Values of three numbers are
-    /// separated by semicolons: `lights[0].colour=1,0,0;0,1,0`.
+    /// separated by semicolons: `lights[0].color=1,0,0;0,1,0`.
     #[arg(long, value_name = "FIELD=A,B,C", value_parser = parse_variation)]
     vary: (String, Vec<String>),
 }

@@ -141,16 +141,16 @@ fn measure(backend: &Backend, shot: &Shot, cells: &[Cell], rounds: u32) -> Resul
 
 /// Plots the fade by distance for every curve, from the reference formulas.
 fn fade_curves() -> RgbImage {
-    const COLOURS: [Rgb<u8>; FadeCurve::ALL.len()] =
+    const COLORS: [Rgb<u8>; FadeCurve::ALL.len()] =
         [Rgb([240, 196, 110]), Rgb([225, 225, 220]), Rgb([120, 190, 240]), Rgb([240, 130, 120]), Rgb([150, 210, 140])];
-    let curve = |(&curve, colour): (&FadeCurve, Rgb<u8>)| Curve {
+    let curve = |(&curve, color): (&FadeCurve, Rgb<u8>)| Curve {
         name: curve.name(),
-        colour,
+        color,
         function: Box::new(move |x| {
             soft_fade(curve, x, 1.0, if curve == FadeCurve::Contrast { 2.0 } else { 1.0 }, 0.0)
         }),
     };
-    let curves: Vec<_> = FadeCurve::ALL.iter().zip(COLOURS).map(curve).collect();
+    let curves: Vec<_> = FadeCurve::ALL.iter().zip(COLORS).map(curve).collect();
     let axis = "distance in front of the scene, in 1 / fade_scale   (contrast_power 2 for contrast, 1 for exponential)";
     plot(UVec2::new(800, 360), (-1.5, 1.5), axis, &curves)
 }

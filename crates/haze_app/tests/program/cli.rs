@@ -130,7 +130,7 @@ fn bad_values_are_refused_in_one_line_with_field_value_and_range() {
         ("--time", "nan", "-100000 to 100000"),
         ("--time", "-inf", "-100000 to 100000"),
         ("--scale", "-a", "1 to 16"),
-        ("--view", "colour", "final, combined, diffuse"),
+        ("--view", "color", "final, combined, diffuse"),
         ("--path", "tilde", "auto, raster, tiled, forward"),
         ("--backend", "tpu", "auto, gpu, cpu"),
         ("--seed", "-1", "0 to 4294967295"),
@@ -184,7 +184,7 @@ fn without_an_adapter_the_cpu_renders_and_says_so() {
 fn recipes_are_baked_to_images_beside_them() {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    let stops = r##"[{"at": 0, "colour": "#000000"}, {"at": 1, "colour": "#ff8000"}]"##;
+    let stops = r##"[{"at": 0, "color": "#000000"}, {"at": 1, "color": "#ff8000"}]"##;
     write(
         "fire.ramp.json",
         &format!("{{\"version\": 1, \"width\": 32, \"height\": 1, \"rows\": [{{\"stops\": {stops}}}]}}"),

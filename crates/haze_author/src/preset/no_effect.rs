@@ -19,7 +19,7 @@ const LIGHT_RULES: &[NoEffectRule<Light>] = &[
             "kind",
             "position",
             "direction",
-            "colour",
+            "color",
             "range",
             "radius",
             "inner_angle",

@@ -7,7 +7,7 @@ use haze::assets::material_assets::MaterialAssets;
 use haze::assets::ramp::Ramp;
 use haze::preset::MaterialNames;
 
-/// Largest difference between channels of linear colours that count as equal.
+/// Largest difference between channels of linear colors that count as equal.
 const SAME: f32 = 1.0 / 64.0;
 
 /// Warnings about images that do not seem to fit their role: the field, and the warning.
@@ -78,7 +78,7 @@ fn check_specular_ramp(ramp: &Ramp) -> Option<String> {
     if size.y == 1 {
         return Some("its one row is the same for every amount; expected distance² across and amount up".into());
     }
-    // A single colour is not a mistake.
+    // A single color is not a mistake.
     (!rows_are_equal(ramp) && all_texels_equal(ramp, |_, y| UVec2::new(0, y)))
         .then(|| "the same at every distance; expected distance² across and amount up".into())
 }
@@ -89,11 +89,11 @@ fn check_motif(motif: &Ramp) -> Option<String> {
         .then(|| format!("{}x{} pixels; expected a square with a lit sphere that fills it", size.x, size.y))
 }
 
-/// True if the colours are those of normals on black: more blue than red and green, which vary independently. In a
+/// True if the colors are those of normals on black: more blue than red and green, which vary independently. In a
 /// gradient they vary together: the correlation of red and green is at least 0.4 in all ramps that come with haze, and
 /// at most 0.2 in all sprites.
 fn shows_normals(ramp: &Ramp) -> bool {
-    /// Darker texels have no colour to judge by.
+    /// Darker texels have no color to judge by.
     const DARK: f32 = 0.05;
     let size = ramp.size();
     let texels = || {
@@ -124,8 +124,8 @@ mod tests {
     #[test]
     fn images_in_the_wrong_role_are_reported() {
         let folder = tempfile::tempdir().unwrap();
-        let save = |name: &str, size: (u32, u32), colour: fn(u32, u32) -> [u8; 3]| {
-            let picture = RgbImage::from_fn(size.0, size.1, |x, y| Rgb(colour(x, y)));
+        let save = |name: &str, size: (u32, u32), color: fn(u32, u32) -> [u8; 3]| {
+            let picture = RgbImage::from_fn(size.0, size.1, |x, y| Rgb(color(x, y)));
             picture.save(folder.path().join(name)).unwrap();
         };
         save("across.png", (64, 4), |x, _| [4 * x as u8; 3]);
@@ -159,7 +159,7 @@ mod tests {
             image::Rgba([240, 90 + 4 * x as u8, 30, if inside { 255 } else { 0 }])
         });
         sheet.save(folder.path().join("fire.png")).unwrap();
-        one(|names| names.sprite = "fire.png".into(), "sprite", "colours, not normals");
+        one(|names| names.sprite = "fire.png".into(), "sprite", "colors, not normals");
         one(|names| names.specular_ramp = "down.png".into(), "specular_ramp", "the same at every distance");
         one(|names| names.motif = "across.png".into(), "motif", "64x4 pixels");
     }

@@ -107,7 +107,7 @@ mod tests {
         let property = |path: &str| schema.pointer(&format!("/$defs/{path}")).unwrap_or_else(|| panic!("{path}"));
         assert_eq!(property("SoftFade/properties/fade_scale")["minimum"], 0.001);
         assert_eq!(property("Accumulate/properties/scale")["maximum"], 16);
-        assert_eq!(property("Light/properties/colour/items")["maximum"], 100.0);
+        assert_eq!(property("Light/properties/color/items")["maximum"], 100.0);
         assert_eq!(property("Light/properties/outer_angle")["minimum"], 0.0);
         assert!(property("Upsample").to_string().contains("nearest_depth"));
     }

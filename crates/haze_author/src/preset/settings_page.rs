@@ -107,7 +107,7 @@ impl FieldVisitor for SectionWriter<'_> {
         self.row(name, format_args!("three numbers, {}", span(&range, unit)));
     }
 
-    fn colour(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>) {
+    fn color(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>) {
         self.row(name, format_args!("linear RGB, {}", span(&range, "")));
     }
 

@@ -1,4 +1,4 @@
-//! Colours of gradients: hexadecimal notation, and conversion to and from the blend spaces. Uses only
+//! Colors of gradients: hexadecimal notation, and conversion to and from the blend spaces. Uses only
 //! `deterministic_math.rs` for powers, so bakes are bit-identical on every machine.
 
 use glam::Vec3;
@@ -8,12 +8,12 @@ use haze::error::one_line;
 use haze::settings::choice;
 
 choice! {
-    /// Colour space in which a gradient is blended.
+    /// Color space in which a gradient is blended.
     Blend {
-        /// Perceptually even; stays colourful between complementary colours.
+        /// Perceptually even; stays colorful between complementary colors.
         #[default]
         Oklab = "oklab",
-        /// Linear light: bright colours dominate. Blender's ramps blend this way.
+        /// Linear light: bright colors dominate. Blender's ramps blend this way.
         Linear = "linear",
         /// sRGB code values. Most paint programs blend this way.
         Srgb = "srgb",
@@ -24,13 +24,13 @@ choice! {
     }
 }
 
-/// An sRGB colour, `#rrggbb` in JSON.
+/// An sRGB color, `#rrggbb` in JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "String"))]
 #[serde(try_from = "String", into = "String")]
-pub struct HexColour(pub [u8; 3]);
+pub struct HexColor(pub [u8; 3]);
 
-impl HexColour {
+impl HexColor {
     /// Returns linear RGB, 0..1.
     pub fn linear(self) -> Vec3 {
         self.srgb().map(linear_from_srgb)
@@ -47,18 +47,18 @@ impl HexColour {
         hsv.with_x(hsv.x.rem_euclid(1.0))
     }
 
-    /// Rounds a hue in turns, saturation and value to the nearest colour.
+    /// Rounds a hue in turns, saturation and value to the nearest color.
     pub fn from_hsv(hsv: Vec3) -> Self {
         Self::from_srgb(rgb_from_hsv(hsv))
     }
 
-    /// Rounds an sRGB code, 0..1, to the nearest colour. Values outside are clamped.
+    /// Rounds an sRGB code, 0..1, to the nearest color. Values outside are clamped.
     pub fn from_srgb(code: Vec3) -> Self {
         Self(code.to_array().map(|channel| (channel * 255.0).round() as u8))
     }
 }
 
-impl TryFrom<String> for HexColour {
+impl TryFrom<String> for HexColor {
     /// Message without the field's name; the caller adds it.
     type Error = String;
 
@@ -68,15 +68,13 @@ impl TryFrom<String> for HexColour {
         let digits = text.strip_prefix('#').filter(is_hex).and_then(|digits| u32::from_str_radix(digits, 16).ok());
         match digits.map(u32::to_be_bytes) {
             Some([_, r, g, b]) => Ok(Self([r, g, b])),
-            None => {
-                Err(format!("{} is not valid; expected an sRGB colour, \"#rrggbb\"", one_line(format!("{text:?}"))))
-            }
+            None => Err(format!("{} is not valid; expected an sRGB color, \"#rrggbb\"", one_line(format!("{text:?}")))),
         }
     }
 }
 
-impl From<HexColour> for String {
-    fn from(HexColour([r, g, b]): HexColour) -> Self {
+impl From<HexColor> for String {
+    fn from(HexColor([r, g, b]): HexColor) -> Self {
         format!("#{r:02x}{g:02x}{b:02x}")
     }
 }
@@ -91,9 +89,9 @@ impl Blend {
         matches!(self, Self::HsvNear | Self::HsvFar)
     }
 
-    /// Converts a colour to the blend space.
-    pub(super) fn of(self, colour: HexColour) -> Vec3 {
-        self.of_code(colour.srgb())
+    /// Converts a color to the blend space.
+    pub(super) fn of(self, color: HexColor) -> Vec3 {
+        self.of_code(color.srgb())
     }
 
     /// Converts an sRGB code, 0..1, to the blend space.
@@ -118,17 +116,17 @@ impl Blend {
     }
 }
 
-/// Encodes a linear colour as a texel of a ramp's image: sRGB, 16 bits per channel.
-pub(super) fn srgb16_from_linear(colour: Vec3) -> [u16; 3] {
-    colour.to_array().map(|channel| (srgb_from_linear(channel.clamp(0.0, 1.0)) * 65535.0).round() as u16)
+/// Encodes a linear color as a texel of a ramp's image: sRGB, 16 bits per channel.
+pub(super) fn srgb16_from_linear(color: Vec3) -> [u16; 3] {
+    color.to_array().map(|channel| (srgb_from_linear(channel.clamp(0.0, 1.0)) * 65535.0).round() as u16)
 }
 
-/// Same as [`haze::formula::colour::linear_from_srgb`], but bit-identical on every machine.
+/// Same as [`haze::formula::color::linear_from_srgb`], but bit-identical on every machine.
 fn linear_from_srgb(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { power((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// Same as [`haze::formula::colour::srgb_from_linear`], but bit-identical on every machine.
+/// Same as [`haze::formula::color::srgb_from_linear`], but bit-identical on every machine.
 pub(super) fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * power(linear, 1.0 / 2.4) - 0.055 }
 }
@@ -186,14 +184,14 @@ mod tests {
     fn every_blend_space_round_trips() {
         for blend in Blend::ALL.iter().copied() {
             for code in 0..4096_u32 {
-                let colour = HexColour([code % 16, code / 16 % 16, code / 256].map(|channel| (channel * 17) as u8));
-                let linear = blend.linear(blend.of(colour));
-                let back = HexColour::from_srgb(linear.map(srgb_from_linear));
-                assert_eq!(back, colour, "{}", blend.name());
-                assert_eq!(HexColour::from_hsv(colour.hsv()), colour);
-                assert!((0.0..1.0).contains(&colour.hsv().x), "{colour:?}");
+                let color = HexColor([code % 16, code / 16 % 16, code / 256].map(|channel| (channel * 17) as u8));
+                let linear = blend.linear(blend.of(color));
+                let back = HexColor::from_srgb(linear.map(srgb_from_linear));
+                assert_eq!(back, color, "{}", blend.name());
+                assert_eq!(HexColor::from_hsv(color.hsv()), color);
+                assert!((0.0..1.0).contains(&color.hsv().x), "{color:?}");
                 assert!(
-                    srgb16_from_linear(linear).iter().zip(colour.0).all(|(&a, b)| a.abs_diff(u16::from(b) * 257) < 4)
+                    srgb16_from_linear(linear).iter().zip(color.0).all(|(&a, b)| a.abs_diff(u16::from(b) * 257) < 4)
                 );
             }
         }

@@ -6,11 +6,11 @@ use glam::Vec3;
 use image::DynamicImage;
 
 use super::gradient::PreparedRows;
-use super::ramp_recipe::{Blend, Curve, HexColour, RampRecipe, RampRow, RampStop};
+use super::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
 use haze::error::FieldError;
-use haze::formula::colour::srgb_from_linear;
+use haze::formula::color::srgb_from_linear;
 
-/// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's colour.
+/// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's color.
 pub const DEFAULT_MAX_ERROR: f32 = 1.5;
 
 /// Range of error bounds, steps of 255: what stops of 8 bits per channel can meet, to what is useful.
@@ -137,8 +137,8 @@ fn fit_rows(texels: &[Vec<Vec3>], blend: Blend, curve: Curve, max_error: f32) ->
 
 fn fit_stops(row: &[Vec3], blend: Blend, curve: Curve, max_error: f32) -> Vec<RampStop> {
     let stops_of = |keys: &[Key]| -> Vec<RampStop> {
-        let colour = |index: usize| HexColour::from_srgb(row[index] / 255.0);
-        keys.iter().map(|key| RampStop { at: key.at, colour: colour(key.index), curve: key.curve }).collect()
+        let color = |index: usize| HexColor::from_srgb(row[index] / 255.0);
+        keys.iter().map(|key| RampStop { at: key.at, color: color(key.index), curve: key.curve }).collect()
     };
     let keys = choose_keys(
         row.len(),

@@ -7,9 +7,9 @@ use glam::{Vec3, Vec4};
 use super::blend_space::srgb_from_linear;
 use super::fit_stops::RampFit;
 use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
-use super::ramp_recipe::{Blend, Curve, HexColour, RampStop};
+use super::ramp_recipe::{Blend, Curve, HexColor, RampStop};
 
-/// One segment of a gradient. Positions are 0 to 1; colours are sRGB codes with alpha, 0 to 1.
+/// One segment of a gradient. Positions are 0 to 1; colors are sRGB codes with alpha, 0 to 1.
 struct Segment {
     left: f32,
     middle: f32,
@@ -18,8 +18,8 @@ struct Segment {
     to: Vec4,
     /// Blending function: 0 linear, 1 curved, 2 sinusoidal, 3 and 4 spherical (increasing, decreasing), 5 step.
     blending: u32,
-    /// Colouring: 0 RGB, 1 and 2 HSV with increasing and decreasing hue.
-    colours: u32,
+    /// Coloring: 0 RGB, 1 and 2 HSV with increasing and decreasing hue.
+    colors: u32,
 }
 
 /// Reads a gradient. Linear segments and steps are exact; other segments are divided into linear pieces with an error
@@ -28,9 +28,9 @@ pub(super) fn read(text: &str, max_error: f32) -> Result<RampFit, GradientParseE
     let segments = segments(text)?;
     let mut stops: Vec<RampStop> = Vec::new();
     let mut add = |at: f32, code: Vec3, curve: Curve| {
-        let stop = RampStop { at, colour: HexColour::from_srgb(code), curve };
-        // The segment begins where the previous one ended, with the same colour.
-        if let Some(last) = stops.last_mut().filter(|last| (last.at, last.colour) == (stop.at, stop.colour)) {
+        let stop = RampStop { at, color: HexColor::from_srgb(code), curve };
+        // The segment begins where the previous one ended, with the same color.
+        if let Some(last) = stops.last_mut().filter(|last| (last.at, last.color) == (stop.at, stop.color)) {
             last.curve = curve;
         } else {
             stops.push(stop);
@@ -74,23 +74,23 @@ fn segments(text: &str) -> Result<Vec<Segment>, GradientParseError> {
     };
     let mut segments = Vec::new();
     for (line, at) in lines.take(count) {
-        let [left, middle, right, r0, g0, b0, a0, r1, g1, b1, a1, blending, colours] =
+        let [left, middle, right, r0, g0, b0, a0, r1, g1, b1, a1, blending, colors] =
             *parse_numbers(line).as_deref().and_then(<[f32]>::first_chunk).ok_or_else(|| {
-                let expected = "left, middle, right, two colours of four, blending, colours";
+                let expected = "left, middle, right, two colors of four, blending, colors";
                 error(at, &format!("fewer than 13 numbers; expected {expected}"))
             })?;
         let in_order = 0.0 <= left && left <= middle && middle <= right && right <= 1.0;
-        let known = (0.0..6.0).contains(&blending) && (0.0..3.0).contains(&colours);
+        let known = (0.0..6.0).contains(&blending) && (0.0..3.0).contains(&colors);
         if !in_order {
             let reason = format!("{left}, {middle}, {right}; expected left, middle and right in order, 0 to 1");
             return Err(error(at, &reason));
         }
         if !known {
-            let reason = format!("blending {blending}, colours {colours}; expected 0 to 5 and 0 to 2, whole numbers");
+            let reason = format!("blending {blending}, colors {colors}; expected 0 to 5 and 0 to 2, whole numbers");
             return Err(error(at, &reason));
         }
         let (from, to) = (Vec4::new(r0, g0, b0, a0), Vec4::new(r1, g1, b1, a1));
-        segments.push(Segment { left, middle, right, from, to, blending: blending as u32, colours: colours as u32 });
+        segments.push(Segment { left, middle, right, from, to, blending: blending as u32, colors: colors as u32 });
     }
     if segments.len() < count {
         return Err(error(counted, &format!("{} segments follow; expected {count}", segments.len())));
@@ -120,11 +120,11 @@ impl Segment {
             _ => half,
         };
         let mixed = self.from.lerp(self.to, part);
-        if self.colours == 0 {
+        if self.colors == 0 {
             return composite_over_black(mixed);
         }
         let (from, to) = (Blend::HsvNear.of_code(self.from.truncate()), Blend::HsvNear.of_code(self.to.truncate()));
-        let turn = (to.x - from.x).rem_euclid(1.0) - if self.colours == 2 { 1.0 } else { 0.0 };
+        let turn = (to.x - from.x).rem_euclid(1.0) - if self.colors == 2 { 1.0 } else { 0.0 };
         let hsv = Vec3::new(from.x + turn * part, from.y + (to.y - from.y) * part, from.z + (to.z - from.z) * part);
         composite_over_black(Blend::HsvNear.linear(hsv).map(srgb_from_linear).extend(mixed.w))
     }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::blend_space::{Blend, HexColour, oklab_from_linear};
+use super::blend_space::{Blend, HexColor, oklab_from_linear};
 use haze::error::FieldError;
 use haze::settings::{FieldVisitor, Fields, choice};
 
@@ -16,7 +16,7 @@ choice! {
         Linear = "linear",
         /// Smoothstep: flat at both ends.
         Ease = "ease",
-        /// The stop's colour up to the next stop, with a hard edge there.
+        /// The stop's color up to the next stop, with a hard edge there.
         Constant = "constant",
     }
 }
@@ -43,7 +43,7 @@ pub struct RampRow {
     pub stops: Vec<RampStop>,
 }
 
-/// One colour of a gradient.
+/// One color of a gradient.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -52,7 +52,7 @@ pub struct RampStop {
     /// The first stop ends the gradient below, the last begins the gradient above.
     pub at: f32,
     /// sRGB, `#rrggbb`.
-    pub colour: HexColour,
+    pub color: HexColor,
     /// Interpolation to the next stop.
     #[serde(default, skip_serializing_if = "Curve::is_default")]
     pub curve: Curve,
@@ -60,8 +60,8 @@ pub struct RampStop {
 
 impl RampStop {
     /// Creates a stop with the default curve.
-    pub fn new(at: f32, colour: HexColour) -> Self {
-        Self { at, colour, curve: Curve::default() }
+    pub fn new(at: f32, color: HexColor) -> Self {
+        Self { at, color, curve: Curve::default() }
     }
 }
 
@@ -78,7 +78,7 @@ impl Fields for RampRow {
 impl Fields for RampStop {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.number("at", &mut self.at, 0.0..=1.0, "");
-        visitor.srgb("colour", &mut self.colour.0);
+        visitor.srgb("color", &mut self.color.0);
         visitor.choice("curve", &mut self.curve);
     }
 }
@@ -92,7 +92,7 @@ pub fn check_not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), Fi
     }
 }
 
-/// Rows prepared for sampling: sorted, with colours converted to the blend space.
+/// Rows prepared for sampling: sorted, with colors converted to the blend space.
 #[derive(Clone, Debug)]
 pub(super) struct PreparedRows {
     blend: Blend,
@@ -143,7 +143,7 @@ impl ControlPoint {
 
 fn points(blend: Blend, stops: &[RampStop]) -> Vec<ControlPoint> {
     let point =
-        |stop: &RampStop| ControlPoint { value: blend.of(stop.colour), ..ControlPoint::new(stop.at, stop.curve) };
+        |stop: &RampStop| ControlPoint { value: blend.of(stop.color), ..ControlPoint::new(stop.at, stop.curve) };
     let mut points: Vec<_> = stops.iter().map(point).collect();
     points.sort_by(|a, b| a.at.total_cmp(&b.at));
     if blend.has_hue() {
@@ -153,7 +153,7 @@ fn points(blend: Blend, stops: &[RampStop]) -> Vec<ControlPoint> {
 }
 
 /// Unwraps hues so that each is reached from the previous one along the shorter or longer arc. A grey takes the hue of
-/// the previous colour, or of the first colour with a hue; black takes its saturation too.
+/// the previous color, or of the first color with a hue; black takes its saturation too.
 fn unwrap_hues(points: &mut [ControlPoint], far: bool) {
     let has_hue = |point: &&ControlPoint| point.value.y > 0.0 && point.value.z > 0.0;
     let mut last = points.iter().find(has_hue).map_or(Vec3::ZERO, |point| point.value);

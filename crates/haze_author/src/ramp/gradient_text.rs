@@ -12,7 +12,7 @@ pub struct GradientParseError {
     pub reason: String,
 }
 
-/// Builds the recipe of a one-row ramp. Its error is that of rounding colours to 8 bits: half a step.
+/// Builds the recipe of a one-row ramp. Its error is that of rounding colors to 8 bits: half a step.
 pub fn one_row_fit(blend: Blend, stops: Vec<RampStop>) -> RampFit {
     let rows = vec![RampRow { stops, ..RampRow::default() }];
     RampFit { recipe: RampRecipe { blend, rows, ..RampRecipe::default() }, error: 0.5 }

@@ -8,16 +8,16 @@ use super::blend_space::srgb_from_linear;
 use super::fit_stops::{RampFit, fit_image, validate_max_error};
 use super::gimp;
 use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
-use super::ramp_recipe::{Blend, Curve, HexColour, RampStop};
+use super::ramp_recipe::{Blend, Curve, HexColor, RampStop};
 use haze::assets::bounded_read;
-use haze::assets::image::read_colour_png;
+use haze::assets::image::read_color_png;
 use haze::error::{Error, FieldError, one_line};
 
 /// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// Converts a file to a recipe. The format follows from the extension: `.png`, `.ggr` (GIMP), `.tres` (Godot) or `.txt`
-/// (Blender). `max_error` is the maximum error of a channel, 1 to 64 steps of 255. Transparent colours are darkened by
+/// (Blender). `max_error` is the maximum error of a channel, 1 to 64 steps of 255. Transparent colors are darkened by
 /// their alpha, in linear light.
 ///
 /// # Errors
@@ -29,7 +29,7 @@ pub fn import_gradient(path: &Path, max_error: f32) -> Result<RampFit, Error> {
     let read: fn(&str, f32) -> Result<RampFit, GradientParseError> = match ending.as_str() {
         "png" => {
             let refuse = |error: FieldError| Error::Image { path: path.into(), reason: error.to_string() };
-            return fit_image(&read_colour_png(path)?, max_error).map_err(refuse);
+            return fit_image(&read_color_png(path)?, max_error).map_err(refuse);
         }
         "ggr" => gimp::read,
         "tres" => |text, _| godot(text),
@@ -84,19 +84,19 @@ fn godot(text: &str) -> Result<RampFit, GradientParseError> {
         index.ok_or_else(|| error(line, &format!("{name}: {} is not valid; expected 0 to {max}", one_line(value))))
     };
     let (_, offsets) = list("offsets", &[0.0, 1.0])?;
-    let (line, colours) = list("colors", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])?;
-    if offsets.is_empty() || colours.len() != 4 * offsets.len() {
-        let reason = format!("{} numbers; expected four for each of {} offsets", colours.len(), offsets.len());
+    let (line, colors) = list("colors", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])?;
+    if offsets.is_empty() || colors.len() != 4 * offsets.len() {
+        let reason = format!("{} numbers; expected four for each of {} offsets", colors.len(), offsets.len());
         return Err(error(line, &reason));
     }
     let curve = [Curve::Linear, Curve::Constant, Curve::Monotone][choice("interpolation_mode", 2)?];
     let blend = [Blend::Srgb, Blend::Linear, Blend::Oklab][choice("interpolation_color_space", 2)?];
-    let stop = |(at, colour): (&f32, &[f32])| RampStop {
+    let stop = |(at, color): (&f32, &[f32])| RampStop {
         at: at.clamp(0.0, 1.0),
-        colour: HexColour::from_srgb(composite_over_black(Vec4::from_slice(colour))),
+        color: HexColor::from_srgb(composite_over_black(Vec4::from_slice(color))),
         curve,
     };
-    Ok(one_row_fit(blend, offsets.iter().zip(colours.chunks_exact(4)).map(stop).collect()))
+    Ok(one_row_fit(blend, offsets.iter().zip(colors.chunks_exact(4)).map(stop).collect()))
 }
 
 /// Reads lines of `position r g b [alpha]` in linear light, with optional brackets and commas, and lines of
@@ -130,20 +130,20 @@ fn blender(text: &str) -> Result<RampFit, GradientParseError> {
             }
             ["color_mode", ..] => {
                 let expected = "RGB: set it in Blender, or import a picture of the ramp";
-                return Err(refuse(format!("the colour mode is not RGB; expected {expected}")));
+                return Err(refuse(format!("the color mode is not RGB; expected {expected}")));
             }
             _ => {
                 let (at, light) = match parse_numbers(&words.join(",")).as_deref() {
                     Some(&[at, r, g, b]) => (at, Vec4::new(r, g, b, 1.0)),
                     Some(&[at, r, g, b, a]) => (at, Vec4::new(r, g, b, a)),
                     _ => {
-                        let expected = "a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)";
+                        let expected = "a position and a color: 0.5 (0.8, 0.4, 0.1, 1.0)";
                         return Err(refuse(format!("not a stop; expected {expected}")));
                     }
                 };
                 let light = light.clamp(Vec4::ZERO, Vec4::ONE);
                 let code = (light.truncate() * light.w).map(srgb_from_linear);
-                stops.push(RampStop::new(at.clamp(0.0, 1.0), HexColour::from_srgb(code)));
+                stops.push(RampStop::new(at.clamp(0.0, 1.0), HexColor::from_srgb(code)));
             }
         }
     }
@@ -151,7 +151,7 @@ fn blender(text: &str) -> Result<RampFit, GradientParseError> {
         stop.curve = curve;
     }
     if stops.is_empty() {
-        let reason = "no stops; expected lines of a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)";
+        let reason = "no stops; expected lines of a position and a color: 0.5 (0.8, 0.4, 0.1, 1.0)";
         return Err(GradientParseError { line: 1, reason: reason.into() });
     }
     Ok(one_row_fit(Blend::Linear, stops))
@@ -171,7 +171,7 @@ mod tests {
     }
 
     fn stops(recipe: &RampRecipe) -> Vec<(f32, String, Curve)> {
-        recipe.rows[0].stops.iter().map(|stop| (stop.at, stop.colour.into(), stop.curve)).collect()
+        recipe.rows[0].stops.iter().map(|stop| (stop.at, stop.color.into(), stop.curve)).collect()
     }
 
     const GODOT: &str = "[gd_resource type=\"Gradient\" format=3]\n\n[resource]\ninterpolation_mode = 1\n\
@@ -182,7 +182,7 @@ mod tests {
     fn godot_gradients_are_read() {
         let recipe = import_text("a.tres", GODOT).unwrap();
         assert_eq!(recipe.blend, Blend::Oklab);
-        let stop = |at: f32, colour: &str| (at, colour.to_owned(), Curve::Constant);
+        let stop = |at: f32, color: &str| (at, color.to_owned(), Curve::Constant);
         assert_eq!(stops(&recipe), [stop(0.0, "#000000"), stop(0.25, "#ff8000"), stop(1.0, "#ffffff")]);
         // Godot does not write fields that have their default value.
         let plain = import_text("a.tres", "[gd_resource type=\"Gradient\"]\n[resource]\n").unwrap();
@@ -220,20 +220,20 @@ mod tests {
         let text = "# a ramp\ncolor_mode = 'RGB'\ninterpolation: EASE\n0.5 (0.2140, 0.0, 1.0, 1.0)\n0, 1, 1, 1, 0.5\n\n1.5 [0 0 0]";
         let recipe = import_text("a.txt", text).unwrap();
         assert_eq!(recipe.blend, Blend::Linear);
-        let stop = |at: f32, colour: &str| (at, colour.to_owned(), Curve::Ease);
+        let stop = |at: f32, color: &str| (at, color.to_owned(), Curve::Ease);
         assert_eq!(stops(&recipe), [stop(0.5, "#7f00ff"), stop(0.0, "#bcbcbc"), stop(1.0, "#000000")]);
         for (text, expected) in [
-            ("0.5 1 1", "a.txt:1:1: not a stop; expected a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)"),
+            ("0.5 1 1", "a.txt:1:1: not a stop; expected a position and a color: 0.5 (0.8, 0.4, 0.1, 1.0)"),
             (
                 "\ninterpolation X",
                 "a.txt:2:1: interpolation X is not valid; expected CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE",
             ),
-            ("# nothing", "a.txt:1:1: no stops; expected lines of a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)"),
+            ("# nothing", "a.txt:1:1: no stops; expected lines of a position and a color: 0.5 (0.8, 0.4, 0.1, 1.0)"),
         ] {
             assert_eq!(import_text("a.txt", text).unwrap_err(), expected);
         }
         assert!(
-            import_text("a.txt", "color_mode HSV").unwrap_err().contains("the colour mode is not RGB; expected RGB")
+            import_text("a.txt", "color_mode HSV").unwrap_err().contains("the color mode is not RGB; expected RGB")
         );
         assert!(import_text("a.gradient", "").unwrap_err().contains("expected a name that ends in .png, .ggr"));
     }
@@ -245,7 +245,7 @@ mod tests {
         let step = "0.5 0.75 1.0 1 0 0 1 0 0 1 1 5 0 0 0";
         let recipe = import_text("a.ggr", &ggr(&[linear, step])).unwrap();
         assert_eq!(recipe.blend, Blend::Srgb);
-        let stop = |at: f32, colour: &str, curve| (at, colour.to_owned(), curve);
+        let stop = |at: f32, color: &str, curve| (at, color.to_owned(), curve);
         let expected = [
             stop(0.0, "#000000", Curve::Linear),
             stop(0.2, "#808080", Curve::Linear),
@@ -255,20 +255,20 @@ mod tests {
         ];
         assert_eq!(stops(&recipe), expected);
         // Curved, spherical, HSV and transparent segments are approximated by short linear pieces.
-        for (blend, colour) in [(1, 0), (2, 0), (3, 0), (4, 0), (0, 1), (0, 2), (2, 2)] {
-            let text = ggr(&[&format!("0 0.3 1 0.9 0.2 0.1 1 0.1 0.3 0.8 0.5 {blend} {colour} 0 0")]);
+        for (blend, color) in [(1, 0), (2, 0), (3, 0), (4, 0), (0, 1), (0, 2), (2, 2)] {
+            let text = ggr(&[&format!("0 0.3 1 0.9 0.2 0.1 1 0.1 0.3 0.8 0.5 {blend} {color} 0 0")]);
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a.ggr");
             std::fs::write(&path, text).unwrap();
             let fitted = import_gradient(&path, 1.5).unwrap();
             let count = fitted.recipe.rows[0].stops.len();
-            assert!(fitted.error <= 1.5 && count > 4 && count < 80, "{blend} {colour}: {count}, {}", fitted.error);
+            assert!(fitted.error <= 1.5 && count > 4 && count < 80, "{blend} {color}: {count}, {}", fitted.error);
         }
         for (text, expected) in [
             ("GIMP Palette\n", "a.ggr:1:1: not a gradient of GIMP; expected \"GIMP Gradient\""),
             (
                 "GIMP Gradient\nName: A\n1\n0 0 1\n",
-                "a.ggr:4:1: fewer than 13 numbers; expected left, middle, right, two colours of four, blending, colours",
+                "a.ggr:4:1: fewer than 13 numbers; expected left, middle, right, two colors of four, blending, colors",
             ),
             ("GIMP Gradient\nName: A\n2\n", "a.ggr:3:1: 0 segments follow; expected 2"),
             ("GIMP Gradient\nName: A\n", "a.ggr:3:1: no number of segments; expected a whole number, 1 or more"),

@@ -4,7 +4,7 @@ use glam::Vec3;
 use image::DynamicImage;
 
 use crate::finding::Finding;
-use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
+use haze::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use haze::ramp::RampRole;
 
 /// Minimum jump in luminance that counts as a step or a seam, of 255: a twentieth of white.
@@ -31,7 +31,7 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding>
     if height > width && pixels.rows().all(|mut row| row.next().is_some_and(|first| row.all(|pixel| pixel == first))) {
         find(
             "turned",
-            format!("every row of {width}x{height} pixels has one colour; expected a gradient from left to right"),
+            format!("every row of {width}x{height} pixels has one color; expected a gradient from left to right"),
         );
         return findings;
     }
@@ -139,7 +139,7 @@ fn find_seam(line: &[f32]) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ramp_recipe::{Curve, HexColour, RampRecipe, RampRow, RampStop};
+    use super::super::ramp_recipe::{Curve, HexColor, RampRecipe, RampRow, RampStop};
     use super::super::template::TEMPLATES;
     use super::*;
     use haze::assets::builtin;
@@ -179,7 +179,7 @@ mod tests {
         // 40 codes over 256 texels, without and with dithering.
         assert_eq!(names(&grey(256, 1, |x, _| 20 + x * 40 / 256), None), ["banding"]);
         assert_eq!(names(&grey(16, 256, |x, y| 20 + x * 8 + y * 40 / 256), None), ["banding"]);
-        let stop = |at, grey| RampStop::new(at, HexColour([grey; 3]));
+        let stop = |at, grey| RampStop::new(at, HexColor([grey; 3]));
         let rows = vec![RampRow { stops: vec![stop(0.0, 20), stop(1.0, 60)], ..RampRow::default() }];
         assert!(names(&RampRecipe { bits: 8, rows, ..RampRecipe::default() }.bake().unwrap(), None).is_empty());
 

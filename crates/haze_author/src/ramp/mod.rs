@@ -13,4 +13,4 @@ mod ramp_recipe;
 pub mod response;
 pub mod template;
 
-pub use ramp_recipe::{Blend, Curve, Gradient, HexColour, RECIPE_VERSION, RampRecipe, RampRow, RampStop};
+pub use ramp_recipe::{Blend, Curve, Gradient, HexColor, RECIPE_VERSION, RampRecipe, RampRow, RampStop};

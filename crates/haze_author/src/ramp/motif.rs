@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{UVec2, Vec2, Vec3};
 use image::DynamicImage;
 
-use super::blend_space::{HexColour, srgb16_from_linear};
+use super::blend_space::{HexColor, srgb16_from_linear};
 use super::ramp_recipe::image_of;
 use haze::assets::image::Image;
 use haze::assets::json;
@@ -29,8 +29,8 @@ pub struct MotifRecipe {
     pub version: u32,
     /// Side of the image, pixels.
     pub size: u32,
-    /// sRGB colour where no light reaches.
-    pub ambient: HexColour,
+    /// sRGB color where no light reaches.
+    pub ambient: HexColor,
     /// Lights on the sphere.
     pub lights: Vec<MotifLight>,
 }
@@ -43,8 +43,8 @@ pub struct MotifLight {
     /// Direction towards the light in view space: x right, y up, z towards the viewer. Need not have unit length.
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub direction: Vec3,
-    /// sRGB colour at the brightest point.
-    pub colour: HexColour,
+    /// sRGB color at the brightest point.
+    pub color: HexColor,
     /// Wrap of the light around the sphere: 0 ends at the terminator, 1 reaches the far side.
     pub wrap: f32,
 }
@@ -63,7 +63,7 @@ impl Fields for MotifRecipe {
 impl Fields for MotifLight {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.vector("direction", &mut self.direction, -1.0e3..=1.0e3, "");
-        visitor.srgb("colour", &mut self.colour.0);
+        visitor.srgb("color", &mut self.color.0);
         visitor.number("wrap", &mut self.wrap, 0.0..=1.0, "");
     }
 }
@@ -97,14 +97,14 @@ impl MotifRecipe {
     pub fn bake(&self) -> Result<DynamicImage, FieldError> {
         self.validate()?;
         let last = (self.size - 1) as f32;
-        let light = |light: &MotifLight| (light.direction.normalize_or(Vec3::Z), light.colour.linear(), light.wrap);
+        let light = |light: &MotifLight| (light.direction.normalize_or(Vec3::Z), light.color.linear(), light.wrap);
         let lights: Vec<_> = self.lights.iter().map(light).collect();
         let mut picture = Image::new(UVec2::splat(self.size), [0; 3]);
         picture.for_each(|at, texel| {
             let normal = motif_normal(Vec2::new(at.x as f32 / last * 2.0 - 1.0, 1.0 - at.y as f32 / last * 2.0));
-            let lit = lights.iter().map(|&(direction, colour, wrap)| {
+            let lit = lights.iter().map(|&(direction, color, wrap)| {
                 let amount = saturate((normal.dot(direction) + wrap) / (1.0 + wrap));
-                colour * amount * amount
+                color * amount * amount
             });
             *texel = srgb16_from_linear(self.ambient.linear() + lit.sum::<Vec3>());
         });
@@ -118,11 +118,11 @@ mod tests {
 
     #[test]
     fn too_many_lights_are_refused() {
-        let light = MotifLight { direction: Vec3::Z, colour: HexColour([9; 3]), wrap: 0.0 };
+        let light = MotifLight { direction: Vec3::Z, color: HexColor([9; 3]), wrap: 0.0 };
         let recipe = |lights| MotifRecipe {
             version: 1,
             size: 8,
-            ambient: HexColour([0; 3]),
+            ambient: HexColor([0; 3]),
             lights: vec![light.clone(); lights],
         };
         assert!(recipe(MAX_LIGHTS).bake().is_ok());

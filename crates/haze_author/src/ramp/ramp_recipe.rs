@@ -6,7 +6,7 @@ use glam::{UVec2, Vec3};
 use image::{DynamicImage, ImageBuffer};
 
 use super::blend_space::srgb16_from_linear;
-pub use super::blend_space::{Blend, HexColour};
+pub use super::blend_space::{Blend, HexColor};
 pub use super::gradient::{Curve, RampRow, RampStop};
 use super::gradient::{PreparedRows, check_not_empty};
 use super::place_formula::Formula;
@@ -35,7 +35,7 @@ pub struct RampRecipe {
     /// Bits per channel: 16, or 8 with dithering.
     #[serde(default = "default_bits", skip_serializing_if = "is_default_bits")]
     pub bits: u32,
-    /// Colour space for blending along rows and between rows. With an HSV space, rows are blended with each other in
+    /// Color space for blending along rows and between rows. With an HSV space, rows are blended with each other in
     /// Oklab.
     #[serde(default, skip_serializing_if = "Blend::is_default")]
     pub blend: Blend,
@@ -43,7 +43,7 @@ pub struct RampRecipe {
     /// result is clamped to 0 to 1. Empty means `u`.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub place: String,
-    /// Gradient along the second axis. Its linear colour is multiplied with that of the rows. Empty means white.
+    /// Gradient along the second axis. Its linear color is multiplied with that of the rows. Empty means white.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub times: Vec<RampStop>,
     /// Gradients, placed along the second axis from 0 to 1. One row for a ramp of one axis.
@@ -61,7 +61,7 @@ fn is_default_bits(bits: &u32) -> bool {
 /// A black ramp of one axis.
 impl Default for RampRecipe {
     fn default() -> Self {
-        let stops = vec![RampStop::new(0.0, HexColour([0; 3]))];
+        let stops = vec![RampStop::new(0.0, HexColor([0; 3]))];
         Self {
             version: RECIPE_VERSION,
             width: 256,
@@ -122,11 +122,11 @@ impl RampRecipe {
         let mut lines = pretty.lines().peekable();
         while let Some(line) = lines.next() {
             text += line;
-            // An object that begins with `at` and `colour` is a stop.
+            // An object that begins with `at` and `color` is a stop.
             let is_stop = line.trim_start() == "{" && {
                 let mut ahead = lines.clone();
                 ahead.next().is_some_and(|line| line.contains("\"at\""))
-                    && ahead.next().is_some_and(|line| line.contains("\"colour\""))
+                    && ahead.next().is_some_and(|line| line.contains("\"color\""))
             };
             if is_stop {
                 for line in lines.by_ref() {
@@ -188,7 +188,7 @@ impl RampRecipe {
     }
 }
 
-/// A recipe prepared for sampling: stops sorted, colours converted to the blend space.
+/// A recipe prepared for sampling: stops sorted, colors converted to the blend space.
 #[derive(Clone, Debug)]
 pub struct Gradient {
     rows: PreparedRows,
@@ -197,7 +197,7 @@ pub struct Gradient {
 }
 
 impl Gradient {
-    /// Returns the linear RGB colour at a position, 0 to 1 on both axes.
+    /// Returns the linear RGB color at a position, 0 to 1 on both axes.
     pub fn sample(&self, u: f32, v: f32) -> Vec3 {
         let place = self.place.as_ref().map_or(u, |formula| formula.place(u, v));
         let light = self.rows.sample(place, v);
@@ -219,7 +219,7 @@ fn dithered(picture: &Image<[u16; 3]>) -> DynamicImage {
         // evenly distributed along any line. (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018)
         let (x, y) = (index % picture.size.x, index / picture.size.x);
         let threshold = x.wrapping_mul(3_242_174_889).wrapping_add(y.wrapping_mul(2_447_445_414)) >> 16;
-        // Colours that are exact in 8 bits stay unchanged.
+        // Colors that are exact in 8 bits stay unchanged.
         texel.map(|channel| ((u32::from(channel) * 255 + threshold.min(65534)) / 65535) as u8)
     };
     let texels: Vec<_> = (0..).zip(&picture.texels).flat_map(dither).collect();

@@ -1,9 +1,9 @@
 //! Templates for new ramps.
 
-use super::ramp_recipe::{Curve, HexColour, RampRecipe, RampRow, RampStop};
+use super::ramp_recipe::{Curve, HexColor, RampRecipe, RampRow, RampStop};
 use haze::ramp::RampRole;
 
-/// A position, 0 to 1, and an sRGB colour, `0xrrggbb`.
+/// A position, 0 to 1, and an sRGB color, `0xrrggbb`.
 type Stop = (f32, u32);
 
 /// A template for a new ramp.
@@ -178,9 +178,9 @@ impl Template {
     /// Returns the template's recipe.
     pub fn recipe(&self) -> RampRecipe {
         let stops = |stops: &[Stop], curve| {
-            let stop = |&(at, colour): &Stop| {
-                let [_, r, g, b] = colour.to_be_bytes();
-                RampStop { curve, ..RampStop::new(at, HexColour([r, g, b])) }
+            let stop = |&(at, color): &Stop| {
+                let [_, r, g, b] = color.to_be_bytes();
+                RampStop { curve, ..RampStop::new(at, HexColor([r, g, b])) }
             };
             stops.iter().map(stop).collect()
         };

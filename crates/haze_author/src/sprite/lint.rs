@@ -21,7 +21,7 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 /// green.
 ///
 /// - `empty`: the amount is 0 everywhere.
-/// - `normals`: the image holds colours or heights, not normals.
+/// - `normals`: the image holds colors or heights, not normals.
 /// - `length`: normals do not have unit length.
 /// - `y_down`: green points in the other direction.
 /// - `border`: a frame is not clear at its border.
@@ -132,9 +132,9 @@ pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
     for texel in texels(sprite).filter(|texel| texel.w >= 0.5) {
         count += 1.0;
         sum += normal(texel);
-        let colour = texel.xyz();
-        grey += f32::from(colour.max_element() - colour.min_element() < 0.02);
-        away += f32::from(colour.z < 0.45);
+        let color = texel.xyz();
+        grey += f32::from(color.max_element() - color.min_element() < 0.02);
+        away += f32::from(color.z < 0.45);
         unlike += f32::from((normal(texel).length() - 1.0).abs() > 0.4);
     }
     // Premultiplied normals are a separate finding.
@@ -144,15 +144,15 @@ pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
     if grey > 0.9 * count {
         return Some("shades of grey; expected normals: `haze sprite import` converts heights or alpha");
     }
-    // The mean normal of a whole sprite points at the viewer; colours of a painting have another mean.
+    // The mean normal of a whole sprite points at the viewer; colors of a painting have another mean.
     let mean = sum / count;
     let leans = mean.z < 0.15 || mean.truncate().length() > 0.35;
     let is_painted = away > 0.15 * count || unlike > 0.5 * count;
     (leans || is_painted)
-        .then_some("colours, not normals; expected x in red, y in green and z, mostly above 1/2, in blue")
+        .then_some("colors, not normals; expected x in red, y in green and z, mostly above 1/2, in blue")
 }
 
-/// Returns the colour that normals fade to at small amounts: black if they were multiplied by alpha, grey if they were
+/// Returns the color that normals fade to at small amounts: black if they were multiplied by alpha, grey if they were
 /// painted over grey. `None` for straight alpha.
 fn premultiplied(sprite: &Sprite) -> Option<&'static str> {
     let (mut count, mut straight, mut black, mut grey) = (0.0_f32, 0.0, 0.0, 0.0);
@@ -250,7 +250,7 @@ mod tests {
         };
         assert_eq!(names(&changed(over_grey), LAYOUT), ["premultiplied"]);
         assert_eq!(names(&changed(|[_, g, _, a]| [g, g, g, a]), LAYOUT), ["normals"]);
-        // Colours of fire and of a sky.
+        // Colors of fire and of a sky.
         assert_eq!(names(&changed(|[r, g, _, a]| [255.0, g * 0.6, r * 0.2, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, _, a]| [r * 0.5, g * 0.9, 255.0, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, b, _]| [r, g, b, 0.0]), LAYOUT), ["empty"]);

@@ -6,7 +6,7 @@ use half::f16;
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::assets::ramp::Ramp;
-use haze::formula::colour::bounded_light;
+use haze::formula::color::bounded_light;
 use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
 use haze::formula::lighting::{
     backlight_weight, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
@@ -38,7 +38,7 @@ impl VisibleSystem<'_> {
             let weight = backlight_weight(sample.direction, to_viewer);
             falloff = falloff.lerp(look_up(&self.material.backlight_ramp), weight);
         }
-        falloff * light.colour * sample.attenuation
+        falloff * light.color * sample.attenuation
     }
 
     /// Sum of all lights through six-way maps.
@@ -51,20 +51,20 @@ impl VisibleSystem<'_> {
         let sample = sample_light(light, position);
         let response =
             six_way_response(six_way.positive, six_way.negative, sample.direction, self.system.six_way_anisotropy);
-        light.colour * (response * sample.attenuation) * self.system.six_way_colour
+        light.color * (response * sample.attenuation) * self.system.six_way_color
     }
 
     /// Even backlight of smoke by its amount.
     pub fn soft_scatter(&self, amount: f32) -> Vec3 {
         let system = &self.system;
-        let colour = match self.settings.soft_scatter.mode {
+        let color = match self.settings.soft_scatter.mode {
             SoftScatterMode::Ramp => self.sample_ramp(&self.material.soft_scatter_ramp, amount),
             SoftScatterMode::Smoothstep => {
                 let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
-                system.scatter_colour.lerp(system.ambient_colour, weight)
+                system.scatter_color.lerp(system.ambient_color, weight)
             }
         };
-        colour * system.soft_scatter_intensity
+        color * system.soft_scatter_intensity
     }
 
     /// Faces of the cubemap, or the motif; the first row is at −1.

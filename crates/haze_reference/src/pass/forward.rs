@@ -6,7 +6,7 @@ use crate::blend_unit::forward_blend;
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::blending::forward_fragment;
-use haze::formula::colour::bounded_light;
+use haze::formula::color::bounded_light;
 use haze::formula::lighting::coverage;
 use haze::view_setup::TexelGrid;
 
@@ -31,8 +31,8 @@ impl VisibleSystem<'_> {
                     false => self.diffuse_from_lights(normal, covered, position),
                 };
                 let diffuse = diffuse * system.diffuse_intensity;
-                let colour = self.sample_ramp(&self.material.age_ramp, sprite.age);
-                let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(colour, system.age_colour);
+                let color = self.sample_ramp(&self.material.age_ramp, sprite.age);
+                let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(color, system.age_color);
                 let source = forward_fragment(mode, bounded_light(light), covered);
                 *texel = forward_blend(mode, source, *texel);
             });

@@ -5,7 +5,7 @@ use glam::{IVec2, Vec4};
 use crate::accumulated::AccumulatedTarget;
 use crate::blend_unit::quantise;
 use haze::assets::image::Image;
-use haze::formula::colour::bounded_light;
+use haze::formula::color::bounded_light;
 use haze::settings::AccumulationFormat;
 
 impl AccumulatedTarget<'_> {

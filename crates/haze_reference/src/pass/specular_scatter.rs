@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::accumulated::AccumulatedTarget;
 use haze::assets::image::Image;
-use haze::formula::colour::bounded_light;
+use haze::formula::color::bounded_light;
 use haze::formula::depth::SKY_VIEW_DEPTH;
 use haze::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
 use haze::formula::ramp::sample_ramp_2d;
@@ -17,7 +17,7 @@ pub struct GlowQuad<'a> {
     /// Pixels.
     centre: Vec2,
     /// Before the specular ramp and the range are applied.
-    colour: Vec3,
+    color: Vec3,
 }
 
 impl AccumulatedTarget<'_> {
@@ -52,7 +52,7 @@ impl AccumulatedTarget<'_> {
         let body = (light.radius * pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic)).max(1.5);
         let compared_depth = (depth - 2.0 * light.radius).min(0.99 * view.far);
         let visibility = self.light_visibility(centre, body, compared_depth);
-        (visibility > 0.0).then(|| GlowQuad { light, centre, colour: light.colour * strength * visibility })
+        (visibility > 0.0).then(|| GlowQuad { light, centre, color: light.color * strength * visibility })
     }
 
     /// Lookup coordinate of the specular ramp at a pixel, and the light found there; `None` outside the quad and where
@@ -72,7 +72,7 @@ impl AccumulatedTarget<'_> {
         let found = sample_ramp_2d(&visible.material.specular_ramp, visible.settings.ramp_filter, coordinate);
         let to_light = glow.light.position - visible.view_position(pixel, -visible.system.centre.z);
         let window = range_window(to_light.length_squared(), glow.light.inverse_range);
-        Some((coordinate, bounded_light(found * glow.colour * window)))
+        Some((coordinate, bounded_light(found * glow.color * window)))
     }
 
     /// Share of a light's body that the scene leaves visible.

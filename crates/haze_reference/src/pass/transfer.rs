@@ -5,7 +5,7 @@ use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use crate::accumulated::{AccumulatedTarget, Attachments};
 use crate::blend_unit::premultiplied_over;
 use haze::assets::image::Image;
-use haze::formula::colour::{bounded_light, overdraw_colour};
+use haze::formula::color::{bounded_light, overdraw_color};
 use haze::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
 use haze::formula::lighting::{coverage, painted_coverage};
 use haze::formula::normal::normal_from_accumulation;
@@ -89,7 +89,7 @@ impl AccumulatedTarget<'_> {
         let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_accumulated(pixel) };
         let amount = accumulated.w;
         match debug_view {
-            DebugView::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
+            DebugView::Overdraw => return Some(overdraw_color(amount * 255.0).extend(1.0)),
             DebugView::Amount => return Some(Vec3::splat(amount).extend(1.0)),
             _ => {}
         }

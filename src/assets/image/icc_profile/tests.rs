@@ -1,10 +1,10 @@
 use super::*;
-use crate::formula::colour::linear_from_srgb;
+use crate::formula::color::linear_from_srgb;
 
 /// Builds a profile with the given primaries and curve.
 pub fn profile(primaries: [[f32; 3]; 3], curve: &[u8]) -> Vec<u8> {
-    let xyz = |colour: [f32; 3]| {
-        let numbers = colour.map(|x| ((x * 65536.0) as i32).to_be_bytes());
+    let xyz = |color: [f32; 3]| {
+        let numbers = color.map(|x| ((x * 65536.0) as i32).to_be_bytes());
         [&b"XYZ \0\0\0\0"[..], numbers.as_flattened()].concat()
     };
     let [red, green, blue] = primaries.map(xyz);

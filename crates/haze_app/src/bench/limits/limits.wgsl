@@ -65,8 +65,8 @@ fn blend_in_registers(@builtin(global_invocation_id) at: vec3u) {
     var sum = vec4f(0.0);
     for (var layer = 0u; layer < layers; layer++) {
         let texel = textureSampleLevel(source, linear_sampler, uv + f32(layer) * 0.001, 0.0);
-        let colour = vec4f(texel.rgb, 1.0) * (texel.a * 0.1);
-        sum = colour + sum * (1.0 - colour.a);
+        let color = vec4f(texel.rgb, 1.0) * (texel.a * 0.1);
+        sum = color + sum * (1.0 - color.a);
     }
     textureStore(written, at.xy, sum);
 }

@@ -11,7 +11,7 @@ pub enum Axis {
     Logarithmic,
 }
 
-/// Points of one colour, with or without a line.
+/// Points of one color, with or without a line.
 pub struct Series {
     pub name: String,
     /// x, y and tooltip of each point.
@@ -31,8 +31,8 @@ const LEFT: f64 = 64.0;
 const BOTTOM: f64 = 52.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
-/// Number of series colours in page.css.
-pub const COLOURS: usize = 8;
+/// Number of series colors in page.css.
+pub const COLORS: usize = 8;
 
 /// Maps the values of an axis to SVG coordinates.
 struct Scale {
@@ -98,13 +98,13 @@ impl Chart<'_> {
         let mut svg = String::new();
         self.axes(&mut svg, &x, &y);
         for (index, series) in self.series.iter().enumerate() {
-            series.draw(&mut svg, index % COLOURS, &x, &y);
+            series.draw(&mut svg, index % COLORS, &x, &y);
         }
         let legend: String = self
             .series
             .iter()
             .enumerate()
-            .map(|(index, series)| format!("<span class=\"c{}\">{}</span>", index % COLOURS, escaped(&series.name)))
+            .map(|(index, series)| format!("<span class=\"c{}\">{}</span>", index % COLORS, escaped(&series.name)))
             .collect();
         format!(
             "<figure><figcaption>{title}</figcaption><svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{title}\">{svg}</svg>\
@@ -139,17 +139,17 @@ impl Chart<'_> {
 }
 
 impl Series {
-    fn draw(&self, svg: &mut String, colour: usize, x: &Scale, y: &Scale) {
+    fn draw(&self, svg: &mut String, color: usize, x: &Scale, y: &Scale) {
         let places: Vec<(f64, f64, &str)> =
             self.points.iter().map(|(at, value, note)| (x.place(*at), y.place(*value), note.as_str())).collect();
         if self.has_line {
             let line: Vec<String> = places.iter().map(|(x, y, _)| format!("{x:.1} {y:.1}")).collect();
-            let _ = write!(svg, "<path class=\"line c{colour}\" d=\"M{}\"/>", line.join("L"));
+            let _ = write!(svg, "<path class=\"line c{color}\" d=\"M{}\"/>", line.join("L"));
         }
         for (x, y, note) in places {
             let _ = write!(
                 svg,
-                "<circle class=\"dot c{colour}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"><title>{}</title></circle>",
+                "<circle class=\"dot c{color}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"><title>{}</title></circle>",
                 escaped(note)
             );
         }

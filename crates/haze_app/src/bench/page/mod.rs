@@ -1,4 +1,4 @@
-//! Renders the report as one self-contained HTML page: verdict, charts and tables, for light and dark colour schemes
+//! Renders the report as one self-contained HTML page: verdict, charts and tables, for light and dark color schemes
 //! and any width.
 
 mod chart;
@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use haze::settings::{Layers, RenderPath};
 
-use self::chart::{Axis, COLOURS, Chart, Series, escaped, number};
+use self::chart::{Axis, COLORS, Chart, Series, escaped, number};
 use super::recommendation::{break_even, recommendation};
 use super::report::{Report, Row};
 use super::suites::Suite;
@@ -153,7 +153,7 @@ fn cost_by_pass(report: &Report) -> String {
             let ms = row.passes.get(*name)?;
             let width = 100.0 * ms / most;
             let title = format!("{name}: {} ms", number(*ms));
-            Some(format!("<i class=\"c{}\" style=\"width:{width:.2}%\" title=\"{title}\"></i>", index % COLOURS))
+            Some(format!("<i class=\"c{}\" style=\"width:{width:.2}%\" title=\"{title}\"></i>", index % COLORS))
         });
         let parts: String = parts.collect();
         format!(
@@ -163,7 +163,7 @@ fn cost_by_pass(report: &Report) -> String {
         )
     };
     let legend =
-        names.iter().enumerate().map(|(index, name)| format!("<span class=\"c{}\">{name}</span>", index % COLOURS));
+        names.iter().enumerate().map(|(index, name)| format!("<span class=\"c{}\">{name}</span>", index % COLORS));
     format!(
         "<figure><figcaption>Milliseconds by pass</figcaption><div class=\"wide\"><table class=\"bars\">{}</table></div>\
          <p class=\"legend\">{}</p></figure>\n",

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
-use haze::image::colour_conversion_notes;
+use haze::image::color_conversion_notes;
 use haze::ramp::{Ramp, RampRole};
 use haze_author::finding::Finding;
 use haze_author::ramp::lint::lint_ramp;
@@ -67,12 +67,12 @@ fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> 
     refuse_gradient(path)?;
     let mut findings = Vec::new();
     if !has_extension(path, "json") {
-        let notes = colour_conversion_notes(path)?;
-        findings.extend(notes.into_iter().map(|description| Finding { name: "colour_space", description }));
+        let notes = color_conversion_notes(path)?;
+        findings.extend(notes.into_iter().map(|description| Finding { name: "color_space", description }));
     }
     match load_ramp_image(path) {
         Ok((picture, _)) => findings.extend(lint_ramp(&picture, role)),
-        // A colour space that is refused has been noted already.
+        // A color space that is refused has been noted already.
         Err(Error::Image { .. }) if !findings.is_empty() => {}
         Err(error) => return Err(explain_wrong_kind(error, path, "ramp", "a PNG or a *.ramp.json file")),
     }

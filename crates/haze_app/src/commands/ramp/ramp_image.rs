@@ -1,7 +1,7 @@
 //! Draws a ramp as an image.
 
 use glam::{UVec2, Vec3};
-use haze::formula::colour::srgb_from_linear;
+use haze::formula::color::srgb_from_linear;
 use haze::formula::texture::Texture2d as _;
 use haze::ramp::Ramp;
 use image::{Rgb, RgbImage};
@@ -20,7 +20,7 @@ pub fn fraction(index: u32, count: u32) -> f32 {
 /// Draws the ramp as an image of this size.
 pub fn ramp_image(ramp: &Ramp, size: UVec2) -> RgbImage {
     RgbImage::from_fn(size.x, size.y, |x, y| {
-        let colour = srgb_code_at(ramp, fraction(x, size.x), fraction(size.y - 1 - y, size.y)) * 255.0;
-        Rgb(colour.to_array().map(|channel| channel.round() as u8))
+        let color = srgb_code_at(ramp, fraction(x, size.x), fraction(size.y - 1 - y, size.y)) * 255.0;
+        Rgb(color.to_array().map(|channel| channel.round() as u8))
     })
 }

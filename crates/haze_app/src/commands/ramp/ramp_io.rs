@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze::image::{read_colour_png, write_file};
+use haze::image::{read_color_png, write_file};
 use haze::{Error, FieldError};
 use haze_author::ramp::RampRecipe;
 use image::DynamicImage;
@@ -16,7 +16,7 @@ pub fn load_ramp_image(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>)
         return Ok((recipe.bake()?, Some(recipe)));
     }
     refuse_gradient(path)?;
-    Ok((read_colour_png(path)?, None))
+    Ok((read_color_png(path)?, None))
 }
 
 /// Refuses another program's gradient, and names the command that converts it.

@@ -184,7 +184,7 @@ fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
             // Only forward smoke uses the age ramp.
             RampRole::Age => {
                 settings.path = RenderPath::Forward;
-                settings.sprite.age_colour = 1.0;
+                settings.sprite.age_color = 1.0;
                 age_ramp
             }
         };

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::{UVec2, Vec3};
 use haze::Error;
-use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
+use haze::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use haze::image::{CompressionEffort, write_png};
 use haze::ramp::Ramp;
 use haze_author::ramp::RampRecipe;
@@ -52,22 +52,22 @@ pub fn run(Arguments { ramp: path, output }: &Arguments) -> Result<(), Error> {
     let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let mut text = format!("{}: {}x{}\n", one_line(path.display()), size.x, size.y);
     if !is_plain && std::io::stdout().is_terminal() {
-        text += &coloured_text(&ramp);
+        text += &colored_text(&ramp);
     }
     text += &luminance_curve(&ramp);
     text += &recipe.as_ref().map(stop_list).unwrap_or_default();
     write_text(text.trim_end())
 }
 
-/// Draws two texels per character: the upper one in the foreground colour, the lower one in the background colour.
-fn coloured_text(ramp: &Ramp) -> String {
+/// Draws two texels per character: the upper one in the foreground color, the lower one in the background color.
+fn colored_text(ramp: &Ramp) -> String {
     let up = if ramp.size().y > 1 { LINES } else { 2 };
     let mut text = String::new();
     for line in (0..up).rev() {
         for x in 0..COLUMNS {
             let [upper, lower] = [2 * line + 1, 2 * line].map(|y| {
-                let colour = srgb_code_at(ramp, fraction(x, COLUMNS), fraction(y, 2 * up)) * 255.0;
-                let [r, g, b] = colour.to_array().map(|channel| channel.round() as u8);
+                let color = srgb_code_at(ramp, fraction(x, COLUMNS), fraction(y, 2 * up)) * 255.0;
+                let [r, g, b] = color.to_array().map(|channel| channel.round() as u8);
                 format!("2;{r};{g};{b}")
             });
             let _ = write!(text, "\x1b[38;{upper};48;{lower}m▀");
@@ -103,7 +103,7 @@ fn stop_list(recipe: &RampRecipe) -> String {
     let count = all.clone().count();
     for (at, stop) in all.take(MAX_LISTED_STOPS) {
         let row = if recipe.rows.len() > 1 { format!("{at:5.3}  ") } else { String::new() };
-        let _ = writeln!(text, "{row}{:5.3}  {}  {}", stop.at, String::from(stop.colour), stop.curve.name());
+        let _ = writeln!(text, "{row}{:5.3}  {}  {}", stop.at, String::from(stop.color), stop.curve.name());
     }
     if count > MAX_LISTED_STOPS {
         let _ = writeln!(text, "and {} more stops", count - MAX_LISTED_STOPS);
@@ -117,7 +117,7 @@ fn ramp_with_curves(ramp: &Ramp) -> RgbImage {
         let ramp = ramp.clone();
         Box::new(move |u| channel(srgb_code_at(&ramp, u, 0.5)))
     };
-    let curve = |name, colour, channel| Curve { name, colour: Rgb(colour), function: sample(channel) };
+    let curve = |name, color, channel| Curve { name, color: Rgb(color), function: sample(channel) };
     let curves = [
         curve("red", [235, 90, 80], |code| code.x),
         curve("green", [90, 200, 100], |code| code.y),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
-use haze::formula::colour::luminance;
+use haze::formula::color::luminance;
 use haze::image::{CompressionEffort, write_file, write_png};
 use haze_author::path_trace::PathTrace;
 use haze_author::ramp::response::{LIGHTS, Puff, light_angle};

@@ -21,7 +21,7 @@ pub struct SpriteArguments {
 enum SpriteCommand {
     /// Bake every recipe to PNGs beside it: NAME.png, and for a sprite also NAME.detail.png with its depth and motion.
     Bake(bake::Arguments),
-    /// Report visible flaws: colours instead of normals, normals of wrong length, green that points down, opaque
+    /// Report visible flaws: colors instead of normals, normals of wrong length, green that points down, opaque
     /// borders, premultiplied normals, a seam in the loop. Exits with 1 if there are any.
     Check(check::Arguments),
     /// Path-trace a sprite as a puff of steam, ash, … under a ring of lights, and write the result as one sheet.

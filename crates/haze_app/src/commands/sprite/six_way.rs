@@ -82,17 +82,17 @@ impl SixWayArguments {
                 Ok::<_, Error>(())
             })
         })?;
-        let BakedSixWay { picture: maps, intensity, colour, anisotropy } = baked;
+        let BakedSixWay { picture: maps, intensity, color, anisotropy } = baked;
         let output = six_way_path(&image_path(path));
         print_line!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
         write_baked_png(&output, &maps.into())?;
         print_line!(
             "  to look like {}: lighting six_way, diffuse.intensity {intensity:.2}, six_way_anisotropy {anisotropy:.2}, \
-             six_way_colour {:.3},{:.3},{:.3}",
+             six_way_color {:.3},{:.3},{:.3}",
             self.numbers.label_of(name),
-            colour.x,
-            colour.y,
-            colour.z,
+            color.x,
+            color.y,
+            color.z,
         )
     }
 }

@@ -50,7 +50,7 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
 /// Fields that a camera move changes.
 const MOVES: [&str; 2] = ["camera.position", "camera.target"];
 
-/// Returns a name for the step between two presets: "boost of smoke", "colour of sun 2", "camera", "3 fields of smoke",
+/// Returns a name for the step between two presets: "boost of smoke", "color of sun 2", "camera", "3 fields of smoke",
 /// "light added".
 pub fn step_name(before: &Preset, after: &Preset) -> String {
     let changed = changed_fields(before, after);
@@ -116,15 +116,15 @@ mod tests {
         let expect = |said: (String, String), fields: &str, name: &str| assert_eq!(said, (fields.into(), name.into()));
         expect(said(|_| {}), "", "change");
         expect(said(|preset| preset.systems[0].settings.boost = 2.0), "systems[0].settings.boost", "boost of smoke");
-        expect(said(|preset| preset.lights[1].colour.x = 0.0), "lights[1].colour", "colour of sun 2");
+        expect(said(|preset| preset.lights[1].color.x = 0.0), "lights[1].color", "color of sun 2");
         expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "exposure");
         expect(said(|preset| preset.camera.target.x += 1.0), "camera.target", "camera");
         expect(said(|preset| preset.lights.push(Light::default())), "lights", "light added");
         expect(said(|preset| preset.lights.truncate(2)), "lights", "light removed");
         expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "system added");
         expect(
-            said(|preset| (preset.lights[1].colour.x, preset.lights[1].intensity) = (0.0, 0.0)),
-            "lights[1].colour lights[1].intensity",
+            said(|preset| (preset.lights[1].color.x, preset.lights[1].intensity) = (0.0, 0.0)),
+            "lights[1].color lights[1].intensity",
             "2 fields of sun 2",
         );
         expect(said(|preset| (preset.time, preset.camera.fov) = (0.0, 20.0)), "time camera.fov", "2 fields");
@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(to.lights[1], from.lights[1]);
         to.lights[1] = before.lights[1];
         // Only one of the presets has it, or none.
-        copy_field(&from, &mut to, "lights[3].colour");
+        copy_field(&from, &mut to, "lights[3].color");
         copy_field(&from, &mut to, "systems[0].settings.boos");
         assert_eq!(to, before);
         assert_ne!(from.systems[0].settings, Settings::default());

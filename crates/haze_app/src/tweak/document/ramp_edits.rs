@@ -12,7 +12,7 @@ use haze_author::ramp::RampRecipe;
 use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, fit_image};
 
 use super::Document;
-use crate::tweak::platform::file_io::{Stamp, read_colour_png, write_baked_png};
+use crate::tweak::platform::file_io::{Stamp, read_color_png, write_baked_png};
 use crate::tweak::platform::{asset_loading, file_io};
 
 /// Ramps that panels have asked about, by their names in the preset.
@@ -102,7 +102,7 @@ impl RampEdits {
     /// Fits a recipe to a painted ramp. Returns the number of stops and the largest error of the fit in 1/255.
     pub fn fit(&mut self, name: &str) -> Result<(usize, f32), Error> {
         let Some(known) = self.known.get_mut(name) else { return Ok((0, 0.0)) };
-        let fitted = fit_image(&read_colour_png(&known.picture)?, DEFAULT_MAX_ERROR)?;
+        let fitted = fit_image(&read_color_png(&known.picture)?, DEFAULT_MAX_ERROR)?;
         let count = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
         // The image stays as it was painted until a stop is changed.
         known.written = Some(fitted.recipe.clone());

@@ -160,8 +160,8 @@ mod tests {
     fn a_dropped_image_gets_the_role_of_its_name_or_content() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
-        let save = |name: &str, size: (u32, u32), colour: fn(u32, u32) -> [u8; 3]| {
-            RgbImage::from_fn(size.0, size.1, |x, y| Rgb(colour(x, y))).save(path(name)).unwrap();
+        let save = |name: &str, size: (u32, u32), color: fn(u32, u32) -> [u8; 3]| {
+            RgbImage::from_fn(size.0, size.1, |x, y| Rgb(color(x, y))).save(path(name)).unwrap();
         };
         let across = |x: u32, _| [4 * x as u8; 3];
         for name in ["mine.png", "scatter_a.png", "coverage_a.png", "age_a.png", "specular_a.png"] {

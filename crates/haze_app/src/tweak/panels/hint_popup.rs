@@ -77,9 +77,9 @@ fn tip(card: Rect, at: Rect, way: Vec2) -> Pos2 {
 
 fn arrow(ui: &Ui, layer: egui::LayerId, tip: Pos2, way: Vec2) {
     let (back, side) = (way * (AWAY - 1.0), way.rot90() * 6.0);
-    let colour = ui.visuals().selection.stroke.color;
+    let color = ui.visuals().selection.stroke.color;
     let points = vec![tip, tip - back + side, tip - back - side];
-    ui.ctx().layer_painter(layer).add(egui::Shape::convex_polygon(points, colour, egui::Stroke::NONE));
+    ui.ctx().layer_painter(layer).add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));
 }
 
 #[cfg(test)]

@@ -54,7 +54,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
     if button.clicked() {
         shown.selected = (!is_selected).then_some(index);
     }
-    value_control::swatch(ui, &mut light.colour).accessible_name(format!("colour of {name}"));
+    value_control::swatch(ui, &mut light.color).accessible_name(format!("color of {name}"));
     let speed = 0.01 * light.intensity.max(0.1);
     let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
     let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));

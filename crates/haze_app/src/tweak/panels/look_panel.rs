@@ -77,7 +77,7 @@ fn key_light(preset: &Preset, system: usize) -> Option<usize> {
     let brightness = |light: &Light| {
         let falloff =
             if light.kind == LightKind::Directional { 1.0 } else { light.position.distance_squared(at).max(0.1) };
-        light.intensity * light.colour.max_element() / falloff
+        light.intensity * light.color.max_element() / falloff
     };
     let lights = preset.lights.iter().enumerate();
     lights.max_by(|a, b| brightness(a.1).total_cmp(&brightness(b.1))).map(|(index, _)| index)

@@ -14,8 +14,8 @@ use crate::tweak::viewport_renderer::frame_timings::{FrameTimings, MAX_KEPT_IMAG
 /// Height of the plot, points.
 const PLOT: f32 = 120.0;
 
-/// Colours that are distinguishable on light and dark backgrounds, also with colour blindness.
-const COLOURS: [Color32; 7] = [
+/// Colors that are distinguishable on light and dark backgrounds, also with color blindness.
+const COLORS: [Color32; 7] = [
     Color32::from_rgb(230, 159, 0),
     Color32::from_rgb(86, 180, 233),
     Color32::from_rgb(0, 158, 115),
@@ -49,7 +49,7 @@ fn times(ui: &mut Ui, timings: &FrameTimings) {
     egui::Grid::new("passes").num_columns(3).min_col_width(0.0).striped(true).show(ui, |ui| {
         for (index, name) in timings.names.iter().enumerate() {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-            ui.painter().rect_filled(rect, 1.0, COLOURS[index % COLOURS.len()]);
+            ui.painter().rect_filled(rect, 1.0, COLORS[index % COLORS.len()]);
             ui.label(*name);
             ui.monospace(format!("{:6.3} ms", timings.mean(index)));
             ui.end_row();
@@ -77,9 +77,9 @@ fn plot(ui: &mut Ui, timings: &FrameTimings) {
     for (index, picture) in timings.frame_times.iter().enumerate() {
         let left = rect.right() - (timings.frame_times.len() - index) as f32 * width;
         let mut bottom = rect.bottom();
-        for (ms, colour) in picture.iter().zip(COLOURS.iter().cycle()) {
+        for (ms, color) in picture.iter().zip(COLORS.iter().cycle()) {
             let top = bottom - height(*ms);
-            painter.rect_filled(Rect::from_min_max(pos2(left, top), pos2(left + width, bottom)), 0.0, *colour);
+            painter.rect_filled(Rect::from_min_max(pos2(left, top), pos2(left + width, bottom)), 0.0, *color);
             bottom = top;
         }
     }

@@ -21,7 +21,7 @@ pub struct NamedRamp<'a> {
     pub name: &'a str,
 }
 
-/// Histogram and its colour; coordinate and colour of a mark.
+/// Histogram and its color; coordinate and color of a mark.
 pub type Bins = (Color32, Vec<f32>);
 pub type Mark = (f32, Color32);
 
@@ -44,7 +44,7 @@ pub fn editor(
     let (editor, index) = session.ramps.editor(ramp.field);
     let mut is_changed = choose(ui, &mut recipe, index);
     let (bins, marks) = if *index < recipe.rows.len() { across } else { up };
-    let histograms: Vec<_> = bins.iter().map(|(colour, bins)| (*colour, bins.as_slice())).collect();
+    let histograms: Vec<_> = bins.iter().map(|(color, bins)| (*color, bins.as_slice())).collect();
     let options = DisplayOptions { blend: recipe.blend, histograms: &histograms, marks };
     let mut shown = shown(&recipe, *index)?;
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options)).inner;
@@ -77,7 +77,7 @@ pub fn editor(
     Some(edited.pointed_at)
 }
 
-/// Draws the choice of the colour space for blending. Returns true if it was changed.
+/// Draws the choice of the color space for blending. Returns true if it was changed.
 fn blend(ui: &mut Ui, blend: &mut Blend, field: &str) -> bool {
     let before = *blend;
     let label = ui.label("blended in");

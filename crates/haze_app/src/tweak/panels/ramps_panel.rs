@@ -21,8 +21,8 @@ use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 const RAMP_HEIGHT: f32 = 20.0;
 const HISTOGRAM_HEIGHT: f32 = 56.0;
 
-/// Colours of the lights, reused cyclically; distinguishable also with colour blindness.
-const LIGHT_COLOURS: [Color32; 6] = [
+/// Colors of the lights, reused cyclically; distinguishable also with color blindness.
+const LIGHT_COLORS: [Color32; 6] = [
     Color32::from_rgb(230, 159, 0),
     Color32::from_rgb(86, 180, 233),
     Color32::from_rgb(0, 158, 115),
@@ -31,8 +31,8 @@ const LIGHT_COLOURS: [Color32; 6] = [
     Color32::from_rgb(120, 120, 240),
 ];
 
-/// Colour over the specular ramp of the places that are sampled.
-const SAMPLED_COLOUR: Color32 = Color32::from_rgb(120, 200, 240);
+/// Color over the specular ramp of the places that are sampled.
+const SAMPLED_COLOR: Color32 = Color32::from_rgb(120, 200, 240);
 
 /// Draws the tab. Returns the place on a ramp under the pointer.
 pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPlace> {
@@ -127,8 +127,8 @@ fn ramp_samples<'a>(
     match field {
         "diffuse_ramp" | "backlight_ramp" => {
             let looking = probe.iter().flat_map(|probe| &probe.lights);
-            let marks = looking.map(|light| (light.coordinate, light_colour(light.light))).collect();
-            let bins = lights.iter().map(|histogram| (light_colour(histogram.light), histogram.bins.clone()));
+            let marks = looking.map(|light| (light.coordinate, light_color(light.light))).collect();
+            let bins = lights.iter().map(|histogram| (light_color(histogram.light), histogram.bins.clone()));
             let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
             (ramp, bins.collect(), marks)
         }
@@ -148,12 +148,12 @@ fn ramp_samples<'a>(
 /// Returns histograms and marks of the specular ramp along each axis.
 fn axis_samples(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [AxisSamples; 2] {
     let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
-    let marks: Vec<_> = glows.map(|(light, glow)| (light_colour(light), glow.coordinate)).collect();
+    let marks: Vec<_> = glows.map(|(light, glow)| (light_color(light), glow.coordinate)).collect();
     // Empty histograms reserve the space.
     let [across, up] = ramp_survey::along(density.unwrap_or_default());
     [
-        (vec![(ink, across)], marks.iter().map(|(colour, at)| (at.x, *colour)).collect()),
-        (vec![(ink, up)], marks.iter().map(|(colour, at)| (at.y, *colour)).collect()),
+        (vec![(ink, across)], marks.iter().map(|(color, at)| (at.x, *color)).collect()),
+        (vec![(ink, up)], marks.iter().map(|(color, at)| (at.y, *color)).collect()),
     ]
 }
 
@@ -169,8 +169,8 @@ fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &st
     }
 }
 
-fn light_colour(index: usize) -> Color32 {
-    LIGHT_COLOURS[index % LIGHT_COLOURS.len()]
+fn light_color(index: usize) -> Color32 {
+    LIGHT_COLORS[index % LIGHT_COLORS.len()]
 }
 
 /// Allocates space for an image with a name. Returns the pointer position in it, in shares of its sides.
@@ -184,23 +184,23 @@ fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
 fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32, Color32)]) -> Option<f32> {
     let (rect, at) = space(ui, Vec2::new(ui.available_width(), RAMP_HEIGHT), name);
     picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, filter, at.x));
-    for &(coordinate, colour) in marks {
+    for &(coordinate, color) in marks {
         let x = rect.left() + coordinate * rect.width();
-        for (width, colour) in [(4.0, Color32::BLACK), (2.0, colour)] {
-            ui.painter().vline(x, rect.y_range(), Stroke::new(width, colour));
+        for (width, color) in [(4.0, Color32::BLACK), (2.0, color)] {
+            ui.painter().vline(x, rect.y_range(), Stroke::new(width, color));
         }
     }
     at.map(|at| at.x)
 }
 
 /// Draws a linear image from a function of the position, in shares of its sides, cell by cell.
-fn picture(ui: &Ui, rect: Rect, cells: UVec2, colour: impl Fn(glam::Vec2) -> glam::Vec3) {
+fn picture(ui: &Ui, rect: Rect, cells: UVec2, color: impl Fn(glam::Vec2) -> glam::Vec3) {
     let mut mesh = Mesh::default();
     let side = rect.size() / Vec2::new(cells.x as f32, cells.y as f32);
     for y in 0..cells.y {
         for x in 0..cells.x {
             let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / cells.as_vec2();
-            let [r, g, b] = colour(at).to_array();
+            let [r, g, b] = color(at).to_array();
             let corner = rect.min + Vec2::new(x as f32, y as f32) * side;
             mesh.add_colored_rect(Rect::from_min_size(corner, side), egui::Rgba::from_rgb(r, g, b).into());
         }
@@ -216,15 +216,15 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
     let name = if field == "diffuse_ramp" { "histogram of N·L" } else { "histogram of amounts" };
     let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM_HEIGHT), name);
     ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-    histograms.iter().for_each(|(colour, bins)| egui_gradient::histogram(ui, rect, bins, *colour));
+    histograms.iter().for_each(|(color, bins)| egui_gradient::histogram(ui, rect, bins, *color));
 }
 
-/// Draws the names of lights in the colours of their histograms.
+/// Draws the names of lights in the colors of their histograms.
 fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
     ui.horizontal_wrapped(|ui| {
         for histogram in histograms {
             let name = names.get(histogram.light).map_or("light", String::as_str);
-            ui.colored_label(light_colour(histogram.light), name);
+            ui.colored_label(light_color(histogram.light), name);
         }
         if histograms.is_empty() {
             ui.weak("No light reaches smoke in the picture");
@@ -248,13 +248,13 @@ fn plane(
     for (index, density) in density.unwrap_or_default().iter().enumerate().filter(|(_, density)| **density > 0.0) {
         let (x, y) = ((index % SIDE) as f32, (SIDE - 1 - index / SIDE) as f32);
         let square = Rect::from_min_size(rect.min + Vec2::new(x, y) * cell, cell);
-        mesh.add_colored_rect(square, SAMPLED_COLOUR.gamma_multiply(0.7 * density.sqrt()));
+        mesh.add_colored_rect(square, SAMPLED_COLOR.gamma_multiply(0.7 * density.sqrt()));
     }
     ui.painter().add(mesh);
     for glow in probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?))) {
         let (light, at) = (glow.0, glow.1.coordinate);
         let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
-        ui.painter().circle(place, 4.0, light_colour(light), Stroke::new(1.5, Color32::BLACK));
+        ui.painter().circle(place, 4.0, light_color(light), Stroke::new(1.5, Color32::BLACK));
     }
     ui.weak("across: distance² from the light; up: amount");
     at.map(|at| RampPlace::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use haze::Error;
 use haze::assets::{bounded_read, json};
-pub use haze::image::{CompressionEffort, read_colour_png, read_png, write_baked_png, write_png, write_state_file};
+pub use haze::image::{CompressionEffort, read_color_png, read_png, write_baked_png, write_png, write_state_file};
 use haze::image::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
 use haze_author::particle_files;

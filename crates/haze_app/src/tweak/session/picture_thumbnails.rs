@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use glam::{UVec3, Vec3, Vec4Swizzles};
 use haze::builtin::{self, Builtin};
-use haze::image::{decode_colour_png, decode_png};
+use haze::image::{decode_color_png, decode_png};
 use haze::settings::ImageRole;
 use haze::sprite::Sprite;
 use haze::{Error, noise};
@@ -140,7 +140,7 @@ fn thumbnail(role: ImageRole, source: &ImageSource) -> Result<ColorImage, Error>
 fn decoded(role: ImageRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, Error> {
     let [width, height] = SIZE.map(|side| side as u32);
     let decode = match role {
-        ImageRole::Ramp | ImageRole::Motif => decode_colour_png,
+        ImageRole::Ramp | ImageRole::Motif => decode_color_png,
         ImageRole::Sprite | ImageRole::Detail | ImageRole::SixWay | ImageRole::Noise => decode_png,
     };
     let small = imageops::resize(&decode(path, bytes)?.to_rgba8(), width, height, FilterType::Triangle);
@@ -148,9 +148,9 @@ fn decoded(role: ImageRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, Err
 }
 
 /// Builds a thumbnail from a function of the pixel.
-fn drawn(colour: impl Fn([usize; 2]) -> Color32) -> ColorImage {
+fn drawn(color: impl Fn([usize; 2]) -> Color32) -> ColorImage {
     let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
-    ColorImage::new(SIZE, pixels.map(colour).collect())
+    ColorImage::new(SIZE, pixels.map(color).collect())
 }
 
 /// Returns the first frame of a sprite, lit from the upper left.
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ramp_thumbnails_show_the_colours_of_the_light() {
+    fn ramp_thumbnails_show_the_colors_of_the_light() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("clear.png");
         image::RgbaImage::from_pixel(4, 1, image::Rgba([255, 255, 255, 55])).save(&path).unwrap();

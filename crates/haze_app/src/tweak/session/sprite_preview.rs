@@ -3,7 +3,7 @@
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _, Vec4Swizzles as _};
 use haze::MaterialAssets;
-use haze::formula::colour::srgb_colour;
+use haze::formula::color::srgb_color;
 use haze::formula::lighting::diffuse_coordinate;
 use haze::formula::normal::normal_from_accumulation;
 use haze::formula::ramp::sample_ramp;
@@ -86,7 +86,7 @@ fn code(material: &MaterialAssets, view: &View, uv: Vec2) -> Vec3 {
         SpriteChannel::Lit => {
             let normal = normal_from_accumulation(NormalEncoding::Signed, NormalDecode::Exact, normal, 1.0);
             let light = sample_ramp(&material.diffuse_ramp, view.filter, diffuse_coordinate(normal, view.to_light));
-            srgb_colour(BEHIND.lerp(light, amount))
+            srgb_color(BEHIND.lerp(light, amount))
         }
         SpriteChannel::Normals => normal * 0.5 + 0.5,
         SpriteChannel::Amount => Vec3::splat(amount),

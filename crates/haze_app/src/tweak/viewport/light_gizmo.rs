@@ -125,22 +125,22 @@ impl LightGizmo {
                     faint,
                 );
                 let (right, up) = (projection.right * light.radius, projection.up * light.radius);
-                circle(outlined, projection, light.position, right, up, 1.5, self.colour(Handle::Radius, PLAIN));
+                circle(outlined, projection, light.position, right, up, 1.5, self.color(Handle::Radius, PLAIN));
                 if kind == LightKind::Spot {
                     self.draw_cone(outlined, light, projection);
                 }
             }
         }
         for (handle, shape) in handles(light, projection) {
-            let colour = self.colour(handle, plain(handle));
+            let color = self.color(handle, plain(handle));
             match shape {
                 Shape::Arrow([from, to]) => {
-                    outlined.line(&[from, to], 2.0, colour);
-                    outlined.arrow_head(to, to - from, colour);
+                    outlined.line(&[from, to], 2.0, color);
+                    outlined.arrow_head(to, to - from, color);
                 }
-                Shape::Quad(corners) => outlined.quad(corners, colour),
-                Shape::Square(centre) => outlined.square(centre, SQUARE, colour),
-                Shape::Knob(centre) => outlined.knob(centre, colour),
+                Shape::Quad(corners) => outlined.quad(corners, color),
+                Shape::Square(centre) => outlined.square(centre, SQUARE, color),
+                Shape::Knob(centre) => outlined.knob(centre, color),
             }
         }
     }
@@ -149,25 +149,25 @@ impl LightGizmo {
         let cone = Cone::new(light, projection);
         let across = cone.side.cross(cone.way);
         let angles = [
-            (light.inner_angle, self.colour(Handle::InnerAngle, PLAIN.gamma_multiply(0.5))),
-            (light.outer_angle, self.colour(Handle::OuterAngle, SELECTED)),
+            (light.inner_angle, self.color(Handle::InnerAngle, PLAIN.gamma_multiply(0.5))),
+            (light.outer_angle, self.color(Handle::OuterAngle, SELECTED)),
         ];
-        for (angle, colour) in angles {
+        for (angle, color) in angles {
             let sine = angle.to_radians().sin() * cone.length;
             let centre = light.position + cone.way * (angle.to_radians().cos() * cone.length);
-            circle(outlined, projection, centre, cone.side * sine, across * sine, 1.0, colour);
+            circle(outlined, projection, centre, cone.side * sine, across * sine, 1.0, color);
             for side in [cone.side, -cone.side] {
                 if let Some(ends) = projection.segment(light.position, cone.rim(angle, side)) {
-                    outlined.line(&ends, 1.0, colour);
+                    outlined.line(&ends, 1.0, color);
                 }
             }
         }
         if let Some(ends) = projection.segment(light.position, cone.rim(0.0, cone.side)) {
-            outlined.dashes(ends, self.colour(Handle::Aim, PLAIN));
+            outlined.dashes(ends, self.color(Handle::Aim, PLAIN));
         }
     }
 
-    fn colour(&self, handle: Handle, plain: Color32) -> Color32 {
+    fn color(&self, handle: Handle, plain: Color32) -> Color32 {
         if self.hovered == Some(handle) { HOVERED } else { plain }
     }
 }
@@ -181,7 +181,7 @@ fn plain(handle: Handle) -> Color32 {
 }
 
 fn hue_of(light: &Light) -> Color32 {
-    light_marker::full_brightness(light.colour)
+    light_marker::full_brightness(light.color)
 }
 
 /// Draws a sun: a line from its place on the sun sphere to the camera's target.
@@ -212,14 +212,14 @@ fn draw_sun(outlined: &OutlinedPainter<'_>, light: &Light, projection: &ScreenPr
 /// Draws a line straight down to the ground, with a cross there.
 fn draw_depth(outlined: &OutlinedPainter<'_>, at: Vec3, projection: &ScreenProjection) {
     let foot = at.with_y(0.0);
-    let colour = AXES[1].gamma_multiply(0.8);
+    let color = AXES[1].gamma_multiply(0.8);
     if let Some(ends) = projection.segment(at, foot) {
-        outlined.dashes(ends, colour);
+        outlined.dashes(ends, color);
     }
     let reach = 7.0 * projection.metres_per_point(foot);
     for arm in [Vec3::X * reach, Vec3::Z * reach] {
         if let Some(ends) = projection.segment(foot - arm, foot + arm) {
-            outlined.line(&ends, 1.0, colour);
+            outlined.line(&ends, 1.0, color);
         }
     }
 }
@@ -232,7 +232,7 @@ fn circle(
     u: Vec3,
     v: Vec3,
     width: f32,
-    colour: Color32,
+    color: Color32,
 ) {
     if !u.is_finite() || u.length() > MAX_CIRCLE_RADIUS * projection.metres_per_point(centre) {
         return;
@@ -243,12 +243,12 @@ fn circle(
     };
     let corners: Option<Vec<_>> = (0..=CORNERS).map(|index| projection.project(corner(index))).collect();
     if let Some(corners) = corners {
-        return outlined.line(&corners, width, colour);
+        return outlined.line(&corners, width, color);
     }
     // The near plane cuts the circle, so each segment is clipped.
     for index in 0..CORNERS {
         if let Some(ends) = projection.segment(corner(index), corner(index + 1)) {
-            outlined.line(&ends, width, colour);
+            outlined.line(&ends, width, color);
         }
     }
 }

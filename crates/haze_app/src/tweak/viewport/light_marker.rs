@@ -26,7 +26,7 @@ pub fn pick(lights: &[Light], projection: &ScreenProjection, at: Pos2) -> Option
     near.filter(|(_, distance)| *distance <= PICK).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
 }
 
-/// Draws a light's mark by its kind, in its colour.
+/// Draws a light's mark by its kind, in its color.
 pub fn draw(
     outlined: &OutlinedPainter<'_>,
     light: &Light,
@@ -59,17 +59,17 @@ pub fn draw(
             outlined.line(&[at + 12.0 * ahead + 8.0 * side, at + 12.0 * ahead - 8.0 * side], 1.5, line);
         }
     }
-    let fill = full_brightness(light.colour).gamma_multiply(opacity);
+    let fill = full_brightness(light.color).gamma_multiply(opacity);
     outlined.0.circle(at, 4.5, fill, Stroke::new(1.5, Color32::from_black_alpha(170).gamma_multiply(opacity)));
 }
 
-/// Returns a linear colour, scaled to full brightness.
-pub fn full_brightness(colour: Vec3) -> Color32 {
-    let [r, g, b] = (colour / colour.max_element().max(1.0e-6)).to_array();
-    egui_colour([r, g, b])
+/// Returns a linear color, scaled to full brightness.
+pub fn full_brightness(color: Vec3) -> Color32 {
+    let [r, g, b] = (color / color.max_element().max(1.0e-6)).to_array();
+    egui_color([r, g, b])
 }
 
-fn egui_colour(linear: [f32; 3]) -> Color32 {
+fn egui_color(linear: [f32; 3]) -> Color32 {
     let [r, g, b] = linear;
     eframe::egui::Rgba::from_rgb(r, g, b).into()
 }

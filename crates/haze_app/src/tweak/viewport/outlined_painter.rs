@@ -13,46 +13,46 @@ const RIM: Color32 = Color32::from_black_alpha(150);
 pub struct OutlinedPainter<'a>(pub &'a Painter);
 
 impl OutlinedPainter<'_> {
-    pub fn line(&self, points: &[Pos2], width: f32, colour: Color32) {
-        let stroke = |width, colour| Shape::line(points.to_vec(), Stroke::new(width, colour));
-        self.0.add(stroke(width + 2.0, RIM.gamma_multiply(opacity(colour))));
-        self.0.add(stroke(width, colour));
+    pub fn line(&self, points: &[Pos2], width: f32, color: Color32) {
+        let stroke = |width, color| Shape::line(points.to_vec(), Stroke::new(width, color));
+        self.0.add(stroke(width + 2.0, RIM.gamma_multiply(opacity(color))));
+        self.0.add(stroke(width, color));
     }
 
-    pub fn dashes(&self, ends: [Pos2; 2], colour: Color32) {
+    pub fn dashes(&self, ends: [Pos2; 2], color: Color32) {
         // A line to the far end of the scene is skipped, because it would have a million dashes.
         if ends[0].distance(ends[1]) < 1.0e4 {
-            self.0.extend(Shape::dashed_line(&ends, Stroke::new(3.0, RIM.gamma_multiply(opacity(colour))), 4.0, 4.0));
-            self.0.extend(Shape::dashed_line(&ends, Stroke::new(1.0, colour), 4.0, 4.0));
+            self.0.extend(Shape::dashed_line(&ends, Stroke::new(3.0, RIM.gamma_multiply(opacity(color))), 4.0, 4.0));
+            self.0.extend(Shape::dashed_line(&ends, Stroke::new(1.0, color), 4.0, 4.0));
         }
     }
 
-    pub fn arrow_head(&self, tip: Pos2, along: Vec2, colour: Color32) {
+    pub fn arrow_head(&self, tip: Pos2, along: Vec2, color: Color32) {
         let (ahead, side) = (along.normalized(), along.normalized().rot90());
         let corners = vec![tip + 6.0 * ahead, tip - 6.0 * ahead + 5.0 * side, tip - 6.0 * ahead - 5.0 * side];
-        self.0.add(Shape::convex_polygon(corners, colour, Stroke::new(1.0, RIM)));
+        self.0.add(Shape::convex_polygon(corners, color, Stroke::new(1.0, RIM)));
     }
 
-    pub fn quad(&self, corners: [Pos2; 4], colour: Color32) {
-        self.0.add(Shape::convex_polygon(corners.to_vec(), colour.gamma_multiply(0.45), Stroke::new(1.0, colour)));
+    pub fn quad(&self, corners: [Pos2; 4], color: Color32) {
+        self.0.add(Shape::convex_polygon(corners.to_vec(), color.gamma_multiply(0.45), Stroke::new(1.0, color)));
     }
 
-    pub fn square(&self, centre: Pos2, half: f32, colour: Color32) {
+    pub fn square(&self, centre: Pos2, half: f32, color: Color32) {
         let rect = Rect::from_center_size(centre, Vec2::splat(2.0 * half));
         self.0.rect_stroke(rect, 1.0, Stroke::new(3.5, RIM), StrokeKind::Middle);
-        self.0.rect_stroke(rect, 1.0, Stroke::new(1.5, colour), StrokeKind::Middle);
+        self.0.rect_stroke(rect, 1.0, Stroke::new(1.5, color), StrokeKind::Middle);
     }
 
-    pub fn knob(&self, centre: Pos2, colour: Color32) {
-        self.0.circle(centre, 4.5, colour, Stroke::new(1.5, RIM));
+    pub fn knob(&self, centre: Pos2, color: Color32) {
+        self.0.circle(centre, 4.5, color, Stroke::new(1.5, RIM));
     }
 
-    pub fn ring(&self, centre: Pos2, radius: f32, width: f32, colour: Color32) {
-        self.0.circle_stroke(centre, radius, Stroke::new(width + 2.0, RIM.gamma_multiply(opacity(colour))));
-        self.0.circle_stroke(centre, radius, Stroke::new(width, colour));
+    pub fn ring(&self, centre: Pos2, radius: f32, width: f32, color: Color32) {
+        self.0.circle_stroke(centre, radius, Stroke::new(width + 2.0, RIM.gamma_multiply(opacity(color))));
+        self.0.circle_stroke(centre, radius, Stroke::new(width, color));
     }
 }
 
-fn opacity(colour: Color32) -> f32 {
-    f32::from(colour.a()) / 255.0
+fn opacity(color: Color32) -> f32 {
+    f32::from(color.a()) / 255.0
 }

@@ -15,8 +15,8 @@ const MAX_PARTICLES: usize = 4096;
 /// Least distance between lines of the grid, points.
 const MIN_GRID_SPACING: f32 = 4.0;
 
-/// Colours of systems, reused cyclically.
-const SYSTEM_COLOURS: [Color32; 4] = [
+/// Colors of systems, reused cyclically.
+const SYSTEM_COLORS: [Color32; 4] = [
     Color32::from_rgb(255, 196, 84),
     Color32::from_rgb(110, 214, 255),
     Color32::from_rgb(186, 255, 120),
@@ -33,23 +33,23 @@ pub fn draw(
 ) {
     let systems = smoke.systems.len().max(1);
     for (index, (particles, bounds)) in smoke.systems.iter().zip(&smoke.bounds).enumerate() {
-        let colour = SYSTEM_COLOURS[index % SYSTEM_COLOURS.len()];
+        let color = SYSTEM_COLORS[index % SYSTEM_COLORS.len()];
         if view.overlays.has(Overlay::Particles) {
             points(outlined.0, projection, particles, MAX_PARTICLES / systems);
         }
         if view.overlays.has(Overlay::Bounds) && !bounds.is_empty() {
             for [from, to] in edges(bounds) {
                 if let Some(ends) = projection.segment(from, to) {
-                    outlined.line(&ends, 1.0, colour);
+                    outlined.line(&ends, 1.0, color);
                 }
             }
         }
         let Some(texels) = texels.get(index).copied().flatten() else { continue };
         if view.overlays.has(Overlay::LitPlane) {
-            plane(outlined, projection, bounds, texels.lit_depth, colour);
+            plane(outlined, projection, bounds, texels.lit_depth, color);
         }
         if view.overlays.has(Overlay::Grid) {
-            grid(outlined.0, projection.rect, &texels, colour);
+            grid(outlined.0, projection.rect, &texels, color);
         }
     }
 }
@@ -77,12 +77,12 @@ fn section(bounds: &Bounds, projection: &ScreenProjection, depth: f32) -> Vec<Po
     corners
 }
 
-fn plane(outlined: &OutlinedPainter<'_>, projection: &ScreenProjection, bounds: &Bounds, depth: f32, colour: Color32) {
+fn plane(outlined: &OutlinedPainter<'_>, projection: &ScreenProjection, bounds: &Bounds, depth: f32, color: Color32) {
     let mut corners = section(bounds, projection, depth);
     let Some(&first) = corners.first() else { return };
-    outlined.0.add(Shape::convex_polygon(corners.clone(), colour.gamma_multiply(0.18), Stroke::NONE));
+    outlined.0.add(Shape::convex_polygon(corners.clone(), color.gamma_multiply(0.18), Stroke::NONE));
     corners.push(first);
-    outlined.line(&corners, 1.0, colour);
+    outlined.line(&corners, 1.0, color);
     let lowest = corners.iter().copied().fold(first, |low, at| if at.y > low.y { at } else { low });
     label(outlined.0, projection.rect, lowest + vec2(4.0, -18.0), &format!("lit at {depth:.2} m"));
 }
@@ -100,27 +100,27 @@ fn points(painter: &Painter, projection: &ScreenProjection, particles: &[Particl
     painter.add(mesh);
 }
 
-/// Returns a warm colour for a young particle and a cold one for an old one.
+/// Returns a warm color for a young particle and a cold one for an old one.
 fn age(age: f32) -> Color32 {
     Color32::from_rgb(255, 214, 92).lerp_to_gamma(Color32::from_rgb(92, 130, 255), age.clamp(0.0, 1.0))
 }
 
 /// Draws the texels of a target. If they are too small, only every n-th line is drawn.
-fn grid(painter: &Painter, rect: Rect, texels: &TargetTexels, colour: Color32) {
+fn grid(painter: &Painter, rect: Rect, texels: &TargetTexels, color: Color32) {
     let pixel = rect.width() / texels.picture.x.max(1) as f32;
     let texel = pixel * texels.scale as f32;
     let every = (MIN_GRID_SPACING / texel).ceil().max(1.0) as u32;
     let place = |x: i32, y: i32| pos2(rect.left() + x as f32 * texel, rect.top() + y as f32 * texel);
     let (start, end) = (texels.origin, texels.origin + texels.size.as_ivec2());
     let shown = Rect::from_two_pos(place(start.x, start.y), place(end.x, end.y));
-    let line = Stroke::new(1.0, colour.gamma_multiply(0.3));
+    let line = Stroke::new(1.0, color.gamma_multiply(0.3));
     for column in (0..=texels.size.x).step_by(every as usize) {
         painter.vline(place(start.x + column as i32, 0).x, shown.y_range(), line);
     }
     for row in (0..=texels.size.y).step_by(every as usize) {
         painter.hline(shown.x_range(), place(0, start.y + row as i32).y, line);
     }
-    painter.rect_stroke(shown, 0.0, Stroke::new(1.0, colour), eframe::egui::StrokeKind::Middle);
+    painter.rect_stroke(shown, 0.0, Stroke::new(1.0, color), eframe::egui::StrokeKind::Middle);
     let UVec2 { x, y } = texels.size;
     let which = if every > 1 { format!(", a line for every {every}") } else { String::new() };
     let text = format!("{x} x {y} texels of {0} x {0} pixels{which}", texels.scale);

@@ -52,9 +52,9 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
 /// Marks the pixel with a cross.
 fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
     let reach = if is_pinned { 9.0 } else { 6.0 };
-    for (width, colour) in [(3.0, Color32::from_black_alpha(150)), (1.0, Color32::WHITE)] {
+    for (width, color) in [(3.0, Color32::from_black_alpha(150)), (1.0, Color32::WHITE)] {
         for way in [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)] {
-            ui.painter().line_segment([at + way * 3.0, at + way * reach], Stroke::new(width, colour));
+            ui.painter().line_segment([at + way * 3.0, at + way * reach], Stroke::new(width, color));
         }
     }
 }
@@ -82,8 +82,8 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
         ui.weak("No smoke here");
     }
     ui.separator();
-    match probe.colour {
-        Some(colour) => picture(ui, colour, *exposure),
+    match probe.color {
+        Some(color) => picture(ui, color, *exposure),
         None => {
             ui.weak("Forward smoke is lit sprite by sprite:\nno texels to inspect");
         }
@@ -115,7 +115,7 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
             ("blended", String::new(), probe.blended.xyz()),
         ] {
             ui.label(title);
-            colour(ui, light);
+            color(ui, light);
             ui.weak(note);
             ui.end_row();
         }
@@ -124,14 +124,14 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
 
 fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
     // Their sums are shown as numbers in any case.
-    let colour = if is_small { hue_swatch } else { colour };
+    let color = if is_small { hue_swatch } else { color };
     ui.label(names.get(light.light).map_or("light", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
     ui.label(format!("{:.3}", light.attenuation));
-    colour(ui, light.diffuse);
+    color(ui, light.diffuse);
     match light.glow {
-        Some(glow) => colour(ui, glow.specular),
+        Some(glow) => color(ui, glow.specular),
         None => {
             ui.weak("none");
         }
@@ -148,7 +148,7 @@ fn gaps(ui: &Ui) -> Vec2 {
 fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
     egui::Grid::new("picture").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
         ui.label("picture, linear");
-        colour(ui, light.xyz());
+        color(ui, light.xyz());
         ui.end_row();
         ui.label("as shown, sRGB");
         let [r, g, b] = srgb_code(light.xyz(), exposure);
@@ -166,16 +166,16 @@ fn hue_swatch(ui: &mut Ui, light: Vec3) {
 }
 
 /// Shows linear light as a swatch and as numbers.
-fn colour(ui: &mut Ui, light: Vec3) {
+fn color(ui: &mut Ui, light: Vec3) {
     ui.horizontal(|ui| {
         hue_swatch(ui, light);
         ui.label(format!("{:.3} {:.3} {:.3}", light.x, light.y, light.z));
     });
 }
 
-fn swatch(ui: &mut Ui, colour: Color32) {
+fn swatch(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
-    ui.painter().rect(rect, 2.0, colour, ui.visuals().widgets.noninteractive.bg_stroke, egui::StrokeKind::Inside);
+    ui.painter().rect(rect, 2.0, color, ui.visuals().widgets.noninteractive.bg_stroke, egui::StrokeKind::Inside);
 }
 
 /// Draws a ball with the normal on it.

@@ -51,18 +51,18 @@ pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
         *split = (*split + moved).clamp(0.02, 0.98);
     }
     let x = (rect.left() + *split * rect.width()).round() + 0.5;
-    let colour = if response.hovered() || response.dragged() || response.has_focus() {
+    let color = if response.hovered() || response.dragged() || response.has_focus() {
         egui::Color32::WHITE
     } else {
         egui::Color32::from_white_alpha(160)
     };
     ui.painter().vline(x - 1.0, rect.y_range(), egui::Stroke::new(1.0, egui::Color32::from_black_alpha(160)));
-    ui.painter().vline(x, rect.y_range(), egui::Stroke::new(1.0, colour));
+    ui.painter().vline(x, rect.y_range(), egui::Stroke::new(1.0, color));
     ui.painter().circle(
         egui::pos2(x, rect.center().y),
         5.0,
         egui::Color32::from_black_alpha(120),
-        egui::Stroke::new(1.0, colour),
+        egui::Stroke::new(1.0, color),
     );
 }
 

@@ -18,7 +18,7 @@ fn a_field_is_set_by_its_name() {
     let scale = picture(&["--scale", "4"]);
     assert_eq!(scale, picture(&["--set", "accumulate.scale=4"]));
     assert_eq!(scale, picture(&["--set", "systems[0].settings.accumulate.scale=4"]));
-    assert_ne!(scale, picture(&["--set", "accumulate.scale=4", "--set", "scatter_colour=1,0,0"]));
+    assert_ne!(scale, picture(&["--set", "accumulate.scale=4", "--set", "scatter_color=1,0,0"]));
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn a_sheet_has_one_image_per_value() {
     }
     assert!(cells[3].pixels().all(|pixel| *pixel == cells[3][(0, 0)]));
     // Values of three numbers.
-    sheet("lights[0].colour=1,0,0;0,1,0");
+    sheet("lights[0].color=1,0,0;0,1,0");
     let line = refusal(folder.path(), &["sheet", "--vary", "emitter.seed=1,b", "-o", "a.png"]);
     assert!(line.contains("--vary emitter.seed: \"b\" is not valid"), "{line}");
 }

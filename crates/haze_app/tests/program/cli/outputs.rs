@@ -67,7 +67,7 @@ fn inputs_are_not_overwritten() {
     }
     assert_eq!(fs::read_to_string(path("shots/my.json")).unwrap(), text);
 
-    let stops = r##"[{"at": 0, "colour": "#000000"}, {"at": 1, "colour": "#ff8000"}]"##;
+    let stops = r##"[{"at": 0, "color": "#000000"}, {"at": 1, "color": "#ff8000"}]"##;
     let ramp = format!(r#"{{"version": 1, "width": 32, "height": 1, "rows": [{{"stops": {stops}}}]}}"#);
     fs::write(path("fire.ramp.json"), &ramp).unwrap();
     fs::hard_link(path("fire.ramp.json"), path("fire.png")).unwrap();
@@ -146,11 +146,11 @@ fn a_failed_write_keeps_the_old_file() {
 fn a_program_killed_during_a_write_keeps_the_old_file() {
     use std::os::unix::process::ExitStatusExt as _;
     let folder = folder();
-    let recipe = |colour: &str| {
+    let recipe = |color: &str| {
         // Every row differs, so that the PNG takes several blocks.
         let row = |row: u32| {
-            let stop = |at: u32, colour: String| format!(r##"{{"at": {at}, "colour": "#{colour}"}}"##);
-            let stops = [stop(0, format!("{colour}{row:02x}")), stop(1, format!("{row:02x}{colour}"))].join(",");
+            let stop = |at: u32, color: String| format!(r##"{{"at": {at}, "color": "#{color}"}}"##);
+            let stops = [stop(0, format!("{color}{row:02x}")), stop(1, format!("{row:02x}{color}"))].join(",");
             format!(r#"{{"at": {}, "stops": [{stops}]}}"#, f64::from(row) / 31.0)
         };
         let rows = (0..32).map(row).collect::<Vec<_>>().join(",");

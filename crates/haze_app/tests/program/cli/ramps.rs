@@ -22,9 +22,8 @@ fn a_ramp_of_very_many_stops_bakes_quickly() {
             let _ =
                 write!(text, r#"{}{{"at": {}, "stops": ["#, if row > 0 { "," } else { "" }, row as f32 / rows as f32);
             for stop in 0..stops {
-                let (at, colour) = (stop as f32 / stops as f32, (row * 7919 + stop * 104_729) % 0x100_0000);
-                let _ =
-                    write!(text, r##"{}{{"at": {at}, "colour": "#{colour:06x}"}}"##, if stop > 0 { "," } else { "" });
+                let (at, color) = (stop as f32 / stops as f32, (row * 7919 + stop * 104_729) % 0x100_0000);
+                let _ = write!(text, r##"{}{{"at": {at}, "color": "#{color:06x}"}}"##, if stop > 0 { "," } else { "" });
             }
             text += "]}";
         }
@@ -114,7 +113,7 @@ fn ramp_check_reports_findings_and_exits_with_1() {
             "specular_grey.png: ends: brightness 90 of 255 at amount 0, the bottom row",
             "specular_grey.png: ends: brightness 90 of 255 at distance 1, the last column",
             "a.png: banding: visible steps at 0.10 across",
-            "age.png: colour_space: transparent texels",
+            "age.png: color_space: transparent texels",
         ]
     );
     let output = haze(folder.path(), &["ramp", "check", "--as", "diffuse", "specular_grey.png"]);
@@ -133,7 +132,7 @@ fn a_ramp_is_shown_as_text_and_as_an_image() {
     let folder = folder();
     stdout_of(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
     let text = stdout_of(folder.path(), &["ramp", "show", "toon.ramp.json"]);
-    // Standard output is not a terminal: no colours, but the curve and the stops.
+    // Standard output is not a terminal: no colors, but the curve and the stops.
     assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
     assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
     stdout_of(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
@@ -158,11 +157,11 @@ fn terminal_output_of(folder: &Path, arguments: &str, no_color: &str) -> String 
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_shows_colours_unless_no_color_is_set() {
+fn a_terminal_shows_colors_unless_no_color_is_set() {
     let folder = folder();
     stdout_of(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
-    let coloured = terminal_output_of(folder.path(), "ramp show toon.ramp.json", "");
-    assert!(coloured.contains("\u{1b}[38;2;43;42;58;48;2;43;42;58m"), "{coloured:?}");
+    let colored = terminal_output_of(folder.path(), "ramp show toon.ramp.json", "");
+    assert!(colored.contains("\u{1b}[38;2;43;42;58;48;2;43;42;58m"), "{colored:?}");
     let plain = terminal_output_of(folder.path(), "ramp show toon.ramp.json", "1");
     assert!(!plain.contains('\u{1b}') && plain.contains("#f6efe2"), "{plain:?}");
 }

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use super::{folder, haze, refusal, stderr};
 
-const COLOUR: &str = include_str!("../../../../../shaders/lib/colour.wgsl");
+const COLOR: &str = include_str!("../../../../../shaders/lib/color.wgsl");
 
 fn write(folder: &Path, text: &str) {
     std::fs::create_dir_all(folder.join("shaders/lib")).unwrap();
-    std::fs::write(folder.join("shaders/lib/colour.wgsl"), text).unwrap();
+    std::fs::write(folder.join("shaders/lib/color.wgsl"), text).unwrap();
 }
 
 #[test]
@@ -21,14 +21,14 @@ fn a_broken_shader_gives_one_line_and_a_valid_one_changes_the_image() {
         assert!(output.status.success(), "{}", stderr(&output));
         std::fs::read(folder.join("a.png")).unwrap()
     };
-    write(folder, COLOUR);
+    write(folder, COLOR);
     let plain = picture();
-    write(folder, &COLOUR.replace("return min(light,", "return min(light * 0.5,"));
+    write(folder, &COLOR.replace("return min(light,", "return min(light * 0.5,"));
     assert_ne!(picture(), plain);
 
-    write(folder, &COLOUR.replace("saturate(light)", "saturat(light)"));
-    let line = COLOUR.lines().position(|line| line.contains("saturate(light)")).unwrap() + 1;
-    let said = format!("haze: shaders/lib/colour.wgsl:{line}:17: no definition in scope for identifier: `saturat`\n");
+    write(folder, &COLOR.replace("saturate(light)", "saturat(light)"));
+    let line = COLOR.lines().position(|line| line.contains("saturate(light)")).unwrap() + 1;
+    let said = format!("haze: shaders/lib/color.wgsl:{line}:17: no definition in scope for identifier: `saturat`\n");
     assert_eq!(refusal(folder, &arguments), said);
     for command in ["shade-tree", "techniques"] {
         assert_eq!(refusal(folder, &[command, "--size", "64x36", "--shaders", "shaders", "-o", "b.png"]), said);
@@ -40,7 +40,7 @@ fn a_broken_shader_gives_one_line_and_a_valid_one_changes_the_image() {
 #[test]
 fn shaders_need_a_gpu() {
     let folder = folder();
-    write(folder.path(), COLOUR);
+    write(folder.path(), COLOR);
     let said = refusal(folder.path(), &["render", "--shaders", "shaders", "--backend", "cpu", "-o", "a.png"]);
     assert_eq!(
         said,

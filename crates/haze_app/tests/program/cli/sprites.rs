@@ -33,8 +33,8 @@ fn sprite_check_reports_findings_and_exits_with_1() {
     let mut turned = sheet.clone();
     turned.pixels_mut().for_each(|texel| texel.0[1] = 255 - texel.0[1]);
     turned.save(folder.path().join("down.png")).unwrap();
-    let colours = image::RgbaImage::from_pixel(8, 8, image::Rgba([250, 120, 20, 255]));
-    colours.save(folder.path().join("fire.png")).unwrap();
+    let colors = image::RgbaImage::from_pixel(8, 8, image::Rgba([250, 120, 20, 255]));
+    colors.save(folder.path().join("fire.png")).unwrap();
     let output = haze(folder.path(), &["sprite", "check", "--columns", "4", "--rows", "2", "down.png"]);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(text.starts_with("down.png: y_down: green points down, "), "{text}");
@@ -94,7 +94,7 @@ fn images_of_other_kinds_are_imported_as_sprites() {
     fire.save(folder.path().join("fire.png")).unwrap();
     let text = said(&["fire.png", "-o", "a.png"]);
     assert!(
-        text.contains("  colours, not normals; ") && text.contains("; set --from to the contents of the image"),
+        text.contains("  colors, not normals; ") && text.contains("; set --from to the contents of the image"),
         "{text}"
     );
     // Options that would be ignored are refused.

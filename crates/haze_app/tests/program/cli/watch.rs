@@ -58,13 +58,13 @@ impl Drop for Watching {
     }
 }
 
-fn recipe(colour: u32) -> String {
+fn recipe(color: u32) -> String {
     format!(
-        r##"{{"version": 1, "width": 2, "height": 1, "rows": [{{"stops": [{{"at": 0, "colour": "#{colour:06x}"}}]}}]}}"##
+        r##"{{"version": 1, "width": 2, "height": 1, "rows": [{{"stops": [{{"at": 0, "color": "#{color:06x}"}}]}}]}}"##
     )
 }
 
-fn colour(path: &Path) -> u32 {
+fn color(path: &Path) -> u32 {
     let [r, g, b] = haze::image::read_png(path).unwrap().to_rgb8()[(0, 0)].0;
     u32::from_be_bytes([0, r, g, b])
 }
@@ -73,7 +73,7 @@ fn colour(path: &Path) -> u32 {
 fn every_way_of_saving_bakes_once() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
-    let save = |name: &str, colour| fs::write(path(name), recipe(colour)).unwrap();
+    let save = |name: &str, color| fs::write(path(name), recipe(color)).unwrap();
     save("a.ramp.json", 1);
     save("b.ramp.json", 1);
     let watching = Watching::new(folder.path(), &["a.ramp.json", "./b.ramp.json"]);
@@ -100,19 +100,19 @@ fn every_way_of_saving_bakes_once() {
         }),
     ];
     for (what, way) in ways {
-        let before = colour(&path("a.png"));
+        let before = color(&path("a.png"));
         way();
         watching.says("a.png: 2x1", what);
-        assert_eq!(colour(&path("a.png")), before + 1, "{what}");
+        assert_eq!(color(&path("a.png")), before + 1, "{what}");
     }
-    assert_eq!(colour(&path("b.png")), 1);
+    assert_eq!(color(&path("b.png")), 1);
     // An error is reported, and the image stays.
     fs::write(path("a.ramp.json"), "{").unwrap();
     watching.says("haze: a.ramp.json:1:1", "broken");
-    assert_eq!(colour(&path("a.png")), 5);
+    assert_eq!(color(&path("a.png")), 5);
     save("a.ramp.json", 6);
     watching.says("a.png: 2x1", "mended");
-    assert_eq!(colour(&path("a.png")), 6);
+    assert_eq!(color(&path("a.png")), 6);
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn recipes_of_a_folder_are_followed_and_painted_images_are_kept() {
     watching.is_still("a file of another kind, and a deleted recipe");
     fs::write(path("new.ramp.json"), recipe(8)).unwrap();
     watching.says("./new.png: 2x1", "back");
-    assert_eq!(colour(&path("new.png")), 8);
+    assert_eq!(color(&path("new.png")), 8);
     assert_eq!(fs::read(path("painted.png")).unwrap(), picture);
     fs::write(path("painted.ramp.json"), recipe(2)).unwrap();
     watching.says("./painted.png: 2x1", "saved");
@@ -154,7 +154,7 @@ fn painted_images_are_kept_and_baked_ones_are_replaced_after_a_restart() {
     watching.says(kept, "a painted image");
     fs::write(path("a.ramp.json"), recipe(2)).unwrap();
     watching.says(kept, "a saved recipe");
-    assert_eq!(colour(&path("a.png")), 0x09_0909);
+    assert_eq!(color(&path("a.png")), 0x09_0909);
     fs::remove_file(path("a.png")).unwrap();
     fs::write(path("a.ramp.json"), recipe(3)).unwrap();
     watching.says("a.png: 2x1", "a deleted image");
@@ -164,12 +164,12 @@ fn painted_images_are_kept_and_baked_ones_are_replaced_after_a_restart() {
     fs::write(path("a.ramp.json"), recipe(4)).unwrap();
     let watching = Watching::new(folder.path(), &["a.ramp.json"]);
     watching.says("a.png: 2x1", "restarted");
-    assert_eq!(colour(&path("a.png")), 4);
+    assert_eq!(color(&path("a.png")), 4);
     // An image that is painted over while its recipe is watched.
     paint("a.png");
     fs::write(path("a.ramp.json"), recipe(5)).unwrap();
     watching.says(kept, "painted over");
-    assert_eq!(colour(&path("a.png")), 0x09_0909);
+    assert_eq!(color(&path("a.png")), 0x09_0909);
 }
 
 #[test]

@@ -69,7 +69,7 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
         is_lit && !settings.is_six_way() && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
     let by_amount = settings.soft_scatter.intensity > 0.0 && settings.soft_scatter.mode == SoftScatterMode::Ramp;
     let others = if is_forward {
-        settings.sprite.age_colour > 0.0
+        settings.sprite.age_color > 0.0
     } else {
         settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0
     };

@@ -32,7 +32,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "forward only",
         |s, _| !s.settings.is_forward(),
-        &["settings.blend_mode", "settings.sprite.age_colour", "material.age_ramp"],
+        &["settings.blend_mode", "settings.sprite.age_color", "material.age_ramp"],
     ),
     rule(
         "deferred only",
@@ -77,7 +77,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.sprite.motion",
             "settings.sprite.debug_sprite",
             "settings.lighting",
-            "settings.diffuse.six_way_colour",
+            "settings.diffuse.six_way_color",
             "settings.diffuse.six_way_anisotropy",
             "material.sprite",
             "material.detail",
@@ -139,7 +139,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &[
             "settings.sprite.motion",
             "settings.lighting",
-            "settings.diffuse.six_way_colour",
+            "settings.diffuse.six_way_color",
             "settings.diffuse.six_way_anisotropy",
             "material.six_way",
         ],
@@ -162,7 +162,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "only with lighting six_way",
         |s, _| !s.settings.is_six_way(),
-        &["settings.diffuse.six_way_colour", "settings.diffuse.six_way_anisotropy", "material.six_way"],
+        &["settings.diffuse.six_way_color", "settings.diffuse.six_way_anisotropy", "material.six_way"],
     ),
     rule(
         "sprite.debug_sprite shows one checkerboard for all frames",
@@ -201,14 +201,14 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &["settings.volumetric.scroll_speed", "emitter.frame_rate", "cache.flipbook_rate"],
     ),
     rule("nothing moves: frame_rate and scroll_speed are 0", has_no_animation, &["settings.sprite.freeze_animation"]),
-    rule("only at an age_colour above 0", |s, _| s.settings.sprite.age_colour <= 0.0, &["material.age_ramp"]),
+    rule("only at an age_color above 0", |s, _| s.settings.sprite.age_color <= 0.0, &["material.age_ramp"]),
     rule(
         "only at an intensity of diffuse light above 0",
         |s, _| s.settings.diffuse.intensity <= 0.0,
         &[
             "settings.diffuse.mode",
             "settings.diffuse.backlight",
-            "settings.diffuse.six_way_colour",
+            "settings.diffuse.six_way_color",
             "settings.diffuse.six_way_anisotropy",
             "material.diffuse_ramp",
             "material.backlight_ramp",
@@ -228,8 +228,8 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.soft_scatter.mode",
             "settings.soft_scatter.scatter_amount",
             "settings.soft_scatter.scatter_smooth",
-            "settings.soft_scatter.scatter_colour",
-            "settings.soft_scatter.ambient_colour",
+            "settings.soft_scatter.scatter_color",
+            "settings.soft_scatter.ambient_color",
             "material.soft_scatter_ramp",
         ],
     ),
@@ -239,8 +239,8 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &[
             "settings.soft_scatter.scatter_amount",
             "settings.soft_scatter.scatter_smooth",
-            "settings.soft_scatter.scatter_colour",
-            "settings.soft_scatter.ambient_colour",
+            "settings.soft_scatter.scatter_color",
+            "settings.soft_scatter.ambient_color",
         ],
     ),
     rule(

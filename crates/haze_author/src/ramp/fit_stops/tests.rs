@@ -31,8 +31,8 @@ fn every_built_in_ramp_is_reproduced_by_its_fit() {
     }
 }
 
-fn strip(colour: impl Fn(u32) -> [u16; 3]) -> DynamicImage {
-    DynamicImage::ImageRgb16(ImageBuffer::from_fn(256, 1, |x, _| Rgb(colour(x))))
+fn strip(color: impl Fn(u32) -> [u16; 3]) -> DynamicImage {
+    DynamicImage::ImageRgb16(ImageBuffer::from_fn(256, 1, |x, _| Rgb(color(x))))
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn hard_edges_are_preserved() {
     let stops = &fitted.recipe.rows[0].stops;
     assert!(off <= DEFAULT_MAX_ERROR && stops.windows(2).any(|pair| (pair[1].at - pair[0].at).abs() < 1.0e-9));
 
-    // A dark line, alternating texels, noise, a single colour.
+    // A dark line, alternating texels, noise, a single color.
     let hash = |x: u32| (x.wrapping_mul(2_654_435_761) >> 16) as u16;
     let ink = strip(|x| if x == 77 { [0; 3] } else { [(x * 250) as u16, 30000, 65535] });
     let comb = strip(|x| [if x % 2 == 0 { 65535 } else { 0 }, 0, 0]);
@@ -62,7 +62,7 @@ fn hard_edges_are_preserved() {
         assert!(off <= 4.0, "{name}: {off}");
     }
     let (flat, _) = fit_and_bake("flat", &strip(|_| [257 * 7; 3]));
-    assert_eq!(flat.recipe.rows[0].stops, [RampStop::new(0.0, HexColour([7; 3]))]);
+    assert_eq!(flat.recipe.rows[0].stops, [RampStop::new(0.0, HexColor([7; 3]))]);
     // Hard edges between rows.
     let steps = DynamicImage::ImageRgb16(ImageBuffer::from_fn(64, 48, |x, y| {
         Rgb([if y < 20 { 60000 } else { 900 * x as u16 }, (x / 20 * 15000) as u16, 0])

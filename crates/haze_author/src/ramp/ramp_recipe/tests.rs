@@ -3,18 +3,18 @@ use crate::deterministic_math::tests::hash;
 use crate::ramp::blend_space::srgb_from_linear;
 
 fn recipe(stops: &[(f32, &str)]) -> RampRecipe {
-    let stop = |&(at, colour): &(f32, &str)| RampStop::new(at, colour.to_owned().try_into().unwrap());
+    let stop = |&(at, color): &(f32, &str)| RampStop::new(at, color.to_owned().try_into().unwrap());
     let stops = stops.iter().map(stop).collect();
     RampRecipe { width: 64, rows: vec![RampRow { stops, ..RampRow::default() }], ..RampRecipe::default() }
 }
 
 #[test]
-fn a_gradient_has_the_exact_colours_of_its_stops() {
+fn a_gradient_has_the_exact_colors_of_its_stops() {
     let recipe = recipe(&[(0.0, "#102030"), (0.3, "#ff8040"), (1.0, "#ffffff")]);
     for stop in &recipe.rows[0].stops {
-        let colour = recipe.gradient().unwrap().sample(stop.at, 0.0);
-        for (channel, expected) in colour.to_array().into_iter().zip(stop.colour.0) {
-            assert!((srgb_from_linear(channel) * 255.0 - f32::from(expected)).abs() < 0.5, "{colour}");
+        let color = recipe.gradient().unwrap().sample(stop.at, 0.0);
+        for (channel, expected) in color.to_array().into_iter().zip(stop.color.0) {
+            assert!((srgb_from_linear(channel) * 255.0 - f32::from(expected)).abs() < 0.5, "{color}");
         }
     }
     let picture = recipe.bake().unwrap().to_rgb8();
@@ -38,8 +38,8 @@ fn stops_that_almost_coincide_form_an_edge() {
     for gap in [f32::from_bits(1), 1.0e-20, 1.0e-7] {
         let recipe = recipe(&[(0.0, "#000000"), (gap, "#404040"), (2.0 * gap, "#808080"), (1.0, "#ffffff")]);
         for u in [0.0, gap / 2.0, gap, 1.5 * gap, 2.0 * gap, 3.0 * gap, 0.5] {
-            let colour = recipe.gradient().unwrap().sample(u, 0.0);
-            assert!(colour.is_finite() && colour.max_element() < 1.001, "{gap:e} {u:e}: {colour}");
+            let color = recipe.gradient().unwrap().sample(u, 0.0);
+            assert!(color.is_finite() && color.max_element() < 1.001, "{gap:e} {u:e}: {color}");
         }
         assert!(recipe.gradient().unwrap().sample(0.5, 0.0).x > 0.05);
     }
@@ -49,7 +49,7 @@ fn stops_that_almost_coincide_form_an_edge() {
 fn baking_time_does_not_grow_with_the_number_of_stops_and_rows() {
     let rows = |rows: u32, stops: u32| {
         let place = |index: u32, count: u32| index as f32 / count as f32;
-        let stop = |index| RampStop::new(place(index, stops), HexColour([index as u8; 3]));
+        let stop = |index| RampStop::new(place(index, stops), HexColor([index as u8; 3]));
         let stops: Vec<_> = (0..stops).map(stop).collect();
         let row = |index| RampRow { at: place(index, rows), stops: stops.clone(), ..RampRow::default() };
         let rows = (0..rows).map(row).collect();
@@ -65,16 +65,13 @@ fn baking_time_does_not_grow_with_the_number_of_stops_and_rows() {
 #[test]
 fn rows_are_interpolated_like_stops_along_a_row() {
     let mut tall = recipe(&[(0.0, "#102030"), (1.0, "#ff8040")]);
-    let stops = |colour: &str| vec![RampStop::new(0.0, colour.to_owned().try_into().unwrap())];
-    let colours = ["#000000", "#404040", "#505050", "#606060", "#ffffff"];
-    let row = |(index, colour): (usize, &&str)| RampRow {
-        at: index as f32 / 4.0,
-        stops: stops(colour),
-        ..RampRow::default()
-    };
-    tall.rows = colours.iter().enumerate().map(row).collect();
-    // The same colours as stops of one row.
-    let long = recipe(&[0, 1, 2, 3, 4].map(|index| (index as f32 / 4.0, colours[index])));
+    let stops = |color: &str| vec![RampStop::new(0.0, color.to_owned().try_into().unwrap())];
+    let colors = ["#000000", "#404040", "#505050", "#606060", "#ffffff"];
+    let row =
+        |(index, color): (usize, &&str)| RampRow { at: index as f32 / 4.0, stops: stops(color), ..RampRow::default() };
+    tall.rows = colors.iter().enumerate().map(row).collect();
+    // The same colors as stops of one row.
+    let long = recipe(&[0, 1, 2, 3, 4].map(|index| (index as f32 / 4.0, colors[index])));
     for step in 0..=64 {
         let at = step as f32 / 64.0;
         assert_eq!(tall.gradient().unwrap().sample(0.3, at), long.gradient().unwrap().sample(at, 0.0), "{at}");
@@ -96,15 +93,15 @@ fn the_largest_baked_image_can_be_read() {
 
 #[test]
 fn stops_are_sorted_stably_and_invalid_ones_are_refused_by_name() {
-    let colour = |recipe: &RampRecipe, u: f32| {
-        HexColour::from_srgb(recipe.gradient().unwrap().sample(u, 0.0).map(srgb_from_linear)).0[0]
+    let color = |recipe: &RampRecipe, u: f32| {
+        HexColor::from_srgb(recipe.gradient().unwrap().sample(u, 0.0).map(srgb_from_linear)).0[0]
     };
     let mixed = recipe(&[(1.0, "#ffffff"), (0.5, "#404040"), (0.0, "#000000"), (0.5, "#555555"), (0.5, "#808080")]);
     let sorted = recipe(&[(0.0, "#000000"), (0.5, "#404040"), (0.5, "#555555"), (0.5, "#808080"), (1.0, "#ffffff")]);
     assert_eq!(mixed.bake().unwrap(), sorted.bake().unwrap());
     // Of several stops at one position, the first ends the gradient below and the last begins the gradient above.
-    assert_eq!((colour(&mixed, 0.499_999), colour(&mixed, 0.5)), (0x40, 0x80));
-    assert_eq!(colour(&recipe(&[(0.3, "#123456")]), 0.9), 0x12);
+    assert_eq!((color(&mixed, 0.499_999), color(&mixed, 0.5)), (0x40, 0x80));
+    assert_eq!(color(&recipe(&[(0.3, "#123456")]), 0.9), 0x12);
 
     let refused = |at: f32| recipe(&[(0.5, "#000000"), (at, "#ffffff")]).validate().unwrap_err().to_string();
     for (at, text) in [(f32::NAN, "NaN"), (-0.1, "-0.1"), (1.1, "1.1"), (f32::INFINITY, "inf")] {
@@ -112,18 +109,18 @@ fn stops_are_sorted_stably_and_invalid_ones_are_refused_by_name() {
     }
     assert_eq!(recipe(&[]).validate().unwrap_err().field, "rows[0].stops");
     assert_eq!(RampRecipe { rows: Vec::new(), ..recipe(&[]) }.bake().unwrap_err().field, "rows");
-    assert!(HexColour::try_from("red".to_owned()).unwrap_err().contains("#rrggbb"));
+    assert!(HexColor::try_from("red".to_owned()).unwrap_err().contains("#rrggbb"));
     for bad in ["#12é45", "#+1+2+3", "#12345", "#1234567", "123456", "#12 456"] {
-        assert!(HexColour::try_from(bad.to_owned()).is_err(), "{bad}");
+        assert!(HexColor::try_from(bad.to_owned()).is_err(), "{bad}");
     }
-    assert_eq!(HexColour::try_from("#0aFf80".to_owned()), Ok(HexColour([0x0a, 0xff, 0x80])));
+    assert_eq!(HexColor::try_from("#0aFf80".to_owned()), Ok(HexColor([0x0a, 0xff, 0x80])));
 }
 
 #[test]
 fn rows_are_sorted_stably() {
-    let row = |at: f32, colour: [u8; 3]| RampRow {
+    let row = |at: f32, color: [u8; 3]| RampRow {
         at,
-        stops: vec![RampStop::new(0.0, HexColour(colour))],
+        stops: vec![RampStop::new(0.0, HexColor(color))],
         ..RampRow::default()
     };
     let rows = vec![row(1.0, [9; 3]), row(0.5, [5; 3]), row(0.0, [1; 3]), row(0.5, [6; 3])];
@@ -162,7 +159,7 @@ fn every_blend_space_gives_its_midpoint() {
     let at = |blend: Blend, from: &str, to: &str, u: f32| {
         let mut recipe = RampRecipe { blend, ..recipe(&[(0.0, from), (1.0, to)]) };
         recipe.rows[0].stops[0].curve = Curve::Linear;
-        HexColour::from_srgb(recipe.gradient().unwrap().sample(u, 0.0).map(srgb_from_linear)).0
+        HexColor::from_srgb(recipe.gradient().unwrap().sample(u, 0.0).map(srgb_from_linear)).0
     };
     let middle = |blend, from, to| at(blend, from, to, 0.5);
     assert_eq!(middle(Blend::Srgb, "#ff0000", "#0000ff"), [128, 0, 128]);
@@ -179,7 +176,7 @@ fn every_blend_space_gives_its_midpoint() {
 
 #[test]
 fn the_place_formula_and_the_times_gradient_vary_along_both_axes() {
-    let stop = |at, grey| RampStop { curve: Curve::Linear, ..RampStop::new(at, HexColour([grey; 3])) };
+    let stop = |at, grey| RampStop { curve: Curve::Linear, ..RampStop::new(at, HexColor([grey; 3])) };
     let rows = vec![RampRow { stops: vec![stop(0.0, 0), stop(1.0, 255)], ..RampRow::default() }];
     let plain = RampRecipe { blend: Blend::Linear, height: 64, rows, ..RampRecipe::default() };
     let times = vec![stop(0.0, 255), stop(1.0, 0)];
@@ -193,7 +190,7 @@ fn the_place_formula_and_the_times_gradient_vary_along_both_axes() {
 }
 
 #[test]
-fn eight_bits_are_dithered_and_exact_colours_stay() {
+fn eight_bits_are_dithered_and_exact_colors_stay() {
     let slope = RampRecipe { bits: 8, width: 1024, ..recipe(&[(0.0, "#101010"), (1.0, "#141414")]) };
     let (fine, coarse) = (RampRecipe { bits: 16, ..slope.clone() }.bake().unwrap(), slope.bake().unwrap());
     assert_eq!((fine.color().bits_per_pixel(), coarse.color().bits_per_pixel()), (48, 24));
@@ -211,13 +208,13 @@ fn eight_bits_are_dithered_and_exact_colours_stay() {
 
 /// A recipe that uses every field.
 fn rich() -> RampRecipe {
-    let stops = |colours: [&str; 4]| {
+    let stops = |colors: [&str; 4]| {
         let at = [0.0, 0.25, 0.25, 0.8];
-        let stop = |(colour, index): (&str, usize)| RampStop {
+        let stop = |(color, index): (&str, usize)| RampStop {
             curve: Curve::ALL[index],
-            ..RampStop::new(at[index], colour.to_owned().try_into().unwrap())
+            ..RampStop::new(at[index], color.to_owned().try_into().unwrap())
         };
-        colours.into_iter().zip(0..).map(stop).collect::<Vec<_>>()
+        colors.into_iter().zip(0..).map(stop).collect::<Vec<_>>()
     };
     let row = |(index, blue): (usize, &str)| RampRow {
         at: index as f32 / 3.0,
@@ -247,7 +244,7 @@ fn a_written_recipe_is_read_back_equal() {
     let recipe = RampRecipe { bits: 8, blend: Blend::HsvFar, ..rich() };
     let text = recipe.to_text();
     assert_eq!(RampRecipe::parse(Path::new("a.ramp.json"), &text).unwrap(), recipe);
-    assert!(text.contains("\n        { \"at\": 0.25, \"colour\": \"#ff8040\", \"curve\": \"linear\" },\n"), "{text}");
+    assert!(text.contains("\n        { \"at\": 0.25, \"color\": \"#ff8040\", \"curve\": \"linear\" },\n"), "{text}");
     let plain = RampRecipe::default().to_text();
     let expected = r##"{
   "version": 1,
@@ -257,7 +254,7 @@ fn a_written_recipe_is_read_back_equal() {
     {
       "at": 0.0,
       "stops": [
-        { "at": 0.0, "colour": "#000000" }
+        { "at": 0.0, "color": "#000000" }
       ]
     }
   ]
@@ -268,7 +265,7 @@ fn a_written_recipe_is_read_back_equal() {
 
 #[test]
 fn other_versions_are_refused() {
-    let row = r##""rows": [{"stops": [{"at": 0, "colour": "#000000"}]}]"##;
+    let row = r##""rows": [{"stops": [{"at": 0, "color": "#000000"}]}]"##;
     let parse = |version: u32| {
         let text = format!(r#"{{"version": {version}, "width": 8, "height": 1, {row}}}"#);
         RampRecipe::parse(Path::new("a.ramp.json"), &text).map_err(|error| error.to_string())

@@ -5,8 +5,8 @@ use glam::Vec3;
 use super::normal_equations::{NormalEquations, knots};
 use super::traced_puff::{Puff, Texel};
 use crate::ramp::blend_space::srgb_from_linear;
-use crate::ramp::ramp_recipe::{Blend, Curve, HexColour, RampRecipe, RampRow, RampStop};
-use haze::formula::colour::luminance;
+use crate::ramp::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
+use haze::formula::color::luminance;
 use haze::formula::lighting::backlight_weight;
 
 /// Number of free parameters of a fit.
@@ -106,8 +106,8 @@ fn recipe(values: &[Vec3], stops: usize, exposure: f32) -> RampRecipe {
     let share = |index: usize, count: usize| if count > 1 { index as f32 / (count - 1) as f32 } else { 0.0 };
     let stop = |(index, &value): (usize, &Vec3)| {
         let code = (value / exposure).to_array().map(srgb_from_linear);
-        let colour = HexColour::from_srgb(Vec3::from(code));
-        RampStop { curve: Curve::Linear, ..RampStop::new(share(index, stops), colour) }
+        let color = HexColor::from_srgb(Vec3::from(code));
+        RampStop { curve: Curve::Linear, ..RampStop::new(share(index, stops), color) }
     };
     let row = |(index, values): (usize, &[Vec3])| RampRow {
         at: share(index, rows),

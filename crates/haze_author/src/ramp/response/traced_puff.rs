@@ -8,7 +8,7 @@ use crate::sprite::bake::SpriteRecipe;
 use crate::sprite::six_way::BakedSixWay;
 use haze::assets::image::Image;
 use haze::assets::ramp::Ramp;
-use haze::formula::colour::luminance;
+use haze::formula::color::luminance;
 use haze::formula::lighting::{backlight_weight, diffuse_coordinate};
 use haze::formula::ramp::sample_ramp_2d;
 use haze::formula::six_way::{six_way_from_texel, six_way_response};
@@ -115,7 +115,7 @@ impl Puff {
             };
             let (positive, negative) = (half(at.y), half(at.y + size.y));
             let response = six_way_response(positive, negative, self.lights[light], maps.anisotropy);
-            picture.texels[texel.index] = maps.colour * (response * texel.coverage);
+            picture.texels[texel.index] = maps.color * (response * texel.coverage);
         }
         picture
     }

@@ -31,17 +31,17 @@ pub fn quantise_detail(frame: &mut Image<Rgba<u8>>, tolerance: u32) {
 
 /// Near-lossless coding as in JPEG-LS, with the predictor of PNG's Paeth filter: a channel takes the predicted value if
 /// that is within tolerance. Clear texels stay clear.
-fn shrink(frame: &mut Image<Rgba<u8>>, of_amount: i32, of_colour: impl Fn(IVec2) -> i32) {
+fn shrink(frame: &mut Image<Rgba<u8>>, of_amount: i32, of_color: impl Fn(IVec2) -> i32) {
     for index in 0..frame.texels.len() as u32 {
         let at = UVec2::new(index % frame.size.x, index / frame.size.x).as_ivec2();
         let texel = frame.load(at).0;
         let near = |offset: IVec2| if (at - offset).min_element() < 0 { [0; 4] } else { frame.load(at - offset).0 };
         let [left, up, corner] = [IVec2::X, IVec2::Y, IVec2::ONE].map(near);
         let of_amount = if texel[3] == 0 { 0 } else { of_amount };
-        let of_colour = of_colour(at);
+        let of_color = of_color(at);
         frame.texels[index as usize].0 = [0, 1, 2, 3].map(|channel| {
             let [left, up, corner] = [left, up, corner].map(|near| i32::from(near[channel]));
-            let tolerance = if channel == 3 { of_amount } else { of_colour };
+            let tolerance = if channel == 3 { of_amount } else { of_color };
             quantized(i32::from(texel[channel]), paeth(left, up, corner), tolerance)
         });
     }

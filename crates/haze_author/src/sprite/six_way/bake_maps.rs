@@ -19,8 +19,8 @@ pub struct BakedSixWay {
     pub picture: RgbaImage,
     /// Value for `diffuse.intensity` that makes the smoke as bright as the medium relative to white paper.
     pub intensity: f32,
-    /// Value for `diffuse.six_way_colour`.
-    pub colour: Vec3,
+    /// Value for `diffuse.six_way_color`.
+    pub color: Vec3,
     /// Value for `diffuse.six_way_anisotropy`.
     pub anisotropy: f32,
 }
@@ -73,9 +73,9 @@ impl SpriteRecipe {
             let half = &halves[(2 * frame + row / self.rows) as usize];
             half.load(UVec2::new(x % self.size, y % self.size).as_ivec2())
         });
-        let (colour, anisotropy) = mix.map_or((Vec3::ONE, 0.0), |mix| (mix.colour, mix.anisotropy));
-        let brightest = colour.max_element();
-        Ok(BakedSixWay { picture, intensity: white * brightest, colour: colour / brightest, anisotropy })
+        let (color, anisotropy) = mix.map_or((Vec3::ONE, 0.0), |mix| (mix.color, mix.anisotropy));
+        let brightest = color.max_element();
+        Ok(BakedSixWay { picture, intensity: white * brightest, color: color / brightest, anisotropy })
     }
 }
 

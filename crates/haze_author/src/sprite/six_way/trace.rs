@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::deterministic_math::cos_sin;
 use crate::path_trace::{DensityVolume, Medium, PathTrace, PathTraceResult};
 use haze::assets::image::Image;
-use haze::formula::colour::luminance;
+use haze::formula::color::luminance;
 use haze::formula::six_way::{SixWay, six_way_axis_weights};
 
 /// Six-way light of a puff of a medium.
@@ -15,15 +15,15 @@ pub struct TracedSixWay {
     pub light: Image<SixWay>,
     /// Coverage: the fraction of the background that is hidden.
     pub coverage: Image<f32>,
-    /// Mix and colour of the six images.
+    /// Mix and color of the six images.
     pub mix: SixWayMix,
 }
 
 /// Fitted parameters that represent light from any direction by six images.
 #[derive(Clone, Debug)]
 pub struct SixWayMix {
-    /// Colour of the light, normalised to luminance 1: `diffuse.six_way_colour` up to a factor.
-    pub colour: Vec3,
+    /// Color of the light, normalised to luminance 1: `diffuse.six_way_color` up to a factor.
+    pub color: Vec3,
     /// `diffuse.six_way_anisotropy`.
     pub anisotropy: f32,
     /// Weight of each traced light for each side: right, top, front, left, bottom, back.
@@ -67,8 +67,8 @@ impl SixWayMix {
         let SixWayFit { anisotropy, sides, .. } =
             fits.fold(plain, |best, fit| if fit.error < best.error { fit } else { best });
         // Every light has the same weight, regardless of brightness.
-        let colour: Vec3 = means.iter().zip(&brightness).map(|(&mean, &brightness)| mean / brightness as f32).sum();
-        Self { colour: colour / luminance(colour).max(f32::MIN_POSITIVE), anisotropy, sides }
+        let color: Vec3 = means.iter().zip(&brightness).map(|(&mean, &brightness)| mean / brightness as f32).sum();
+        Self { color: color / luminance(color).max(f32::MIN_POSITIVE), anisotropy, sides }
     }
 }
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 use eframe::egui::{Event, Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use haze::image::{CompressionEffort, read_colour_png, write_png};
+use haze::image::{CompressionEffort, read_color_png, write_png};
 use haze::preset::{AssetFolders, Preset};
 use haze::ramp::Ramp;
 use haze::settings::DebugView;
@@ -208,7 +208,7 @@ fn stops_are_pasted_into_a_focused_editor_and_presets_elsewhere() {
     let mut harness = folder.open();
     harness.get_by_label("stop 1").focus();
     harness.run_steps(3);
-    let text = r##"{ "stops": [{ "at": 0.5, "colour": "#804020" }] }"##;
+    let text = r##"{ "stops": [{ "at": 0.5, "color": "#804020" }] }"##;
     harness.event(Event::Paste(text.into()));
     harness.run_steps(4);
     assert_eq!(folder.recipe().rows[0].stops.len(), 1);
@@ -222,13 +222,13 @@ fn stops_are_pasted_into_a_focused_editor_and_presets_elsewhere() {
 }
 
 #[test]
-fn a_stop_takes_a_colour_from_the_image() {
+fn a_stop_takes_a_color_from_the_image() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let pixel = harness.get_by_label("viewport").rect().center();
     let camera = harness.state().session.document.preset.camera;
     let [r, g, b, _] = picture(&mut harness).get_pixel(pixel.x as u32, pixel.y as u32).0;
-    harness.get_by_label("Take a colour").click();
+    harness.get_by_label("Take a color").click();
     wait(&mut harness);
     harness.hover_at(pixel);
     harness.step();
@@ -236,20 +236,20 @@ fn a_stop_takes_a_colour_from_the_image() {
     harness.step();
     harness.drop_at(pixel);
     wait(&mut harness);
-    let taken = folder.recipe().rows[0].stops[0].colour.0;
+    let taken = folder.recipe().rows[0].stops[0].color.0;
     assert!(taken.iter().zip([r, g, b]).all(|(a, b)| a.abs_diff(b) < 3), "{taken:?} {:?}", [r, g, b]);
-    assert_ne!(taken, Template::find("neutral").unwrap().recipe().rows[0].stops[0].colour.0);
+    assert_ne!(taken, Template::find("neutral").unwrap().recipe().rows[0].stops[0].color.0);
     assert!(folder.is_baked());
-    assert_eq!(harness.state().session.document.history().undo_name(), Some("colour of a stop: mine.png"));
+    assert_eq!(harness.state().session.document.history().undo_name(), Some("color of a stop: mine.png"));
     // The eyedropper takes the click and Escape; the viewport does not react.
     assert_eq!(harness.state().session.document.preset.camera, camera);
     harness.state_mut().session.view.debug_view = DebugView::Normals;
-    harness.get_by_label("Take a colour").click();
+    harness.get_by_label("Take a color").click();
     harness.run_steps(2);
     press(&mut harness, Key::Escape, Modifiers::NONE);
     assert_eq!(harness.state().session.view.debug_view, DebugView::Normals);
     press(&mut harness, Key::Z, Modifiers::COMMAND);
-    assert_ne!(folder.recipe().rows[0].stops[0].colour.0, taken);
+    assert_ne!(folder.recipe().rows[0].stops[0].color.0, taken);
 }
 
 /// `HAZE_LOOK=DIR` names the folder to write to.

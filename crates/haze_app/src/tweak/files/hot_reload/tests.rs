@@ -18,7 +18,7 @@ use crate::tweak::window::testing::{brightness, picture, window_with};
 #[cfg(target_os = "linux")]
 mod soak;
 
-const COLOUR: &str = include_str!("../../../../../../shaders/lib/colour.wgsl");
+const COLOR: &str = include_str!("../../../../../../shaders/lib/color.wgsl");
 
 /// Preset with a ramp of its own in a temporary folder, and a window that shows it.
 struct Bench {
@@ -33,7 +33,7 @@ impl Bench {
         preset.systems[0].material.diffuse_ramp = "mine.png".into();
         fs::write(folder.path().join("my.json"), preset.to_text("")).unwrap();
         fs::create_dir_all(folder.path().join("shaders/lib")).unwrap();
-        fs::write(folder.path().join("shaders/lib/colour.wgsl"), COLOUR).unwrap();
+        fs::write(folder.path().join("shaders/lib/color.wgsl"), COLOR).unwrap();
         write_ramp(folder.path(), 200);
         let path = folder.path().join("my.json");
         let shaders = ShaderFolder::Given(folder.path().join("shaders"));
@@ -206,15 +206,15 @@ fn a_changed_preset_file_is_loaded_unless_there_are_unsaved_changes() {
 fn a_saved_shader_is_used_and_an_error_is_reported_with_its_line() {
     let mut bench = Bench::new(SIZE);
     let before = bench.shown();
-    let write = |bench: &Bench, text: &str| fs::write(bench.path("shaders/lib/colour.wgsl"), text).unwrap();
-    write(&bench, &COLOUR.replace("saturate(light)", "saturat(light)"));
+    let write = |bench: &Bench, text: &str| fs::write(bench.path("shaders/lib/color.wgsl"), text).unwrap();
+    write(&bench, &COLOR.replace("saturate(light)", "saturat(light)"));
     bench.until(|bench| bench.said().is_some());
     let said = bench.said().unwrap();
-    let line = COLOUR.lines().position(|line| line.contains("saturate(light)")).unwrap() + 1;
-    let expected = format!("colour.wgsl:{line}:17: no definition in scope for identifier: `saturat`");
+    let line = COLOR.lines().position(|line| line.contains("saturate(light)")).unwrap() + 1;
+    let expected = format!("color.wgsl:{line}:17: no definition in scope for identifier: `saturat`");
     assert!(said.contains(&expected), "{said}");
     assert!((bench.shown() - before).abs() < 0.5, "the last good one stays");
-    write(&bench, &COLOUR.replace("return min(light,", "return min(light * 0.25,"));
+    write(&bench, &COLOR.replace("return min(light,", "return min(light * 0.25,"));
     bench.until(|bench| bench.said().is_none());
     bench.rest();
     let dark = bench.shown();
@@ -231,7 +231,7 @@ fn a_saved_shader_is_used_and_an_error_is_reported_with_its_line() {
 fn a_missing_or_binary_import_is_watched_until_it_is_fixed() {
     let mut bench = Bench::new(SIZE);
     let path = bench.path("shaders/lib/mine.wgsl");
-    fs::write(bench.path("shaders/lib/colour.wgsl"), format!("#import \"lib/mine.wgsl\"\n{COLOUR}")).unwrap();
+    fs::write(bench.path("shaders/lib/color.wgsl"), format!("#import \"lib/mine.wgsl\"\n{COLOR}")).unwrap();
     bench.until(|bench| bench.said().is_some_and(|said| said.contains("\"lib/mine.wgsl\" to import")));
     bench.rest();
     fs::write(&path, "fn mine() {}").unwrap();
@@ -258,8 +258,8 @@ fn exports_use_the_shaders_of_the_watched_folder() {
         picture.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
     };
     let before = export(&mut bench);
-    let dark = COLOUR.replace("return min(light,", "return min(light * 0.25,");
-    fs::write(bench.path("shaders/lib/colour.wgsl"), dark).unwrap();
+    let dark = COLOR.replace("return min(light,", "return min(light * 0.25,");
+    fs::write(bench.path("shaders/lib/color.wgsl"), dark).unwrap();
     let shaders = |bench: &mut Bench| format!("{:?}", bench.session().shaders).contains("light * 0.25");
     bench.until(shaders);
     let after = export(&mut bench);

@@ -33,9 +33,9 @@ fn shown(ui: &Ui, response: Response, icon: Icon, is_on: bool, name: &str) -> Re
     response.on_hover_text(name)
 }
 
-fn draw(ui: &Ui, icon: Icon, rect: Rect, colour: Color32) {
+fn draw(ui: &Ui, icon: Icon, rect: Rect, color: Color32) {
     let at = |x: f32, y: f32| -> Pos2 { pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height()) };
-    let solid = |points: Vec<Pos2>| Shape::convex_polygon(points, colour, egui::Stroke::NONE);
+    let solid = |points: Vec<Pos2>| Shape::convex_polygon(points, color, egui::Stroke::NONE);
     let bar = |left: f32| solid(vec![at(left, 0.25), at(left + 0.15, 0.25), at(left + 0.15, 0.75), at(left, 0.75)]);
     let right = |left: f32| solid(vec![at(left, 0.25), at(left + 0.4, 0.5), at(left, 0.75)]);
     let left = |right: f32| solid(vec![at(right, 0.25), at(right, 0.75), at(right - 0.4, 0.5)]);
@@ -47,10 +47,10 @@ fn draw(ui: &Ui, icon: Icon, rect: Rect, colour: Color32) {
         Icon::Sheet => {
             let cell = |x: f32, y: f32| Rect::from_min_max(at(x, y), at(x + 0.24, y + 0.24));
             let cells = [(0.22, 0.22), (0.54, 0.22), (0.22, 0.54), (0.54, 0.54)];
-            cells.map(|(x, y)| Shape::rect_filled(cell(x, y), 0.0, colour)).into()
+            cells.map(|(x, y)| Shape::rect_filled(cell(x, y), 0.0, color)).into()
         }
         Icon::Loop => {
-            let stroke = egui::Stroke::new(1.5, colour);
+            let stroke = egui::Stroke::new(1.5, color);
             let arc = (2..=22).map(|step| {
                 let angle = step as f32 / 24.0 * std::f32::consts::TAU;
                 at(0.5 + 0.26 * angle.cos(), 0.5 + 0.26 * angle.sin())

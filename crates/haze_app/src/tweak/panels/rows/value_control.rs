@@ -1,4 +1,4 @@
-//! Controls of a row: slider with number, colour, choice.
+//! Controls of a row: slider with number, color, choice.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -181,14 +181,14 @@ pub fn vector(
     }
 }
 
-/// Draws a linear RGB colour as a swatch and as numbers.
-pub fn colour(ui: &mut Ui, value: &mut Vec3, name: &Response) {
+/// Draws a linear RGB color as a swatch and as numbers.
+pub fn color(ui: &mut Ui, value: &mut Vec3, name: &Response) {
     swatch(ui, value).labelled_by(name.id);
     let [r, g, b] = value.to_array();
     ui.add(egui::Label::new(egui::RichText::new(format!("{r:.3} {g:.3} {b:.3}")).weak()).truncate());
 }
 
-/// Draws a swatch of a linear RGB colour. The colour may exceed 1; the swatch is then normalised to its largest
+/// Draws a swatch of a linear RGB color. The color may exceed 1; the swatch is then normalised to its largest
 /// channel.
 pub fn swatch(ui: &mut Ui, value: &mut Vec3) -> Response {
     let peak = value.max_element().max(1.0);

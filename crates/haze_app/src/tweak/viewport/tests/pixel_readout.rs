@@ -74,7 +74,7 @@ fn the_inspector_reads_the_compared_image_under_the_pointer() {
 #[test]
 fn all_values_fit_on_the_image_of_the_smallest_window() {
     let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
-    // A tab that shows no colours as numbers.
+    // A tab that shows no colors as numbers.
     harness.get_by_label("Cost").click();
     harness.key_press(Key::I);
     let viewport = harness.get_by_label("viewport").rect();
@@ -83,12 +83,12 @@ fn all_values_fit_on_the_image_of_the_smallest_window() {
         harness.hover_at(place);
         wait_for(&mut harness, |harness| shows(harness, "coverage"));
         harness.run_steps(3);
-        let is_colour = |node: &egui_kittest::Node<'_>| {
+        let is_color = |node: &egui_kittest::Node<'_>| {
             let text = node.accesskit_node().value().unwrap_or_default();
             text.split(' ').filter(|number| number.parse::<f32>().is_ok()).count() == 3
         };
         let of_text = |text| harness.query_all_by_label_contains(text);
-        let said: Vec<_> = harness.query_all_by_label_contains(".").filter(is_colour).collect();
+        let said: Vec<_> = harness.query_all_by_label_contains(".").filter(is_color).collect();
         assert!(said.len() >= 6, "{}", said.len());
         for node in said.into_iter().chain(of_text("Pixel")).chain(of_text("as shown, sRGB")) {
             let (rect, label) = (node.rect(), node.accesskit_node().value());

@@ -15,14 +15,14 @@ fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
     let name = "Fit stops to the picture: mine.png";
     assert!(harness.query_by_label(name).is_some() && harness.query_by_label("stop 1").is_none());
     assert_eq!(folder.recipe(), flipped, "nothing is written over it");
-    assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted);
+    assert_eq!(read_color_png(&folder.path("mine.png")).unwrap(), painted);
     let seen = harness.state().session.materials()[0].diffuse_ramp.clone();
     assert_eq!(seen, Ramp::from_image(&painted));
     harness.get_by_label(name).click();
     harness.run_steps(4);
     assert!(harness.query_by_label("stop 3").is_some());
     assert!(harness.query_all_by_label_contains("mine.png: 3 stops, at most 0.").next().is_some());
-    assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted, "until a stop is changed");
+    assert_eq!(read_color_png(&folder.path("mine.png")).unwrap(), painted, "until a stop is changed");
     harness.get_by_label("stop 2").focus();
     harness.run_steps(3);
     press(&mut harness, Key::Delete, Modifiers::NONE);
@@ -57,7 +57,7 @@ fn files_are_compared_after_a_write_and_before_they_are_overwritten() {
     ramps.advance(&mut document, &folders, true).unwrap();
     write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
     ramps.advance(&mut document, &folders, false).unwrap();
-    assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted);
+    assert_eq!(read_color_png(&folder.path("mine.png")).unwrap(), painted);
 }
 
 #[test]

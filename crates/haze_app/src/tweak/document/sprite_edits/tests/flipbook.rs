@@ -6,14 +6,14 @@ use super::*;
 fn a_sprite_without_a_recipe_shows_that_and_the_findings_of_its_check() {
     let folder = Folder::new();
     std::fs::remove_file(folder.path("mine.sprite.json")).unwrap();
-    let colours = image::RgbaImage::from_fn(192, 96, |x, y| {
+    let colors = image::RgbaImage::from_fn(192, 96, |x, y| {
         let is_border = x % 96 % 95 == 0 || y % 95 == 0;
         image::Rgba([200, 120, 20, if is_border { 0 } else { 255 }])
     });
-    write_png(&folder.path("mine.png"), &colours.into(), CompressionEffort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &colors.into(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     assert!(harness.query_by_label_contains("There is no recipe: mine.sprite.json").is_some());
-    assert!(harness.query_by_label_contains("normals: colours, not normals").is_some());
+    assert!(harness.query_by_label_contains("normals: colors, not normals").is_some());
     harness.get_by_label("New from template").click();
     harness.run_steps(3);
     harness.get_by_label("ball").click();

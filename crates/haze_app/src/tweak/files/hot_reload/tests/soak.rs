@@ -5,7 +5,7 @@ use std::path::Path;
 
 use haze::preset::Preset;
 
-use super::{Bench, COLOUR, SIZE, write_ramp};
+use super::{Bench, COLOR, SIZE, write_ramp};
 use crate::tweak::document::history::MAX_STEPS;
 use crate::tweak::window::testing::picture;
 
@@ -56,9 +56,9 @@ fn live() -> u64 {
 
 /// Saves valid and broken shaders alternately, with an import of their own.
 fn reload_shaders(bench: &mut Bench, count: u32) {
-    let path = bench.path("shaders/lib/colour.wgsl");
+    let path = bench.path("shaders/lib/color.wgsl");
     for index in 0..count {
-        let good = format!("#import \"lib/mine.wgsl\"\n// {index}\n{COLOUR}");
+        let good = format!("#import \"lib/mine.wgsl\"\n// {index}\n{COLOR}");
         let (text, is_good) = match index % 4 {
             0 | 2 => (good, true),
             1 => (good.replace("saturate(light)", &format!("saturate{index}(light)")), false),
@@ -76,7 +76,7 @@ fn reload_shaders(bench: &mut Bench, count: u32) {
             picture(&mut bench.window);
         }
     }
-    fs::write(&path, COLOUR).unwrap();
+    fs::write(&path, COLOR).unwrap();
     bench.until(|bench| bench.said().is_none());
     bench.rest();
 }
@@ -92,7 +92,7 @@ fn write_sheet(folder: &Path, alpha: u8) {
 /// Saves broken and valid files of every kind alternately.
 fn reload(bench: &mut Bench, count: u32) {
     let folder = bench.folder.path().to_owned();
-    let (path, shader) = (bench.path("my.json"), bench.path("shaders/lib/colour.wgsl"));
+    let (path, shader) = (bench.path("my.json"), bench.path("shaders/lib/color.wgsl"));
     let before = fs::read_to_string(&path).unwrap();
     write_sheet(&folder, 90);
     let mut preset = Preset::load(&path).unwrap();
@@ -115,9 +115,9 @@ fn reload(bench: &mut Bench, count: u32) {
                 fs::write(&path, preset.to_text("")).unwrap();
             }
             (2, false) => fs::write(&path, &before[..before.len() / 2]).unwrap(),
-            (_, true) => fs::write(&shader, format!("// {index}\n{COLOUR}")).unwrap(),
+            (_, true) => fs::write(&shader, format!("// {index}\n{COLOR}")).unwrap(),
             (_, false) => {
-                fs::write(&shader, COLOUR.replace("saturate(light)", &format!("saturate{index}(light)"))).unwrap();
+                fs::write(&shader, COLOR.replace("saturate(light)", &format!("saturate{index}(light)"))).unwrap();
             }
         }
         bench.until(|bench| match (kind, is_good) {
@@ -133,7 +133,7 @@ fn reload(bench: &mut Bench, count: u32) {
         }
     }
     fs::write(&path, &before).unwrap();
-    fs::write(&shader, format!("// at rest\n{COLOUR}")).unwrap();
+    fs::write(&shader, format!("// at rest\n{COLOR}")).unwrap();
     bench.until(|bench| {
         let is_last = format!("{:?}", bench.session().shaders).contains("// at rest\\n");
         is_last && bench.said().is_none() && bench.session().document.preset.name == "Dense column"

@@ -59,10 +59,10 @@ fn srgb() -> Chunk {
 
 const CODE: [u8; 3] = [180, 90, 40];
 
-/// Decodes an image of colour [`CODE`] with the given chunks and returns its sRGB code.
+/// Decodes an image of color [`CODE`] with the given chunks and returns its sRGB code.
 fn decoded(chunks: &[Chunk]) -> Result<[u8; 3], String> {
     let picture = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(3, 1, image::Rgb(CODE)));
-    let decoded = decode_colour_png(Path::new("a.png"), &png(&picture, chunks));
+    let decoded = decode_color_png(Path::new("a.png"), &png(&picture, chunks));
     decoded.map(|picture| picture.to_rgb8().get_pixel(1, 0).0).map_err(|error| error.to_string())
 }
 
@@ -71,7 +71,7 @@ fn of_power(power: f32) -> [u8; 3] {
 }
 
 #[test]
-fn every_colour_tag_is_applied() {
+fn every_color_tag_is_applied() {
     let refused =
         |found: &str| Err(format!("a.png: {found}; expected sRGB: convert the picture to sRGB when exporting it"));
     for chunks in [vec![], vec![srgb()], vec![cicp([1, 13, 0, 1])], vec![gama(0)], vec![chrm(SRGB)]] {
@@ -90,24 +90,24 @@ fn every_colour_tag_is_applied() {
     assert_eq!(decoded(&[cicp([9, 13, 0, 1])]), Ok([217, 69, 16]));
     for code in [[1, 16, 0, 1], [9, 18, 0, 1], [2, 13, 0, 1], [1, 13, 1, 1], [1, 13, 0, 0], [1, 1, 0, 1]] {
         let [a, b, c, d] = code;
-        assert_eq!(decoded(&[cicp(code)]), refused(&format!("colours of the cICP code points {a}-{b}-{c}-{d}")));
+        assert_eq!(decoded(&[cicp(code)]), refused(&format!("colors of the cICP code points {a}-{b}-{c}-{d}")));
     }
     let warm = [[0.3457, 0.3585], SRGB[1], SRGB[2], SRGB[3]];
-    assert_eq!(decoded(&[chrm(warm)]), refused("colours with the white point 0.3457, 0.3585"));
+    assert_eq!(decoded(&[chrm(warm)]), refused("colors with the white point 0.3457, 0.3585"));
     assert_eq!(decoded(&[chrm([D65; 4])]), refused("degenerate primaries"));
     let curve = profiles::table(256);
     assert_eq!(decoded(&[iccp(&profiles::profile(profiles::SRGB, &curve))]), Ok(CODE));
     for profile in [&profiles::profile(profiles::P3, &curve)[..], b"", b"no profile"] {
-        assert_eq!(decoded(&[iccp(profile)]), refused("the colour profile \"mine\""));
+        assert_eq!(decoded(&[iccp(profile)]), refused("the color profile \"mine\""));
     }
 }
 
 #[test]
-fn colour_tags_take_precedence_as_in_the_png_specification() {
+fn color_tags_take_precedence_as_in_the_png_specification() {
     let wide = || iccp(&profiles::profile(profiles::P3, &profiles::table(256)));
     let all = [gama(100_000), chrm(DISPLAY_P3), srgb(), wide(), cicp([1, 4, 0, 1])];
     assert_eq!(decoded(&all), Ok(of_power(2.2)), "cICP");
-    assert!(decoded(&all[..4]).unwrap_err().contains("the colour profile"), "iCCP");
+    assert!(decoded(&all[..4]).unwrap_err().contains("the color profile"), "iCCP");
     assert_eq!(decoded(&all[..3]), Ok(CODE), "sRGB");
     assert_ne!(decoded(&all[..2]), Ok(of_power(1.0)), "cHRM beside gAMA");
     assert_eq!(decoded(&all[..1]), Ok(of_power(1.0)), "gAMA");
@@ -124,7 +124,7 @@ fn transparent_pixels_are_composited_over_black_in_linear_light() {
     let pixel = |alpha| Rgba([CODE[0], CODE[1], CODE[2], alpha]);
     let alphas = [255, 128, 0];
     let picture = DynamicImage::ImageRgba8(ImageBuffer::from_fn(3, 1, |x, _| pixel(alphas[x as usize])));
-    let decoded = decode_colour_png(Path::new("a.png"), &png(&picture, &[])).unwrap().to_rgb8();
+    let decoded = decode_color_png(Path::new("a.png"), &png(&picture, &[])).unwrap().to_rgb8();
     for (x, alpha) in alphas.into_iter().enumerate() {
         let share = f32::from(alpha) / 255.0;
         let expected = CODE
@@ -133,7 +133,7 @@ fn transparent_pixels_are_composited_over_black_in_linear_light() {
     }
     // An opaque image with an alpha channel stays unchanged.
     let picture = DynamicImage::ImageRgba8(ImageBuffer::from_pixel(3, 1, pixel(255)));
-    assert_eq!(decode_colour_png(Path::new("a.png"), &png(&picture, &[])).unwrap(), picture);
+    assert_eq!(decode_color_png(Path::new("a.png"), &png(&picture, &[])).unwrap(), picture);
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn every_kind_of_png_is_read_and_refused_if_truncated() {
         }
         count += 1;
         let bytes = std::fs::read(&path).unwrap();
-        let picture = decode_colour_png(&path, &bytes).unwrap();
+        let picture = decode_color_png(&path, &bytes).unwrap();
         assert!(picture.width() > 0);
         let end = bytes.windows(4).rposition(|kind| kind == b"IEND").unwrap() + 8;
         for length in 0..end {
@@ -174,7 +174,7 @@ fn oversized_files_are_refused_before_they_are_read() {
     assert_eq!(message(b"GIF89a"), "a.png: not a PNG file; export it as PNG");
 
     let folder = tempfile::tempdir().unwrap();
-    let error = |name: &str| read_colour_png(&folder.path().join(name)).unwrap_err().to_string();
+    let error = |name: &str| read_color_png(&folder.path().join(name)).unwrap_err().to_string();
     std::fs::create_dir(folder.path().join("folder.png")).unwrap();
     assert!(error("folder.png").contains("a folder, not a file; expected a PNG file"));
     #[cfg(unix)]

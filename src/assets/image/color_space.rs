@@ -1,4 +1,4 @@
-//! Decodes PNGs of colours and converts them to sRGB by the file's colour tags.
+//! Decodes PNGs of colors and converts them to sRGB by the file's color tags.
 
 use std::path::Path;
 
@@ -7,21 +7,21 @@ use image::{DynamicImage, ImageBuffer, Rgba};
 
 use super::icc_profile::is_srgb;
 use super::png::{decode_with_profile, is_png, read_file};
-use super::png_chunks::{ColourTags, colour_tags};
+use super::png_chunks::{ColorTags, color_tags};
 use crate::error::{Error, display_path};
-use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
+use crate::formula::color::{linear_from_srgb, srgb_from_linear};
 
-/// Decodes a PNG of colours, such as a ramp or a motif. The result is sRGB and opaque.
+/// Decodes a PNG of colors, such as a ramp or a motif. The result is sRGB and opaque.
 ///
 /// Of several tags the first of cICP, iCCP, sRGB, gAMA with cHRM applies (PNG 3, 4.3); without tags the image is sRGB.
 /// cICP may have the primaries of sRGB, Display P3 or BT.2020 and the transfer function sRGB, linear, 2.2 or 2.8. cHRM
-/// may have any primaries with white point D65. An ICC profile must be sRGB. Colours outside sRGB are clamped.
+/// may have any primaries with white point D65. An ICC profile must be sRGB. Colors outside sRGB are clamped.
 /// Transparent pixels are composited over black in linear light.
 ///
 /// # Errors
-/// As [`decode_png`](super::decode_png), and [`Error::Image`] for an unsupported colour space.
-pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
-    let tags = colour_tags(bytes).unwrap_or_default();
+/// As [`decode_png`](super::decode_png), and [`Error::Image`] for an unsupported color space.
+pub fn decode_color_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
+    let tags = color_tags(bytes).unwrap_or_default();
     let space = |profile: Option<&[u8]>| {
         tags.space(profile).map_err(|found| {
             let reason = format!("{found}; expected sRGB: convert the picture to sRGB when exporting it");
@@ -37,31 +37,31 @@ pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Erro
     Ok(space.to_srgb(picture))
 }
 
-/// Reads and decodes a PNG file of colours.
+/// Reads and decodes a PNG file of colors.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_colour_png`].
-pub fn read_colour_png(path: &Path) -> Result<DynamicImage, Error> {
-    decode_colour_png(path, &read_file(path)?)
+/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_color_png`].
+pub fn read_color_png(path: &Path) -> Result<DynamicImage, Error> {
+    decode_color_png(path, &read_file(path)?)
 }
 
-/// Returns notes about the conversions that [`decode_colour_png`] applies to a file, or why it refuses the file. Empty
+/// Returns notes about the conversions that [`decode_color_png`] applies to a file, or why it refuses the file. Empty
 /// for an opaque sRGB image.
 ///
 /// # Errors
-/// As [`read_colour_png`], except that an unsupported colour space is a note.
-pub fn colour_conversion_notes(path: &Path) -> Result<Vec<String>, Error> {
+/// As [`read_color_png`], except that an unsupported color space is a note.
+pub fn color_conversion_notes(path: &Path) -> Result<Vec<String>, Error> {
     let bytes = read_file(path)?;
     let (picture, profile) = decode_with_profile(path, &bytes)?;
     let mut notes = Vec::new();
-    match colour_tags(&bytes).unwrap_or_default().space(profile.as_deref()) {
+    match color_tags(&bytes).unwrap_or_default().space(profile.as_deref()) {
         Err(found) => notes.push(format!("{found}; expected sRGB: it is refused")),
         Ok(space) => {
             if let Transfer::Power(power) = space.transfer {
                 notes.push(format!("gamma {power:.2}; expected sRGB: it is converted"));
             }
             if space.srgb_from_linear.is_some() {
-                notes.push("primaries of another colour space; expected sRGB: colours outside sRGB are clamped".into());
+                notes.push("primaries of another color space; expected sRGB: colors outside sRGB are clamped".into());
             }
         }
     }
@@ -98,13 +98,13 @@ const SRGB: Primaries = [D65, [0.64, 0.33], [0.3, 0.6], [0.15, 0.06]];
 const DISPLAY_P3: Primaries = [D65, [0.68, 0.32], [0.265, 0.69], [0.15, 0.06]];
 const BT2020: Primaries = [D65, [0.708, 0.292], [0.17, 0.797], [0.131, 0.046]];
 
-impl ColourTags {
-    /// Returns the colour space of the tags. The error describes an unsupported one.
+impl ColorTags {
+    /// Returns the color space of the tags. The error describes an unsupported one.
     fn space(&self, profile: Option<&[u8]>) -> Result<Space, String> {
         let srgb = Space { transfer: Transfer::Srgb, srgb_from_linear: None };
         if let Some(code @ [primaries, transfer, matrix, full]) = self.cicp {
             let [a, b, c, d] = code;
-            let found = || format!("colours of the cICP code points {a}-{b}-{c}-{d}");
+            let found = || format!("colors of the cICP code points {a}-{b}-{c}-{d}");
             let primaries = match primaries {
                 1 => SRGB,
                 9 => BT2020,
@@ -124,7 +124,7 @@ impl ColourTags {
             return Ok(Space { transfer, srgb_from_linear: from_primaries(primaries)? });
         }
         if let Some(profile_name) = &self.profile {
-            let found = || format!("the colour profile \"{}\"", display_path(Path::new(profile_name)));
+            let found = || format!("the color profile \"{}\"", display_path(Path::new(profile_name)));
             return if profile.is_some_and(is_srgb) { Ok(srgb) } else { Err(found()) };
         }
         if self.srgb {
@@ -142,7 +142,7 @@ impl ColourTags {
 fn from_primaries(primaries: Primaries) -> Result<Option<DMat3>, String> {
     let far = |(a, b): (&[f64; 2], &[f64; 2])| (DVec2::from(*a) - DVec2::from(*b)).abs().max_element() > 0.002;
     if far((&primaries[0], &D65)) {
-        return Err(format!("colours with the white point {}, {}", primaries[0][0], primaries[0][1]));
+        return Err(format!("colors with the white point {}, {}", primaries[0][0], primaries[0][1]));
     }
     if !primaries.iter().zip(&SRGB).any(far) {
         return Ok(None);

@@ -1,9 +1,9 @@
-//! Tests of colour fields, pasted colours and the eyedropper.
+//! Tests of color fields, pasted colors and the eyedropper.
 
 use super::*;
 
-fn colour(harness: &Harness<'_, Host>, index: usize) -> [u8; 3] {
-    harness.state().row.stops[index].colour.0
+fn color(harness: &Harness<'_, Host>, index: usize) -> [u8; 3] {
+    harness.state().row.stops[index].color.0
 }
 
 fn type_into(harness: &mut Harness<'_, Host>, name: &str, text: &str) {
@@ -26,31 +26,31 @@ fn hue_saturation_and_value_can_be_typed() {
         ("saturation", "100", [0, 128, 255]),
     ] {
         type_into(&mut harness, name, number);
-        assert_eq!(colour(&harness, 0), expected, "{name} {number}");
+        assert_eq!(color(&harness, 0), expected, "{name} {number}");
     }
     // Changing only the hue of a grey is not a step.
-    assert_eq!(steps(&harness), ["colour of a stop"; 4]);
+    assert_eq!(steps(&harness), ["color of a stop"; 4]);
     // The remembered hue belongs to one stop only.
     harness.get_by_label("next stop").click();
     harness.run_steps(2);
     type_into(&mut harness, "saturation", "50");
-    assert_eq!(colour(&harness, 1), [20, 10, 10]);
+    assert_eq!(color(&harness, 1), [20, 10, 10]);
 }
 
 #[test]
-fn a_pasted_colour_is_applied_to_the_selected_stop() {
+fn a_pasted_color_is_applied_to_the_selected_stop() {
     let mut harness = host(&[(0.0, 100), (1.0, 20)]);
     harness.get_by_label("stop 2").focus();
     harness.run_steps(2);
     harness.event(Event::Paste(" #ff8000\n".into()));
     harness.run_steps(2);
-    assert_eq!((colour(&harness, 0), colour(&harness, 1)), ([100; 3], [255, 128, 0]));
-    assert_eq!((steps(&harness), harness.state().refused.len()), (vec!["colour of a stop"], 0));
+    assert_eq!((color(&harness, 0), color(&harness, 1)), ([100; 3], [255, 128, 0]));
+    assert_eq!((steps(&harness), harness.state().refused.len()), (vec!["color of a stop"], 0));
 }
 
 /// Activates the eyedropper with press and release in one frame.
 fn begin(harness: &mut Harness<'_, Host>) {
-    let pos = harness.get_by_label("Take a colour").rect().center();
+    let pos = harness.get_by_label("Take a color").rect().center();
     harness.hover_at(pos);
     harness.step();
     let button = |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: NONE };
@@ -60,7 +60,7 @@ fn begin(harness: &mut Harness<'_, Host>) {
 }
 
 #[test]
-fn the_eyedropper_picks_a_colour_and_blocks_other_widgets() {
+fn the_eyedropper_picks_a_color_and_blocks_other_widgets() {
     let mut harness = host(&[(0.0, 0), (1.0, 255)]);
     let at = on_strip(&harness, 0.7);
     let expected = {
@@ -71,9 +71,9 @@ fn the_eyedropper_picks_a_colour_and_blocks_other_widgets() {
     begin(&mut harness);
     click(&mut harness, at, NONE);
     harness.run_steps(2);
-    assert_eq!((places(&harness), colour(&harness, 0)), (vec![0.0, 1.0], expected));
+    assert_eq!((places(&harness), color(&harness, 0)), (vec![0.0, 1.0], expected));
     assert!(expected[0] > 100, "{expected:?}");
-    assert_eq!(steps(&harness), ["colour of a stop"]);
+    assert_eq!(steps(&harness), ["color of a stop"]);
     assert!(harness.state().editor.state.eyedropper.is_none());
     // Escape cancels the eyedropper.
     begin(&mut harness);
@@ -100,11 +100,11 @@ fn a_stroke_picks_the_gradient_along_its_path() {
     assert!((3..20).contains(&row.stops.len()), "{row:?}");
     let recipe = haze_author::ramp::RampRecipe { rows: vec![row], ..Default::default() };
     let taken = recipe.gradient().unwrap();
-    let code = |light: f32| haze::formula::colour::srgb_from_linear(light) * 255.0;
+    let code = |light: f32| haze::formula::color::srgb_from_linear(light) * 255.0;
     for step in 5..=95 {
         let at = step as f32 / 100.0;
         let (taken, wanted) = (code(taken.sample(at, 0.0).x), code(wanted.sample(0.99 - 0.98 * at, 0.0).x));
-        // Tolerance: 10 for the fit, and the change of colour over half a part of the stroke.
+        // Tolerance: 10 for the fit, and the change of color over half a part of the stroke.
         assert!((taken - wanted).abs() < 20.0, "{at}: {taken} {wanted}");
     }
     assert_eq!(steps(&harness), ["gradient of a stroke"]);
@@ -134,10 +134,10 @@ fn the_eyedropper_has_a_magnifier_and_is_moved_by_keys() {
     key(&mut harness, Key::Num1, NONE);
     assert!(steps(&harness).is_empty(), "nothing is taken yet");
     key(&mut harness, Key::Enter, NONE);
-    assert_eq!(steps(&harness), ["colour of a stop"]);
-    assert!(before.starts_with(&String::from(HexColour(colour(&harness, 0)))), "{before}");
+    assert_eq!(steps(&harness), ["color of a stop"]);
+    assert!(before.starts_with(&String::from(HexColor(color(&harness, 0)))), "{before}");
     // A stroke by keys alone.
-    harness.get_by_label("Take a colour").focus();
+    harness.get_by_label("Take a color").focus();
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
     harness.hover_at(at);
@@ -147,6 +147,6 @@ fn the_eyedropper_has_a_magnifier_and_is_moved_by_keys() {
         key(&mut harness, Key::ArrowRight, Modifiers::SHIFT);
     }
     key(&mut harness, Key::Enter, NONE);
-    assert_eq!(steps(&harness), ["colour of a stop", "gradient of a stroke"]);
+    assert_eq!(steps(&harness), ["color of a stop", "gradient of a stroke"]);
     assert!(greys(&harness).is_sorted(), "{:?}", greys(&harness));
 }

@@ -1,4 +1,4 @@
-//! sRGB encoding, luminance, and the colour scale of overdraw. WGSL: `shaders/lib/colour.wgsl`.
+//! sRGB encoding, luminance, and the color scale of overdraw. WGSL: `shaders/lib/color.wgsl`.
 
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ pub fn luminance(light: Vec3) -> f32 {
 }
 
 /// Linear light, clamped to 0..1 and encoded as sRGB, for a target whose format the hardware does not encode.
-pub fn srgb_colour(light: Vec3) -> Vec3 {
+pub fn srgb_color(light: Vec3) -> Vec3 {
     light.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_from_linear)
 }
 
@@ -32,12 +32,12 @@ pub fn bounded_light(light: Vec3) -> Vec3 {
     light.min(Vec3::splat(MAX_HALF_FLOAT_LIGHT))
 }
 
-/// Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
-pub fn overdraw_colour(layers: f32) -> Vec3 {
+/// Color scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+pub fn overdraw_color(layers: f32) -> Vec3 {
     let heat = if layers > 4.0 { layers.log2() - 1.0 } else { layers * 0.25 };
-    let colours = [Vec3::ZERO, Vec3::Z, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::X, Vec3::ONE];
-    let index = (heat.max(0.0) as usize).min(colours.len() - 2);
-    colours[index].lerp(colours[index + 1], saturate(heat - index as f32))
+    let colors = [Vec3::ZERO, Vec3::Z, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::X, Vec3::ONE];
+    let index = (heat.max(0.0) as usize).min(colors.len() - 2);
+    colors[index].lerp(colors[index + 1], saturate(heat - index as f32))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-// sRGB encoding, luminance, and the colour scale of overdraw.
+// sRGB encoding, luminance, and the color scale of overdraw.
 
 // Encodes linear light as sRGB, 0..1. (IEC 61966-2-1)
 fn srgb_from_linear(linear: f32) -> f32 {
@@ -14,7 +14,7 @@ fn luminance(light: vec3f) -> f32 {
 }
 
 // Linear light, clamped to 0..1 and encoded as sRGB, for a target whose format the hardware does not encode.
-fn srgb_colour(light: vec3f) -> vec3f {
+fn srgb_color(light: vec3f) -> vec3f {
     let shown = saturate(light);
     return vec3f(srgb_from_linear(shown.r), srgb_from_linear(shown.g), srgb_from_linear(shown.b));
 }
@@ -27,9 +27,9 @@ fn bounded_light(light: vec3f) -> vec3f {
     return min(light, vec3f(MAX_HALF_FLOAT_LIGHT));
 }
 
-// Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
-fn overdraw_colour(layers: f32) -> vec3f {
-    var colours = array<vec3f, 6>(
+// Color scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+fn overdraw_color(layers: f32) -> vec3f {
+    var colors = array<vec3f, 6>(
         vec3f(0.0),
         vec3f(0.0, 0.0, 1.0),
         vec3f(0.0, 1.0, 0.0),
@@ -39,5 +39,5 @@ fn overdraw_colour(layers: f32) -> vec3f {
     );
     let heat = select(layers * 0.25, log2(max(layers, 1.0)) - 1.0, layers > 4.0);
     let index = clamp(u32(heat), 0u, 4u);
-    return mix(colours[index], colours[index + 1u], saturate(heat - f32(index)));
+    return mix(colors[index], colors[index + 1u], saturate(heat - f32(index)));
 }
