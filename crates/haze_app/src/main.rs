@@ -30,6 +30,8 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     silence_wayland_without_session();
+    silence_decoder_panics();
+    interrupt::ignore_file_size_signal();
     command_line::run(std::env::args_os())
 }
 
@@ -44,4 +46,14 @@ fn silence_wayland_without_session() {
         // SAFETY: this is the first call in `main`; no other thread exists yet that could read variables.
         unsafe { std::env::set_var(VARIABLE, "/nonexistent") };
     }
+}
+
+/// Prints nothing for a panic of an image decoder, which becomes an error that names the file.
+fn silence_decoder_panics() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !haze::image::is_decoding() {
+            print(panic);
+        }
+    }));
 }

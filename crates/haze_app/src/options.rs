@@ -199,8 +199,10 @@ impl RunArguments {
                 }
                 Backend::on(gpu, sources.as_ref())
             }
-            Err(Error::NoDevice(reason)) if self.backend == BackendName::Auto && sources.is_none() => {
-                print_error(format_args!("rendering on the CPU: {reason}"));
+            Err(error @ (Error::NoDevice(_) | Error::Device(_)))
+                if self.backend == BackendName::Auto && sources.is_none() =>
+            {
+                print_error(format_args!("rendering on the CPU: {error}"));
                 Ok(Backend::Cpu)
             }
             Err(error) => Err(error),
@@ -213,7 +215,7 @@ impl Backend {
     pub fn open(sources: Option<&Sources>) -> Result<Self, Error> {
         match Headless::new() {
             Ok(gpu) => Self::on(gpu, sources),
-            Err(Error::NoDevice(_)) if sources.is_none() => Ok(Self::Cpu),
+            Err(Error::NoDevice(_) | Error::Device(_)) if sources.is_none() => Ok(Self::Cpu),
             Err(error) => Err(error),
         }
     }
@@ -232,9 +234,13 @@ impl Backend {
         match self {
             Self::Gpu(gpu) => {
                 let mut renderer = gpu.renderer.borrow_mut();
-                renderer.warm_up(shot)?;
-                renderer.draw(&gpu.headless, shot)?;
-                renderer.read(&gpu.headless, shot)
+                let mut draw = || {
+                    renderer.warm_up(shot)?;
+                    renderer.draw(&gpu.headless, shot)?;
+                    renderer.read(&gpu.headless, shot)
+                };
+                // A texture for which memory ran out is also refused where it is bound: the first failure is the cause.
+                draw().map_err(|error| gpu.headless.check().err().unwrap_or(error))
             }
             Self::Cpu => shot.render_on_cpu(),
         }

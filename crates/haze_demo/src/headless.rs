@@ -2,77 +2,24 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use glam::{UVec2, Vec4};
 use half::f16;
 
-use haze::error::{Error, FieldError};
+use haze::error::Error;
+
+use super::adapter_choice::find_adapter;
+pub use super::address_space::check_address_space;
 
 /// Time to wait for a callback after the GPU is done. Far longer than it takes.
 const READ_BACK_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Hint for machines without an adapter.
-const NO_ADAPTER_HINT: &str = "no graphics adapter was found; on Debian and Ubuntu \
-    `apt-get install mesa-vulkan-drivers` installs a software one";
-
-/// Returns the fastest adapter, or the one that `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` select.
-fn find_adapter() -> Result<wgpu::Adapter, Error> {
-    let variable = |name| std::env::var_os(name).unwrap_or_default().to_string_lossy().into_owned();
-    let (backends, name) = (variable("WGPU_BACKEND"), variable("WGPU_ADAPTER_NAME"));
-    let built_in = wgpu::Instance::enabled_backend_features();
-    let list = || {
-        let names: Vec<_> = wgpu::Backend::ALL.into_iter().filter(|&b| built_in.contains(b.into())).collect();
-        names.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
-    };
-    let mut wanted = wgpu::Backends::all();
-    if !backends.is_empty() {
-        wanted = wgpu::Backends::from_comma_list(&backends);
-        if wanted.is_empty() {
-            return Err(
-                FieldError::new("WGPU_BACKEND", format!("{backends:?}"), format!("one or more of {}", list())).into()
-            );
-        }
-    }
-    let mut others = Vec::new();
-    // OpenGL last: opening it prints warnings on machines without a display.
-    for group in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
-        let group = group & wanted & built_in;
-        if group.is_empty() {
-            continue;
-        }
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: group,
-            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
-        });
-        if name.is_empty() {
-            let options = wgpu::RequestAdapterOptions {
-                power_preference: wgpu::PowerPreference::HighPerformance,
-                ..Default::default()
-            };
-            if let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) {
-                return Ok(adapter);
-            }
-        } else {
-            for adapter in pollster::block_on(instance.enumerate_adapters(group)) {
-                let info = adapter.get_info();
-                if info.name.to_lowercase().contains(&name.to_lowercase()) {
-                    return Ok(adapter);
-                }
-                others.push(format!("{:?} ({})", info.name, info.backend));
-            }
-        }
-    }
-    if !others.is_empty() {
-        let expected = format!("a part of a name: {}", others.join(" or "));
-        return Err(FieldError::new("WGPU_ADAPTER_NAME", format!("{name:?}"), expected).into());
-    }
-    let mut reason = NO_ADAPTER_HINT.to_owned();
-    if !backends.is_empty() {
-        reason += &format!("; WGPU_BACKEND allows only {backends:?} of {}", list());
-    }
-    Err(Error::NoDevice(reason))
-}
+/// Longest time to wait for one submission. A frame of 8192x8192 pixels with a hundred layers of smoke takes minutes on one
+/// slow core; a device that takes longer than this does not work at all.
+pub const WAIT_LIMIT: Duration = Duration::from_secs(30 * 60);
+/// Longest time to wait for the first submission, which clears a few pixels: milliseconds, also on a busy machine.
+const FIRST_WAIT_LIMIT: Duration = Duration::from_secs(20);
 
 /// Device that records its failures: nothing panics when the driver fails.
 #[derive(Debug)]
@@ -104,8 +51,9 @@ impl Headless {
     /// Opens the fastest adapter; `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` select another.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] with the command that installs a software adapter; [`Error::Field`] if one of the variables
-    /// selects something that does not exist.
+    /// [`Error::NoDevice`] with the command that installs a software adapter, or if the limit of the process's address
+    /// space is too low for a driver; [`Error::Field`] if one of the variables selects something that does not exist;
+    /// [`Error::Device`] if the device does not clear a texture within 20 seconds.
     pub fn new() -> Result<Self, Error> {
         Self::with(wgpu::Limits::default(), wgpu::Features::empty())
     }
@@ -140,7 +88,28 @@ impl Headless {
                 error => error.to_string(),
             });
         }));
-        Ok(Self { adapter, device, queue, failures })
+        let headless = Self { adapter, device, queue, failures };
+        headless.clear_texture()?;
+        Ok(headless)
+    }
+
+    /// Clears a small texture, which a device without its threads never finishes.
+    fn clear_texture(&self) -> Result<(), Error> {
+        let target = self.target("first submission", UVec2::splat(16), wgpu::TextureFormat::Rgba8Unorm);
+        let view = target.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("first submission"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        }));
+        self.queue.submit([encoder.finish()]);
+        self.wait(FIRST_WAIT_LIMIT)
     }
 
     /// Adapter, backend and driver, and a note for software adapters, in one line.
@@ -172,15 +141,28 @@ impl Headless {
     /// [`Error::Device`] if the device has failed, now or before.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<(), Error> {
         self.queue.submit([encoder.finish()]);
-        self.wait()
+        self.wait(WAIT_LIMIT)
     }
 
-    fn wait(&self) -> Result<(), Error> {
+    fn wait(&self, limit: Duration) -> Result<(), Error> {
+        let end = Instant::now() + limit;
         while !self.failures.lost.load(Ordering::SeqCst) {
-            match self.device.poll(wgpu::PollType::wait_indefinitely()) {
+            let timeout = Some(end.saturating_duration_since(Instant::now()));
+            match self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout }) {
                 Ok(_) => break,
                 // On OpenGL wgpu waits for four seconds at most.
-                Err(wgpu::PollError::Timeout) => {}
+                Err(wgpu::PollError::Timeout) if Instant::now() < end => {}
+                Err(wgpu::PollError::Timeout) => {
+                    self.failures.record(format!(
+                        "{} has not finished its work after {} s; a software adapter needs a thread for each processor: \
+                         raise the limit of threads (`ulimit -u`), or render on the CPU (`--backend cpu`)",
+                        self.adapter.get_info().name,
+                        limit.as_secs()
+                    ));
+                    // Dropping the last handle would wait for the device without a limit.
+                    std::mem::forget((self.device.clone(), self.queue.clone()));
+                    break;
+                }
                 Err(error) => return Err(Error::Device(error.to_string())),
             }
         }
@@ -268,7 +250,7 @@ impl Headless {
             // The receiver is gone only if waiting failed, which is reported.
             let _ = sender.send(result);
         });
-        self.wait()?;
+        self.wait(WAIT_LIMIT)?;
         // Another thread's poll may run the callback, a moment after this thread's poll has returned.
         let mapped = mapped.recv_timeout(READ_BACK_TIMEOUT).map_err(|error| Error::Device(error.to_string()))?;
         mapped.map_err(|error| Error::Device(error.to_string()))?;

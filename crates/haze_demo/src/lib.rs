@@ -1,6 +1,8 @@
 //! Demo scene for the smoke: boxes with procedural materials, lit by the preset's lights. A GPU and a CPU renderer draw
 //! the same image.
 
+mod adapter_choice;
+mod address_space;
 mod boxes;
 mod camera_rays;
 pub mod capture;

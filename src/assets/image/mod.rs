@@ -3,6 +3,7 @@
 mod atomic_write;
 mod baked_png;
 mod color_space;
+mod decoder_panic;
 mod icc_profile;
 mod png;
 mod png_chunks;
@@ -12,6 +13,8 @@ pub use atomic_write::{FileIdentity, check_writable, write_file, write_state_fil
 #[doc(hidden)]
 pub use baked_png::{is_baked_png, write_baked_png};
 pub use color_space::{color_conversion_notes, decode_color_png, read_color_png};
+#[doc(hidden)]
+pub use decoder_panic::is_decoding;
 #[doc(hidden)]
 pub use png::{CompressionEffort, is_png, read_file, write_png};
 pub use png::{MAX_BYTES, MAX_SIDE, decode_png, read_png};

@@ -7,6 +7,7 @@ use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
 use super::atomic_write::write_file;
+use super::decoder_panic::catch_decoder_panic;
 use super::png_chunks::color_tags;
 use crate::assets::bounded_read;
 use crate::assets::parallel::parallel_for_each;
@@ -49,32 +50,48 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
         return refuse(format!("{width}x{height} pixels; expected at most {MAX_SIDE}x{MAX_SIDE}"));
     }
     let Some(tags) = color_tags(bytes) else { return refuse(describe_decode_error(None)) };
-    // The decoder panics on such a palette (png 0.18.1, `Decoder::read_info`).
+    // Without this check the decoder panics on such a palette (docs/decisions.md), and the message would not name it.
     if let Some(palette) = tags.palette_bytes.filter(|&palette| palette == 0 || palette % 3 != 0 || palette > 768) {
         return refuse(format!("a palette of {palette} bytes; expected 3 bytes for each of 1 to 256 colors"));
     }
+    match catch_decoder_panic(|| decode_pixels(bytes)) {
+        Some(Ok(decoded)) => Ok(decoded),
+        Some(Err(DecodeError::TooLarge(decoded))) => {
+            let texel = decoded / (u64::from(width) * u64::from(height));
+            let most = MAX_BYTES >> 20;
+            refuse(format!(
+                "{} MiB in memory, {width}x{height} pixels of {texel} bytes; expected at most {most} MiB",
+                decoded >> 20
+            ))
+        }
+        Some(Err(DecodeError::Damaged(error))) => refuse(describe_decode_error(Some(&error))),
+        None => refuse(DAMAGED.into()),
+    }
+}
+
+enum DecodeError {
+    /// Bytes of the decoded image.
+    TooLarge(u64),
+    Damaged(ImageError),
+}
+
+/// Calls the decoder, which may panic.
+fn decode_pixels(bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), DecodeError> {
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_BYTES);
-    let mut decoder = match PngDecoder::with_limits(Cursor::new(bytes), limits) {
-        Ok(decoder) => decoder,
-        Err(error) => return refuse(describe_decode_error(Some(&error))),
-    };
+    let mut decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(DecodeError::Damaged)?;
     // The decoder's own limit does not count the decoded image.
-    let (decoded, most) = (decoder.total_bytes(), MAX_BYTES >> 20);
+    let decoded = decoder.total_bytes();
     if decoded > MAX_BYTES {
-        let texel = decoded / (u64::from(width) * u64::from(height));
-        return refuse(format!(
-            "{} MiB in memory, {width}x{height} pixels of {texel} bytes; expected at most {most} MiB",
-            decoded >> 20
-        ));
+        return Err(DecodeError::TooLarge(decoded));
     }
     // A profile that cannot be decoded is ignored.
     let profile = decoder.icc_profile().unwrap_or_default();
-    match DynamicImage::from_decoder(decoder) {
-        Ok(picture) => Ok((picture, profile)),
-        Err(error) => refuse(describe_decode_error(Some(&error))),
-    }
+    let picture = DynamicImage::from_decoder(decoder).map_err(DecodeError::Damaged)?;
+    Ok((picture, profile))
 }
+
+const DAMAGED: &str = "a damaged PNG; expected one that other programs can open: export it again";
 
 /// Returns a message about a damaged PNG. The decoder's own messages assume knowledge of its code.
 fn describe_decode_error(error: Option<&ImageError>) -> String {
@@ -83,7 +100,7 @@ fn describe_decode_error(error: Option<&ImageError>) -> String {
         None => "the file ends too early; expected a whole PNG".into(),
         Some(ImageError::IoError(error)) if error.kind() == ErrorKind::UnexpectedEof => describe_decode_error(None),
         Some(ImageError::Limits(_)) => format!("it takes more than {most} MiB to decode; expected a smaller PNG"),
-        Some(_) => "a damaged PNG; expected one that other programs can open: export it again".into(),
+        Some(_) => DAMAGED.into(),
     }
 }
 
@@ -177,6 +194,8 @@ mod tests {
             let error = decode_png(Path::new("a.png"), &png(length)).unwrap_err().to_string();
             assert!(error.starts_with(&format!("a.png: a palette of {length} bytes; expected 3 bytes")), "{error}");
         }
+        // The decoder itself panics. If it no longer does, the check and the paragraph in docs/decisions.md can go.
+        assert!(catch_decoder_panic(|| decode_pixels(&png(4)).is_err()).is_none());
     }
 
     #[test]

@@ -6,6 +6,7 @@
 mod compose;
 mod embedded;
 mod naga_messages;
+mod nesting;
 mod shader_module;
 mod sources;
 

@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 use super::compose::Composed;
 use super::naga_messages::{marked_location, to_wgsl_terms};
+use super::nesting::check_nesting;
 use super::sources::Sources;
 use crate::error::Error;
 use crate::renderer::gpu::error_scopes::{poll_once, with_error_scopes};
@@ -23,6 +24,7 @@ pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Resu
 /// [`Error::Shader`]: the first error.
 pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources: &Sources) -> Result<Shader, Error> {
     let composed = sources.compose(&file_of(name))?;
+    check_nesting(&composed.text).map_err(|deep| composed.error_at(deep.line, deep.column, &deep.reason))?;
     let mut module = None;
     let created = with_error_scopes(device, || module.insert(create(device, name, &composed)).clone());
     match created {

@@ -6,6 +6,9 @@
 mod bench;
 #[path = "cli/drivers.rs"]
 mod drivers;
+#[cfg(target_os = "linux")]
+#[path = "cli/limits.rs"]
+mod limits;
 #[path = "cli/many.rs"]
 mod many;
 #[path = "cli/names.rs"]

@@ -17,6 +17,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use eframe::{egui, wgpu};
 use haze::Error;
 use haze_demo::capture::Capture;
+use haze_demo::headless::WAIT_LIMIT;
 use haze_demo::image_metrics::Comparison;
 use haze_demo::offscreen_renderer::OffscreenContext;
 use haze_demo::shot::Shot;
@@ -62,7 +63,8 @@ impl ViewportRenderer {
             // Takes about 0.2 s on a GPU. A CPU adapter takes longer, and its paths cost about the same.
             context.measure_paths(|encoder| {
                 render.queue.submit([encoder.finish()]);
-                let waited = render.device.poll(wgpu::PollType::wait_indefinitely());
+                let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_LIMIT) };
+                let waited = render.device.poll(wait);
                 waited.map(|_| ()).map_err(|error| Error::Device(error.to_string()))
             })?;
         }

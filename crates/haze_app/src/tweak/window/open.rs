@@ -3,6 +3,7 @@
 use eframe::{egui, egui_wgpu, wgpu};
 use haze::Error;
 use haze::error::one_line;
+use haze_demo::headless::check_address_space;
 
 use super::drag_end::split_events_at_release;
 use super::surface_pacing::paced_surface_handler;
@@ -38,6 +39,7 @@ struct KeptState {
 /// Shows a session in a window until the user closes it. `size` is in points; `None` leaves it to the adapter.
 pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
     check_display()?;
+    check_address_space()?;
     let destroy_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
     let destroy_in = destroy_in.split(',').filter_map(|frame| frame.parse().ok()).collect();
     let place = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(DEFAULT_SIZE));
