@@ -125,7 +125,7 @@ fn two_hundred_shader_reloads_leak_nothing() {
         good.to_owned(),
         good.replace("saturate(", "saturat("),
         good.replace("fn fragment(", "fn fragments("),
-        good.replace("#import \"lib/color.wgsl\"", "#import \"lib/color.wgsl\""),
+        good.replace("#import \"lib/color.wgsl\"", "#import \"lib/colors.wgsl\""),
     ];
     let scene = TestScene::new(SIZE);
     let reload = |step: u32| {

@@ -28,7 +28,7 @@ fn a_file_longer_than_the_limit_is_an_error_and_leaves_nothing() {
     let gif = ["render", "--size", "64x36", "--backend", "cpu", "--frames", "0..3", "-o", "a.gif"];
     for arguments in [&[&RENDER[..], &["--backend", "cpu"]].concat(), &gif[..]] {
         let output = limited(folder.path(), &["prlimit", "--core=0", "--fsize=100"], arguments);
-        assert_one_line(&output, 1, "File too large");
+        assert_one_line(&output, 1, "the file would be larger than the system allows");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }
