@@ -5,6 +5,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod png_chunks;
+#[cfg(target_os = "linux")]
+mod special_paths;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,5 @@
 use glam::UVec3;
+use proptest::prelude::*;
 
 use super::phase::{phase_function, sample_scattered_direction};
 use super::random::Random;
@@ -77,4 +78,24 @@ fn equal_seeds_give_equal_images_and_an_error_cancels_the_trace() {
     let stopped =
         path_trace.run(&ball(12), &medium, &[Vec3::Z], |sample| if sample < 2 { Ok(()) } else { Err(sample) });
     assert_eq!(stopped.unwrap_err(), 2);
+}
+
+#[test]
+fn random_media_give_finite_light_that_grows_with_the_albedo() {
+    let albedo = [0, 1, 2].map(|_| Medium::ALBEDO_RANGE);
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    let volume = ball(12);
+    proptest!(config, |(albedo in albedo, anisotropy in Medium::ANISOTROPY_RANGE, density in Medium::DENSITY_RANGE)| {
+        let medium = Medium { albedo: albedo.into(), anisotropy, density };
+        let lights = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+        let trace = PathTrace { size: 8, samples: 4, seed: 1 };
+        let traced = trace.run(&volume, &medium, &lights, |_| Ok::<_, ()>(())).unwrap();
+        prop_assert!(traced.coverage.texels.iter().all(|coverage| (0.0..=1.0).contains(coverage)));
+        for light in 0..lights.len() {
+            let mean = traced.mean(light);
+            prop_assert!(mean.is_finite() && mean.min_element() >= 0.0, "{}: {}", light, mean);
+            // The channels share their paths.
+            prop_assert_eq!(medium.albedo.x <= medium.albedo.y, mean.x <= mean.y, "{}: {}", light, mean);
+        }
+    });
 }

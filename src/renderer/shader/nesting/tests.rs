@@ -1,3 +1,6 @@
+use proptest::prelude::*;
+use proptest::sample::select;
+
 use super::*;
 use crate::renderer::shader::{Sources, sources};
 
@@ -66,23 +69,27 @@ fn every_kind_of_nesting_is_refused_in_one_line() {
     }
 }
 
-#[test]
-fn accepted_texts_compile_on_a_small_stack() {
+/// Parses and validates a text, which may be invalid. A stack that overflows ends the process.
+fn compile_on_a_small_stack(name: &str, text: String) {
     // naga is optimised in tests: 40 levels fit in a sixth of this. Without optimisation they take half of 2 MiB.
     const STACK: usize = 512 << 10;
+    let compile = move || {
+        let module = naga::front::wgsl::parse_str(&text).ok()?;
+        let flags = naga::valid::ValidationFlags::all();
+        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::all());
+        validator.validate(&module).ok()
+    };
+    let thread = std::thread::Builder::new().name(name.into()).stack_size(STACK);
+    thread.spawn(compile).unwrap().join().unwrap();
+}
+
+#[test]
+fn accepted_texts_compile_on_a_small_stack() {
     for count in 1..=MAX_DEPTH {
         for (name, text) in nested(count) {
-            if check_nesting(&text).is_err() {
-                continue;
+            if check_nesting(&text).is_ok() {
+                compile_on_a_small_stack(name, text);
             }
-            let compile = move || {
-                let module = naga::front::wgsl::parse_str(&text).ok()?;
-                let flags = naga::valid::ValidationFlags::all();
-                let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::all());
-                validator.validate(&module).ok()
-            };
-            let thread = std::thread::Builder::new().name(name.into()).stack_size(STACK);
-            thread.spawn(compile).unwrap().join().unwrap();
         }
     }
 }
@@ -126,4 +133,59 @@ fn embedded_shaders_are_well_below_the_limits() {
     }
     // Room for the edits of a shader author.
     assert!(4 * most.depth <= 3 * MAX_DEPTH && 2 * most.declarations <= MAX_DECLARATIONS, "{most:?}");
+}
+
+/// A random expression or statement of nested parts.
+fn nested_at_random() -> impl Strategy<Value = String> {
+    let parts = select(vec![
+        ("(", ")"),
+        ("abs(", ")"),
+        ("-", ""),
+        ("!", ""),
+        ("", "+x"),
+        ("", ".x"),
+        ("", "[0]"),
+        ("x<", ""),
+        ("array<i32, 1>(", ")[0]"),
+        ("select(x, ", ", b)"),
+        ("/* ( */", "// )\n"),
+        ("vec2<i32>(", ").x"),
+        ("x & ", ""),
+        ("b && ", ""),
+        ("*&", ""),
+    ]);
+    let statements = select(vec![
+        ("{", "}"),
+        ("if b {", "}"),
+        ("if b { x = 1; } else ", ""),
+        ("if b { } else {", "}"),
+        ("loop { if b { break; }", "}"),
+        ("for (var i = 0; i < x; i++) {", "}"),
+        ("while b {", "}"),
+        ("switch x { case 1, default: {", "}}"),
+        ("{ x = 1; ", "; }"),
+        ("", ";;"),
+    ]);
+    let around = |inside: String, parts: Vec<((&str, &str), usize)>| {
+        parts.into_iter().fold(inside, |inside, ((open, close), count)| {
+            format!("{}{inside}{}", open.repeat(count), close.repeat(count))
+        })
+    };
+    // Rarely long, so that many texts are accepted.
+    let count = prop_oneof![8 => 1_usize..12, 1 => 1_usize..20_000];
+    let expression =
+        proptest::collection::vec((parts, count.clone()), 1..8).prop_map(move |parts| around("x".into(), parts));
+    (expression, proptest::collection::vec((statements, count), 0..5))
+        .prop_map(move |(expression, statements)| around(format!("{{ x = i32({expression}); }}"), statements))
+}
+
+#[test]
+fn random_nesting_is_refused_or_compiles_on_a_small_stack() {
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    proptest!(config, |(statements in nested_at_random())| {
+        let text = shader(&statements);
+        if check_nesting(&text).is_ok() {
+            compile_on_a_small_stack("random", text);
+        }
+    });
 }
