@@ -44,6 +44,8 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
         ("four samples", MIN_PSNR, HostKind { samples: 4, ..host() }),
         ("four samples, sRGB", MIN_PSNR, HostKind { samples: 4, color_format: Format::Rgba8UnormSrgb, ..host() }),
         ("Depth24Plus", MIN_PSNR, HostKind { depth_format: Format::Depth24Plus, ..host() }),
+        // One step of 16 bits is 2 cm at 12 m from the camera.
+        ("Depth16Unorm", 50.0, HostKind { depth_format: Format::Depth16Unorm, ..host() }),
         ("Depth24PlusStencil8", MIN_PSNR, HostKind { depth_format: Format::Depth24PlusStencil8, ..host() }),
         ("Depth32FloatStencil8", MIN_PSNR, HostKind { depth_format: Format::Depth32FloatStencil8, ..host() }),
         ("Rg11b10Ufloat", 50.0, HostKind { color_format: Format::Rg11b10Ufloat, ..host() }),
@@ -96,6 +98,25 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
                 assert!(untouched, "the smoke was drawn to the additional attachment {format:?}");
             }
         }
+    }
+}
+
+#[test]
+fn multisampled_targets_show_the_same_smoke_with_any_depth_attachment() {
+    let mut scene = TestScene::new(SIZE);
+    let single = scene.on_gpu(gpu()).picture;
+    scene.host.samples = 4;
+    let multisampled = scene.on_gpu(gpu()).picture;
+    let same = psnr(&multisampled, &single);
+    // The blended samples of a pixel are averaged, and rounded once more.
+    assert!(same >= 80.0, "{same:.1} dB from one sample");
+    let mut with_stencil = scene.clone();
+    with_stencil.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
+    scene.attach_depth = false;
+    for (name, scene) in [("not attached", scene), ("Depth24PlusStencil8", with_stencil)] {
+        let same = psnr(&scene.on_gpu(gpu()).picture, &multisampled);
+        println!("{name}: {same:.1} dB");
+        assert!(same >= 97.0, "{name}: {same:.1} dB");
     }
 }
 

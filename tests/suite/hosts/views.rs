@@ -71,6 +71,24 @@ fn handedness_and_up_axis_do_not_change_the_image() {
 }
 
 #[test]
+fn smoke_50_km_from_the_origin_looks_the_same() {
+    let offset = vec3(50_000.0, 0.0, -50_000.0);
+    for path in [RenderPath::Raster, RenderPath::Tiled, RenderPath::Forward] {
+        if path == RenderPath::Tiled && !is_tiled_available() {
+            continue;
+        }
+        let mut scene = TestScene::new(SIZE);
+        scene.settings.path = path;
+        let far = transform_world(scene, Mat4::from_translation(offset) * Mat4::from_rotation_y(0.7));
+        // Positions there are multiples of 4 mm, and so they are back at the origin.
+        let near = transform_world(far.clone(), Mat4::from_translation(-offset)).on_gpu(gpu()).picture;
+        let psnr = psnr(&far.on_gpu(gpu()).picture, &near);
+        println!("{}: {psnr:.1} dB", path.name());
+        assert!(psnr >= 57.0, "{}: {psnr:.1} dB", path.name());
+    }
+}
+
+#[test]
 fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() {
     let orthographic = |near| rh::proj::directx::orthographic(-4.0, 4.0, -2.25, 2.25, near, 80.0);
     let perspective = TestScene::new(SIZE).view.clip_from_view;
