@@ -43,10 +43,10 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     let covered = coverage(amount, system.boost);
     var light = vec3f(0.0);
     if SIX_WAY {
-        light = diffuse_from_six_way(fragment.six_way, position);
+        light = diffuse_from_six_way(fragment.six_way, position, in.optical_depths);
     } else {
         let normal = fragment.normal * inverseSqrt(max(dot(fragment.normal, fragment.normal), 1.0e-12));
-        light = diffuse_from_lights(normal, covered, position);
+        light = diffuse_from_lights(normal, covered, position, in.optical_depths);
     }
     light = light * system.diffuse_intensity + soft_scatter(amount);
     if AGE_COLOR {

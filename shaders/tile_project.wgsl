@@ -18,6 +18,8 @@
 @group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
 @group(3) @binding(4) var<storage, read_write> keys: array<u32>;
 @group(3) @binding(5) var<storage, read_write> indices: array<u32>;
+// Optical depths of the smoke before each sprite, if SHADOW, in xyz.
+@group(3) @binding(6) var<storage, read_write> optical_depths: array<vec4f>;
 
 // True: sprites are unsorted and their normals are weighted.
 override WEIGHTED: bool = false;
@@ -80,6 +82,9 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
     let visible = !placed.hidden && index < system.alive_count && all(first < last);
+    if SHADOW {
+        optical_depths[index] = vec4f(placed.optical_depths, 0.0);
+    }
     if visible {
         sprites[index] = sprite;
     } else {

@@ -8,6 +8,7 @@ override ATTACHMENT_COUNT: u32 = 1u;
 // Index of each role's texture among them. 0: the system does not have it.
 override SIX_WAY_SLOT: u32 = 0u;
 override WEIGHTS_SLOT: u32 = 0u;
+override OPTICAL_DEPTHS_SLOT: u32 = 0u;
 
 // Values of a fragment or a texel, by role.
 struct Attachments {
@@ -15,6 +16,8 @@ struct Attachments {
     six_way: vec4f,
     // Sum of the normals' weights.
     weights: f32,
+    // Weighted optical depths towards the lights with shadow in rgb, sum of weights in a.
+    optical_depths: vec4f,
 }
 
 fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
@@ -24,6 +27,9 @@ fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
     }
     if WEIGHTS_SLOT != 0u {
         total.weights += next.weights;
+    }
+    if OPTICAL_DEPTHS_SLOT != 0u {
+        total.optical_depths += next.optical_depths;
     }
     return total;
 }
@@ -38,6 +44,9 @@ fn slots_from_attachments(first: vec4f, values: Attachments) -> array<vec4f, MAX
     if WEIGHTS_SLOT != 0u {
         slots[WEIGHTS_SLOT] = vec4f(values.weights);
     }
+    if OPTICAL_DEPTHS_SLOT != 0u {
+        slots[OPTICAL_DEPTHS_SLOT] = values.optical_depths;
+    }
     return slots;
 }
 
@@ -51,6 +60,9 @@ fn attachments_from_slots(read: array<vec4f, MAX_TARGET_ATTACHMENTS>) -> Attachm
     }
     if WEIGHTS_SLOT != 0u {
         values.weights = slots[WEIGHTS_SLOT].r;
+    }
+    if OPTICAL_DEPTHS_SLOT != 0u {
+        values.optical_depths = slots[OPTICAL_DEPTHS_SLOT];
     }
     return values;
 }

@@ -16,6 +16,9 @@ const MAX_LIGHTS: u32 = 128u;
 // View space. Only lights that reach the system.
 @group(1) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
 
+// Optical depths from the cells of the frame's density grid towards the lights with shadow.
+@group(1) @binding(2) var shadow_volume: texture_3d<f32>;
+
 @group(2) @binding(0) var sprite: texture_2d_array<f32>;
 // x is the diffuse coordinate of the normal, y the amount times boost.
 @group(2) @binding(1) var diffuse_ramp: texture_2d<f32>;
@@ -33,6 +36,8 @@ const MAX_LIGHTS: u32 = 128u;
 // x is the mip level, y the frame; see alpha_bounds_texel().
 @group(2) @binding(11) var sprite_alpha_bounds: texture_2d<u32>;
 @group(2) @binding(12) var backlight_ramp: texture_2d<f32>;
+// x by optical depth, y by the angle between light and viewer: see shadow_position().
+@group(2) @binding(13) var shadow_ramp: texture_2d<f32>;
 
 // Depth of the host at a pixel of the view.
 fn load_scene_depth(pixel: vec2i) -> f32 {

@@ -3,6 +3,7 @@
 #import "lib/bindings.wgsl"
 #import "lib/ramp.wgsl"
 #import "lib/six_way.wgsl"
+#import "lib/shadow.wgsl"
 
 const SOFT_SCATTER_MODE_SMOOTHSTEP: u32 = 0u;
 const SOFT_SCATTER_MODE_RAMP: u32 = 1u;
@@ -12,9 +13,18 @@ const BACKLIGHT_SAME: u32 = 0u;
 const BACKLIGHT_RAMP: u32 = 1u;
 override BACKLIGHT: u32 = BACKLIGHT_SAME;
 
+// Share of a light that comes through the smoke before it. `depths`: optical depths towards the lights with shadow.
+fn shadow_on_light(slot: f32, depths: vec3f, to_light: vec3f, to_viewer: vec3f) -> vec3f {
+    if !SHADOW || slot < 0.5 {
+        return vec3f(1.0);
+    }
+    let at = shadow_position(depth_of_slot(slot, depths), to_light, to_viewer);
+    return mix(vec3f(1.0), sample_ramp_2d(shadow_ramp, linear_sampler, at), system.shadow_strength);
+}
+
 // Sum of all lights through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · color · attenuation. (OTEE
 // "Diffuse lighting")
-fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
+fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f, depths: vec3f) -> vec3f {
     let to_viewer = direction_to_viewer(position, view.orthographic);
     var sum = vec3f(0.0);
     for (var i = 0u; i < system.light_count; i++) {
@@ -25,18 +35,21 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
             let against = sample_ramp_2d(backlight_ramp, linear_sampler, at);
             falloff = mix(falloff, against, backlight_weight(light.direction, to_viewer));
         }
-        sum += falloff * lights[i].color * light.attenuation;
+        let shadow = shadow_on_light(lights[i].shadow_slot, depths, light.direction, to_viewer);
+        sum += falloff * lights[i].color * light.attenuation * shadow;
     }
     return sum;
 }
 
 // Sum of all lights through six-way maps.
-fn diffuse_from_six_way(six_way: SixWay, position: vec3f) -> vec3f {
+fn diffuse_from_six_way(six_way: SixWay, position: vec3f, depths: vec3f) -> vec3f {
+    let to_viewer = direction_to_viewer(position, view.orthographic);
     var sum = vec3f(0.0);
     for (var i = 0u; i < system.light_count; i++) {
         let light = sample_light(lights[i], position);
         let response = six_way_response(six_way.positive, six_way.negative, light.direction, system.six_way_anisotropy);
-        sum += lights[i].color * (response * light.attenuation);
+        let shadow = shadow_on_light(lights[i].shadow_slot, depths, light.direction, to_viewer);
+        sum += lights[i].color * (response * light.attenuation) * shadow;
     }
     return sum * system.six_way_color;
 }

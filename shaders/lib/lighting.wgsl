@@ -19,7 +19,8 @@ struct Light {
     spot_scale: f32,
     spot_offset: f32,
     radius: f32,
-    padding: f32,
+    // Channel of the light's optical depths, 1 to 3; 0 for a light without shadow.
+    shadow_slot: f32,
 }
 
 struct LightSample {

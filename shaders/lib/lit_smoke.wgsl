@@ -31,6 +31,8 @@ struct Surface {
     normal: vec3f,
     // If the target has six-way light.
     six_way: SixWay,
+    // Mean of the smoke before it, towards the lights with shadow.
+    optical_depths: vec3f,
 }
 
 // Samples the textures behind the first at a pixel of the view.
@@ -66,6 +68,10 @@ fn load_attachments(texel: vec2i) -> Attachments {
 // Decodes a texel of the first texture, and the values of the others.
 fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Surface {
     var surface: Surface;
+    if OPTICAL_DEPTHS_SLOT != 0u {
+        let depths = attachments.optical_depths;
+        surface.optical_depths = depths.rgb / max(depths.a, 1.0e-6);
+    }
     if SIX_WAY_SLOT != 0u {
         // The fit of an upsampler may fall below 0, which means no light.
         let negative = attachments.six_way;
@@ -84,7 +90,7 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
 
 fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
     if SIX_WAY_SLOT != 0u {
-        return diffuse_from_six_way(surface.six_way, position) * system.diffuse_intensity;
+        return diffuse_from_six_way(surface.six_way, position, surface.optical_depths) * system.diffuse_intensity;
     }
     let normal = surface.normal;
     var light = vec3f(0.0);
@@ -98,7 +104,9 @@ fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
             light = sample_ramp_2d(painted_motif, linear_sampler, motif_position(normal) * 0.5 + 0.5);
         }
         case DIFFUSE_MODE_SPHERICAL_HARMONICS: { light = spherical_harmonics(system.spherical_harmonics, normal); }
-        default: { light = diffuse_from_lights(normal, coverage(amount, system.boost), position); }
+        default: {
+            light = diffuse_from_lights(normal, coverage(amount, system.boost), position, surface.optical_depths);
+        }
     }
     return light * system.diffuse_intensity;
 }

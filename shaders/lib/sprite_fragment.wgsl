@@ -26,14 +26,18 @@ struct SpriteFragment {
 const NO_LIGHT: SixWay = SixWay(vec3f(0.0), vec3f(0.0));
 const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, true);
 
-// Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal.
-fn attachments_from_fragment(fragment: SpriteFragment, weight: f32) -> Attachments {
+// Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal. `optical_depths`: those
+// of its sprite.
+fn attachments_from_fragment(fragment: SpriteFragment, weight: f32, optical_depths: vec3f) -> Attachments {
     var values: Attachments;
     if SIX_WAY_SLOT != 0u {
         values.six_way = vec4f(fragment.six_way.negative * weight, weight);
     }
     if WEIGHTS_SLOT != 0u {
         values.weights = weight;
+    }
+    if OPTICAL_DEPTHS_SLOT != 0u {
+        values.optical_depths = vec4f(optical_depths * weight, weight);
     }
     return values;
 }

@@ -3,6 +3,8 @@
 // trimming", 2009)
 
 #import "lib/bindings.wgsl"
+#import "lib/density_grid.wgsl"
+#import "lib/shadow.wgsl"
 #import "lib/sprite.wgsl"
 #import "lib/soft_fade.wgsl"
 #import "lib/technique.wgsl"
@@ -32,6 +34,8 @@ struct SpriteVertex {
     @location(4) @interpolate(flat, either) rotation: vec2f,
     // Weight of the normal under the order `weighted`.
     @location(5) @interpolate(flat, either) weight: f32,
+    // Of the smoke before the sprite, towards the lights with shadow.
+    @location(6) @interpolate(flat, either) optical_depths: vec3f,
 }
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
@@ -86,6 +90,25 @@ struct ProjectedSprite {
     centre_radius: vec4f,
     amount_lod_frame_age: vec4f,
     rotation: vec2f,
+    optical_depths: vec3f,
+}
+
+// Mean optical depth over the square of a particle's sprite, as it casts shadow.
+fn sprite_optical_depth(particle: Particle) -> f32 {
+    let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity;
+    return system.shadow_density * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
+}
+
+// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `centre`: view space.
+fn optical_depths_of(particle: Particle, centre: vec3f) -> vec3f {
+    if !SHADOW {
+        return vec3f(0.0);
+    }
+    let place = (system.grid_from_view * vec4f(centre, 1.0)).xyz;
+    let inside = clamp(place, vec3f(0.5), system.grid_size - 0.5) / vec3f(textureDimensions(shadow_volume));
+    let in_grid = textureSampleLevel(shadow_volume, linear_sampler, inside, 0.0).rgb;
+    let radius = particle.position_radius.w * system.size * system.cells_per_metre;
+    return foreign_optical_depths(in_grid, own_optical_depth(radius, sprite_optical_depth(particle)));
 }
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.
@@ -120,6 +143,7 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
         vec4f(centre, radius),
         vec4f(amount, lod, shown_frame, age),
         vec2f(cos(angle), sin(angle)),
+        optical_depths_of(particle, centre),
     );
 }
 
@@ -163,6 +187,7 @@ fn sprite_vertex(
     out.amount_lod_frame_age = sprite.amount_lod_frame_age;
     out.rotation = sprite.rotation;
     out.weight = 1.0;
+    out.optical_depths = sprite.optical_depths;
     let centre = sprite.centre_radius.xyz;
     let corner = sprite_corner(corner_index);
     var clip: vec4f;

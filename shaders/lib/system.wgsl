@@ -58,8 +58,9 @@ struct System {
     depth_weight: f32,
     // Particles from this index on are not drawn. Copied from a host's buffer if only the GPU knows it.
     alive_count: u32,
-    padding0: f32,
-    padding1: f32,
+    // Density of the sprite: see mean_optical_depth().
+    mean_alpha: f32,
+    peak_alpha: f32,
     // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
     // Metres behind the scene at which sprites still show, under the curve `always`.
@@ -71,4 +72,13 @@ struct System {
     front_knots: array<vec4f, 4>,
     // Diffuse light as spherical harmonics, rgb.
     spherical_harmonics: array<vec4f, 9>,
+    // Density grid, in cells.
+    grid_from_view: mat4x4f,
+    grid_size: vec3f,
+    cells_per_metre: f32,
+    // 0: no shadow.
+    shadow_strength: f32,
+    shadow_density: f32,
+    padding0: f32,
+    padding1: f32,
 }

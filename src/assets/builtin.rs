@@ -62,6 +62,7 @@ pub const RAMPS: &[Builtin] = builtin!(
         "backlight_traced_dust",
         "backlight_traced_diesel",
         "backlight_traced_milk",
+        "shadow_neutral",
         "scatter_mist",
         "scatter_soot",
         "specular_halo",

@@ -8,6 +8,7 @@ use super::noise::NoiseVolume;
 use super::ramp::Ramp;
 use super::sprite::Sprite;
 use super::sprite::alpha_bounds::AlphaBounds;
+use super::sprite::sprite_density::SpriteDensity;
 use crate::error::FieldError;
 use crate::formula::diffuse_bake::zonal_coefficients;
 use crate::formula::ramp::sample_ramp_2d;
@@ -31,6 +32,9 @@ pub struct MaterialAssets {
     pub diffuse_ramp: Ramp,
     /// Diffuse light from behind, with the same axes, for [`Backlight::Ramp`](crate::settings::Backlight::Ramp).
     pub backlight_ramp: Ramp,
+    /// Light that has come through smoke. u = 1 − 2^(−optical depth): 0 in full light. v: 0 for a light on the viewer's
+    /// side, 1 for a light behind the smoke.
+    pub shadow_ramp: Ramp,
     /// Soft scatter by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
     pub soft_scatter_ramp: Ramp,
     /// Specular scatter by distance² (across) and amount (up).
@@ -59,7 +63,7 @@ impl MaterialAssets {
             && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares_memory(b))
     }
 
-    fn ramps(&self) -> [&Ramp; 7] {
+    fn ramps(&self) -> [&Ramp; 8] {
         [
             &self.diffuse_ramp,
             &self.soft_scatter_ramp,
@@ -68,6 +72,7 @@ impl MaterialAssets {
             &self.age_ramp,
             &self.coverage_ramp,
             &self.backlight_ramp,
+            &self.shadow_ramp,
         ]
     }
 
@@ -86,6 +91,7 @@ impl MaterialAssets {
                 lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
             }),
             six_way: self.six_way.as_ref().map(|maps| (maps.size(), maps.frame_count())),
+            density: SpriteDensity::new(&self.sprite),
             zonal: zonal(&self.diffuse_ramp),
             backlight_zonal: zonal(&self.backlight_ramp),
         }
@@ -106,6 +112,8 @@ pub struct MaterialInfo {
     pub detail: Option<DetailInfo>,
     /// Frame size in texels and frame count of the six-way maps.
     pub six_way: Option<(u32, u32)>,
+    /// Density of the sprite, for shadow.
+    pub(crate) density: SpriteDensity,
     /// Zonal harmonic coefficients of the diffuse ramp.
     pub zonal: [Vec3; 3],
     /// Zonal harmonic coefficients of the backlight ramp.

@@ -3,6 +3,7 @@
 
 pub mod blending;
 pub mod color;
+pub mod density_grid;
 pub mod depth;
 pub mod diffuse_bake;
 pub mod emitter;
@@ -13,6 +14,7 @@ pub mod noise_volume;
 pub mod normal;
 pub mod order;
 pub mod ramp;
+pub mod shadow;
 pub mod six_way;
 pub mod smoke_extent;
 pub mod soft_fade;

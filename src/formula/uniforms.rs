@@ -53,7 +53,7 @@ uniform! {
         spot_scale: f32,
         spot_offset: f32,
         radius: f32,
-        padding: f32,
+        shadow_slot: f32,
     }
 }
 
@@ -104,13 +104,39 @@ uniform! {
         noise_octaves: u32,
         depth_weight: f32,
         alive_count: u32,
-        padding: [f32; 2],
+        mean_alpha: f32,
+        peak_alpha: f32,
         noise_offset: Vec3,
         show_through_distance: f32,
         six_way_color: Vec3,
         six_way_anisotropy: f32,
         front_knots: [Vec4; 4],
         spherical_harmonics: [Vec4; 9],
+        grid_from_view: Mat4,
+        grid_size: Vec3,
+        cells_per_metre: f32,
+        shadow_strength: f32,
+        shadow_density: f32,
+        padding: [f32; 2],
+    }
+}
+
+uniform! {
+    /// `ShadowMarch` in `shaders/shadow_march.wgsl`.
+    ShadowMarchUniform {
+        lights: [Vec4; 3],
+        size: Vec3,
+        padding: f32,
+    }
+}
+
+uniform! {
+    /// `Splat` in `shaders/density_splat.wgsl`.
+    SplatUniform {
+        count: u32,
+        first: u32,
+        columns: u32,
+        padding: u32,
     }
 }
 

@@ -81,7 +81,7 @@ impl Light {
             spot_scale,
             spot_offset,
             radius: self.radius,
-            padding: 0.0,
+            shadow_slot: 0.0,
         }
     }
 }

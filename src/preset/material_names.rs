@@ -38,6 +38,9 @@ settings! {
         diffuse_ramp: String = "diffuse_soft".into(), image(ImageRole::Ramp);
         /// The same for light from behind: a glowing rim, a dark middle.
         backlight_ramp: String = "backlight_traced_ash".into(), image(ImageRole::Ramp);
+        /// Light that has come through smoke: by the smoke's optical depth and, if it has rows, by how far behind the
+        /// smoke the light is.
+        shadow_ramp: String = "shadow_neutral".into(), image(ImageRole::Ramp);
         /// Light by amount: the colors of thin and thick smoke, independent of the lights.
         soft_scatter_ramp: String = "scatter_mist".into(), image(ImageRole::Ramp);
         /// Glow by distance² and amount: the look of a light that shines through smoke.
@@ -97,6 +100,7 @@ impl MaterialNames {
             ramp("age_ramp", &self.age_ramp, builtin::RAMPS),
             ramp("coverage_ramp", &self.coverage_ramp, builtin::RAMPS),
             ramp("backlight_ramp", &self.backlight_ramp, builtin::RAMPS),
+            ramp("shadow_ramp", &self.shadow_ramp, builtin::RAMPS),
         );
         let noise = match builtin::find(builtin::NOISES, &self.noise) {
             Some(noise) => noise.noise(),
@@ -108,7 +112,7 @@ impl MaterialNames {
         match (sprite, ramps, noise) {
             (
                 Some(SpriteImages { sprite, detail, six_way }),
-                (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g)),
+                (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g), Some(h)),
                 Some(noise),
             ) => Ok(MaterialAssets {
                 sprite,
@@ -122,6 +126,7 @@ impl MaterialNames {
                 age_ramp: e,
                 coverage_ramp: f,
                 backlight_ramp: g,
+                shadow_ramp: h,
             }),
             _ => Err(errors),
         }
@@ -140,6 +145,7 @@ impl MaterialNames {
                 "age_ramp" => (&mut names.age_ramp, &defaults.age_ramp),
                 "coverage_ramp" => (&mut names.coverage_ramp, &defaults.coverage_ramp),
                 "backlight_ramp" => (&mut names.backlight_ramp, &defaults.backlight_ramp),
+                "shadow_ramp" => (&mut names.shadow_ramp, &defaults.shadow_ramp),
                 "noise" => (&mut names.noise, &defaults.noise),
                 _ => {
                     (names.detail, names.six_way) = (String::new(), String::new());

@@ -14,10 +14,11 @@ use super::pass::depth_resolve::DepthResolveKey;
 use super::pipelines::Pipelines;
 use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
-use super::tiled::TiledPipelines;
+use super::tiled::{TiledPipelines, volume};
 use crate::assets::material_assets::MaterialAssets;
 use crate::error::Error;
 use crate::frame::Material;
+use crate::view_setup::Support;
 
 /// Resources that all renderers of one device share: device, queue, shader modules, bind group layouts, samplers and
 /// pipelines. A clone refers to the same context. A context can be used from any thread.
@@ -38,11 +39,13 @@ pub(crate) struct Shared {
     pub queue: wgpu::Queue,
     pub layouts: Layouts,
     textures: SharedTextures,
+    /// Bound in place of optical depths where no system receives shadow.
+    pub no_shadow: wgpu::TextureView,
     pub pipelines: Pipelines,
     /// [`read_only_depth_is_supported`], queried once, because every query copies the adapter's information.
     pub read_only_depth: bool,
-    /// True if the device supports six-way lighting; otherwise smoke is lit by normals.
-    pub six_way: bool,
+    /// Capabilities that settings depend on.
+    pub support: Support,
     path_model: Mutex<PathModel>,
 }
 
@@ -111,8 +114,9 @@ impl Context {
             number,
             device_number: device_number.unwrap_or(number),
             textures: SharedTextures::new(&Gpu { device: &device, queue }),
+            no_shadow: volume(&device, 1, wgpu::TextureUsages::empty()),
             read_only_depth: read_only_depth_is_supported(&device),
-            six_way: six_way_is_supported(&device),
+            support: Support { six_way: six_way_is_supported(&device), shadow: pipelines.tiled.is_some() },
             path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
             device,
             queue: queue.clone(),

@@ -6,6 +6,7 @@ use super::context::Shared;
 use super::frame_bindings::FrameBindings;
 use super::gpu::Gpu;
 use super::plan::PipelineInputs;
+use super::tiled::FrameShadow;
 use crate::frame::FrameInput;
 use crate::view_setup::ViewGeometry;
 
@@ -19,4 +20,6 @@ pub(crate) struct FrameContext<'a> {
     pub host_size: UVec2,
     pub inputs: &'a PipelineInputs<'a>,
     pub bindings: &'a FrameBindings,
+    /// Density grid, if any system receives shadow.
+    pub shadow: Option<FrameShadow<'a>>,
 }

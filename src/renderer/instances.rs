@@ -15,6 +15,15 @@ pub(crate) enum SortedBy {
     Gpu,
 }
 
+/// Compute shaders that read the particles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ComputeReaders {
+    /// The path `tiled`, with the processor that sorts.
+    pub tiled: Option<SortedBy>,
+    /// The density grid of the frame.
+    pub shadow: bool,
+}
+
 #[derive(Debug, Default)]
 pub(crate) struct Instances {
     buffer: Option<wgpu::Buffer>,
@@ -34,7 +43,7 @@ impl Instances {
         order: &mut DrawingOrder,
         particles: Particles<'_>,
         settings: &Settings,
-        tiled: Option<SortedBy>,
+        readers: ComputeReaders,
     ) -> Option<Sprites> {
         let loops = settings.sprite.debug_loop;
         let particles = match particles {
@@ -49,13 +58,13 @@ impl Instances {
                 &self.evaluated
             }
         };
-        let is_sorted = settings.order() == BlendOrder::Sorted && tiled != Some(SortedBy::Gpu);
+        let is_sorted = settings.order() == BlendOrder::Sorted && readers.tiled != Some(SortedBy::Gpu);
         order.write(particles, is_sorted, &mut self.sorted);
         let needed = size_of_val(self.sorted.as_slice()) as u64;
         let held = self.bytes();
         let should_release = self.idle.tick(needed.next_power_of_two() * 4 <= held);
         let mut usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
-        usage.set(wgpu::BufferUsages::STORAGE, tiled.is_some());
+        usage.set(wgpu::BufferUsages::STORAGE, readers.tiled.is_some() || readers.shadow);
         let fits = self.buffer.as_ref().is_some_and(|buffer| buffer.usage().contains(usage) && needed <= held);
         if !fits || should_release {
             self.buffer = None;

@@ -10,7 +10,10 @@ pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as 
 
 /// Bindings of a material that the passes that light accumulated smoke read: the ramps, their sampler, and the painted
 /// motif. WebGPU and WebGL2 guarantee 16 textures per stage, too few for all of the material's with the target's.
-pub(crate) const LIGHTING_BINDINGS: [u32; 7] = [1, 2, 3, 4, 5, 10, 12];
+pub(crate) const LIGHTING_BINDINGS: [u32; 8] = [1, 2, 3, 4, 5, 10, 12, 13];
+
+/// Format of the optical depths in the cells of the density grid.
+pub(crate) const SHADOW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// Number of textures that transfer reads: first attachment, reduced depth, baked light, further attachments.
 pub(crate) const TRANSFER_TEXTURES: usize = 3 + (MAX_TARGET_ATTACHMENTS - 1);
@@ -69,6 +72,7 @@ impl Layouts {
             texture(filterable, D2),
             texture(wgpu::TextureSampleType::Uint, D2),
             texture(filterable, D2),
+            texture(filterable, D2),
         ];
         let multisampled = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Depth,
@@ -79,7 +83,10 @@ impl Layouts {
         transfer[2] = texture(filterable, D2Array);
         Self {
             frame: layout("haze frame", &[uniform(size_of::<ViewUniform>() as u64), texture(unfilterable, D2)]),
-            system: layout("haze system", &[uniform(size_of::<SystemUniform>() as u64), uniform(LIGHTS_SIZE)]),
+            system: layout(
+                "haze system",
+                &[uniform(size_of::<SystemUniform>() as u64), uniform(LIGHTS_SIZE), texture(filterable, D3)],
+            ),
             material: layout("haze material", &material),
             lighting: layout_of("haze material lighting", &|binding| LIGHTING_BINDINGS.contains(&binding), &material),
             depth_resolve: layout("haze depth samples", &[multisampled]),

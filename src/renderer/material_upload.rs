@@ -73,6 +73,7 @@ pub(crate) fn create_material(
     let age_ramp = ramp("haze age_ramp", &assets.age_ramp);
     let coverage_ramp = ramp("haze coverage_ramp", &assets.coverage_ramp);
     let backlight_ramp = ramp("haze backlight_ramp", &assets.backlight_ramp);
+    let shadow_ramp = ramp("haze shadow_ramp", &assets.shadow_ramp);
     let texture = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
     let sampler =
         |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
@@ -90,6 +91,7 @@ pub(crate) fn create_material(
         texture(10, &coverage_ramp),
         texture(11, &alpha_bounds),
         texture(12, &backlight_ramp),
+        texture(13, &shadow_ramp),
     ];
     let bind = |label, layout, entries: &[wgpu::BindGroupEntry<'_>]| {
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
@@ -123,6 +125,7 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         ("age_ramp", &assets.age_ramp),
         ("coverage_ramp", &assets.coverage_ramp),
         ("backlight_ramp", &assets.backlight_ramp),
+        ("shadow_ramp", &assets.shadow_ramp),
     ];
     for (name, ramp) in ramps {
         check(name, ramp.size().max_element(), side, flat)?;

@@ -10,6 +10,8 @@ pub struct MemoryUse {
     pub buffers: u64,
     /// Part of `buffers` that compute shaders use.
     pub tiled: TiledMemory,
+    /// Density grid and optical depths, for shadow.
+    pub shadow: u64,
 }
 
 /// GPU memory of the path `tiled`, and of the sort of a host's particles for the other paths. All figures are bytes.
@@ -59,6 +61,7 @@ impl std::iter::Sum for MemoryUse {
             targets: sum.targets + part.targets,
             buffers: sum.buffers + part.buffers,
             tiled: sum.tiled + part.tiled,
+            shadow: sum.shadow + part.shadow,
         })
     }
 }

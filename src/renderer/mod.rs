@@ -32,7 +32,7 @@ mod warm_up;
 use crate::error::{Error, FieldError};
 use crate::frame::{FrameInput, SceneDepth};
 use crate::settings::DebugView;
-use crate::view_setup::{ResolvedSettings, ViewGeometry};
+use crate::view_setup::{ResolvedSettings, SmokeShadow, ViewGeometry};
 
 pub use auto::{PathChoice, PathCosts, PathModel, PathModelSource, PathReason, PathWorkload};
 pub use context::Context;
@@ -56,6 +56,7 @@ use plan::{PipelineInputs, plan};
 use resolved_depth::ResolvedDepth;
 use system_passes::SystemPasses;
 use system_state::SystemState;
+use tiled::ShadowVolume;
 use validate_frame::{host_size, validate};
 
 /// Draws particle systems into a host's frame.
@@ -75,6 +76,7 @@ pub struct Renderer {
     /// Present while the host's depth is multisampled.
     resolved_depth: Option<ResolvedDepth>,
     bindings: FrameBindings,
+    shadow_volume: ShadowVolume,
     states: Vec<SystemState>,
     /// Visible systems, farthest first.
     order: Vec<VisibleSystem>,
@@ -107,6 +109,7 @@ impl Renderer {
             timed_frame: None,
             resolved_depth: None,
             bindings: FrameBindings::new(device),
+            shadow_volume: ShadowVolume::default(),
             states: Vec::new(),
             order: Vec::new(),
             view: None,
@@ -137,7 +140,7 @@ impl Renderer {
             settings.validate(|| format!("settings[{index}]"))?;
             // The sprite's frame count is not known yet: compiles for one frame and for several.
             for frame_count in [1.0, 2.0] {
-                let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, shared.six_way);
+                let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, shared.support);
                 for &path in settings.path.candidates() {
                     let settings = resolved.with_path(path);
                     for back_faces in [false, true] {
@@ -186,9 +189,22 @@ impl Renderer {
 
         // Keeps the farthest sample of a multisampled scene depth.
         self.resolved_depth.iter().for_each(|resolved| resolved.pass(shared, &view).record(encoder, timing));
-        let host_size = host_size(frame);
-        let bindings = &self.bindings;
-        let context = FrameContext { gpu, shared, frame, view: &view, host_size, inputs: &inputs, bindings };
+        // Measures all systems: their smoke shades each other.
+        let states = &mut self.states;
+        let measured = frame.systems.iter().filter_map(|system| {
+            let state = states.iter_mut().find(|state| state.key == system.key)?;
+            Some(state.measure_box(shared, &view, system))
+        });
+        let shadow = SmokeShadow::new(frame.lights, measured);
+        // Places and clears the density grid around all systems, if any of them receives shadow.
+        if let Some(tiled) = &shared.pipelines.tiled {
+            self.shadow_volume.write(&gpu, tiled, shadow.as_ref());
+        }
+        let grid = shadow.as_ref().and_then(|shadow| self.shadow_volume.of_frame(shadow));
+        grid.iter().for_each(|_| self.shadow_volume.clear(encoder));
+        let (host_size, bindings) = (host_size(frame), &self.bindings);
+        let context =
+            FrameContext { gpu, shared, frame, view: &view, host_size, inputs: &inputs, bindings, shadow: grid };
         for system in frame.systems {
             let Some(index) = self.states.iter().position(|state| state.key == system.key) else { continue };
             let state = &mut self.states[index];
@@ -197,7 +213,9 @@ impl Renderer {
             if let (Some(timing), Some(choice)) = (timing, state.choice()) {
                 timing.add_choice(system.key, choice);
             }
-            let Some(passes) = state.passes() else { continue };
+            if state.passes().is_none() {
+                continue;
+            }
             self.order.push(VisibleSystem { state: index, distance: state.distance() });
             // Copies the number of a host's particles, if only the GPU knows it.
             state.alive().iter().for_each(|copy| copy.record(encoder));
@@ -205,7 +223,15 @@ impl Renderer {
             state.measure().iter().for_each(|pass| pass.record(encoder, timing));
             // Evaluates an emitter's particles, or sorts a host's particles back to front.
             state.particle_pass().iter().for_each(|pass| pass.record(encoder, timing));
-            let SystemPasses::Deferred(passes) = passes else { continue };
+            // Adds the sprites to the density grid.
+            state.splat().iter().for_each(|pass| pass.record(encoder, timing));
+        }
+        // Marches from the cells of the density grid to the lights.
+        if let (Some(shadow), Some(tiled)) = (&shadow, &shared.pipelines.tiled) {
+            self.shadow_volume.march(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
+        }
+        for visible in &self.order {
+            let Some(SystemPasses::Deferred(passes)) = self.states[visible.state].passes() else { continue };
             // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
             passes.depth_downsample.iter().chain(&passes.depth_copy).for_each(|pass| pass.record(encoder, timing));
             // Bakes all lights by normal, for the diffuse modes cubemap and motif.

@@ -63,6 +63,9 @@ impl Pipelines {
     /// Compiles the pipelines of a plan, or returns the shader error.
     pub fn compile(&self, plan: &Plan<'_>) -> Result<(), Error> {
         self.tiled.as_ref().map_or(Ok(()), TiledPipelines::compile_measure)?;
+        if plan.receives_shadow() {
+            self.tiled.as_ref().map_or(Ok(()), TiledPipelines::compile_shadow)?;
+        }
         match plan {
             Plan::Skip => Ok(()),
             Plan::Forward(plan) => {

@@ -20,7 +20,7 @@ use crate::frame::SceneDepth;
 use crate::settings::{
     BlendOrder, DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, RenderPath, Settings, Technique,
 };
-use crate::view_setup::{AttachmentSet, ResolvedSettings};
+use crate::view_setup::{AttachmentSet, ResolvedSettings, Support};
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,10 +145,12 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
     deferred.diffuse.mode = DiffuseMode::Cubemap;
     let mut lit = deferred;
     lit.accumulate.lighting_resolution = LightingResolution::Target;
+    lit.diffuse.mode = DiffuseMode::Ramp;
+    lit.shadow.strength = 1.0;
     let forward = Settings { path: RenderPath::Forward, ..Settings::default() };
     let tiled = Settings { path: RenderPath::Tiled, ..Settings::default() };
     [deferred, lit, forward, tiled]
-        .map(|settings| plan(&inputs, &ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 2.0, true), false))
+        .map(|settings| plan(&inputs, &ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 2.0, Support::ALL), false))
 }
 
 fn deferred<'a>(
@@ -287,6 +289,15 @@ impl DeferredPlan<'_> {
 }
 
 impl Plan<'_> {
+    /// Returns true if smoke shades the system.
+    pub fn receives_shadow(&self) -> bool {
+        match self {
+            Self::Skip => false,
+            Self::Forward(plan) => plan.key.sprite.receives_shadow(),
+            Self::Deferred(plan) => plan.accumulate.sprite.receives_shadow(),
+        }
+    }
+
     /// Returns true if the plan reads the scene's linear target.
     pub fn reads_linear_target(&self) -> bool {
         match self {

@@ -23,6 +23,7 @@ pub(crate) struct SpriteKey {
     curve: FadeCurve,
     linear_depth: bool,
     exact_filtering: bool,
+    shadow: bool,
 }
 
 impl SpriteKey {
@@ -37,11 +38,16 @@ impl SpriteKey {
             curve: settings.soft_fade.curve,
             linear_depth,
             exact_filtering,
+            shadow: settings.receives_shadow(),
         }
     }
 
     pub fn is_flat(&self) -> bool {
         self.technique.is_flat()
+    }
+
+    pub fn receives_shadow(&self) -> bool {
+        self.shadow
     }
 
     /// Returns the override constants of the shared files, followed by the pass's own.
@@ -55,6 +61,7 @@ impl SpriteKey {
             enum_constant!("FADE_CURVE", self.curve),
             bool_constant("LINEAR_DEPTH", self.linear_depth),
             bool_constant("EXACT_FILTERING", self.exact_filtering),
+            bool_constant("SHADOW", self.shadow),
         ];
         shared.into_iter().chain(of_pass).collect()
     }

@@ -2,13 +2,14 @@
 
 use super::frame_context::FrameContext;
 use super::gpu::idle_counter::IdleCounter;
-use super::instances::{Instances, SortedBy};
+use super::instances::{ComputeReaders, Instances, SortedBy};
 use super::memory_use::TiledMemory;
 use super::pass::Groups;
+use super::pass::density_splat::DensitySplat;
 use super::pass::measure::Measure;
 use super::sprite_instances::Sprites;
 use super::system_passes::ParticlePass;
-use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles};
+use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
 use super::validate_frame::is_readable_by_compute;
 use crate::frame::{Bounds, Particle, ParticleSystem, Particles};
 use crate::settings::{RenderPath, Settings};
@@ -25,6 +26,7 @@ pub(crate) struct SystemParticles {
     emitted: EmittedParticles,
     depth_sorted: SortedParticles,
     measured: MeasuredParticles,
+    splat: SplatParticles,
     /// Counts frames in which no host's particles were sorted, after which the sort's buffers are released.
     frames_unsorted: IdleCounter,
     /// Counts frames in which no host's particles were measured.
@@ -85,7 +87,9 @@ impl SystemParticles {
         }
         let sorted_by = shared.tiles().filter(|_| is_tiled);
         let sorted_by = sorted_by.map(|cooperative| if cooperative { SortedBy::Gpu } else { SortedBy::Cpu });
-        let sprites = self.instances.write(gpu, space, &mut self.measures.order, particles, settings, sorted_by)?;
+        let order = &mut self.measures.order;
+        let readers = ComputeReaders { tiled: sorted_by, shadow: context.shadow.is_some() };
+        let sprites = self.instances.write(gpu, space, order, particles, settings, readers)?;
         match &shared.pipelines.tiled {
             Some(tiled) if !is_tiled && particles.need_sorting(settings) => {
                 let (sprites, sort) = self.depth_sorted.write(gpu, tiled, &sprites);
@@ -111,6 +115,25 @@ impl SystemParticles {
         let sprites = Sprites::of_host(&particles, 1);
         let fade_distance = settings.soft_fade.max_distance();
         Some(self.measured.write(gpu, tiled, (&sprites, groups, system), host.depth.is_some(), fade_distance))
+    }
+
+    /// Prepares the pass that adds the system's sprites to the density grid of the frame. `None` without shadow, and for a
+    /// buffer that compute shaders cannot read.
+    pub fn splat_pass(
+        &mut self,
+        context: &FrameContext<'_>,
+        particles: Particles<'_>,
+        sprites: &Sprites,
+        groups: &Groups,
+    ) -> Option<DensitySplat> {
+        let FrameContext { gpu, shared, shadow, .. } = context;
+        let tiled = shared.pipelines.tiled.as_ref()?;
+        let is_readable = match &particles {
+            Particles::Buffer(particles) => is_readable_by_compute(particles),
+            _ => true,
+        };
+        let shadow = shadow.filter(|_| is_readable)?;
+        Some(self.splat.write(gpu, tiled, (sprites, groups), shadow.density))
     }
 
     /// Releases buffers that have not been needed for 120 frames. `is_untiled`: true if that is so for the path

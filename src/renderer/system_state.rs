@@ -12,6 +12,7 @@ use super::gpu::record::uniform_buffer;
 use super::layouts::LIGHTS_SIZE;
 use super::memory_use::MemoryUse;
 use super::pass::Groups;
+use super::pass::density_splat::DensitySplat;
 use super::pass::measure::Measure;
 use super::plan::{Plan, plan};
 use super::system_particles::SystemParticles;
@@ -21,11 +22,11 @@ use super::targets::TargetViews;
 use super::tiled::TiledSystem;
 use super::validate_frame::tiled_unavailable_reason;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use crate::frame::ParticleSystem;
+use crate::frame::{Bounds, ParticleSystem};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
-    ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, light_uniforms,
-    system_setup,
+    ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, ViewGeometry,
+    light_uniforms, system_setup,
 };
 
 /// Buffers and targets of one system, and its passes of the current frame.
@@ -35,7 +36,9 @@ pub(crate) struct SystemState {
     pub key: u64,
     uniform: wgpu::Buffer,
     lights: wgpu::Buffer,
-    bindings: wgpu::BindGroup,
+    bindings: SystemBindings,
+    /// Placement, settings and box of the current frame.
+    measured: Option<MeasuredSystem>,
     light_uniforms: Vec<LightUniform>,
     particles: SystemParticles,
     targets: SystemTargets,
@@ -51,6 +54,22 @@ pub(crate) struct SystemState {
     prepared: Option<PreparedSystem>,
 }
 
+/// Bind group 1, and the volume that it binds.
+#[derive(Debug)]
+struct SystemBindings {
+    group: wgpu::BindGroup,
+    optical_depths: wgpu::TextureView,
+}
+
+/// A system before it is placed in the view.
+#[derive(Clone, Copy, Debug)]
+struct MeasuredSystem {
+    space: ParticleSpace,
+    settings: ResolvedSettings,
+    /// Box that contains every sprite, world space.
+    bounds: Bounds,
+}
+
 #[derive(Debug)]
 struct PreparedSystem {
     setup: SystemSetup,
@@ -63,6 +82,7 @@ struct PreparedSystem {
     alive: Option<AliveCopy>,
     measure: Option<Measure>,
     particle_pass: Option<ParticlePass>,
+    splat: Option<DensitySplat>,
     passes: SystemPasses,
 }
 
@@ -71,19 +91,13 @@ impl SystemState {
         let device = &shared.device;
         let uniform = uniform_buffer(device, "haze system", size_of::<SystemUniform>() as u64);
         let lights = uniform_buffer(device, "haze lights", LIGHTS_SIZE);
-        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("haze system"),
-            layout: &shared.layouts.system,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: lights.as_entire_binding() },
-            ],
-        });
+        let bindings = SystemBindings::new(shared, &uniform, &lights, &shared.no_shadow);
         Self {
             key,
             uniform,
             lights,
             bindings,
+            measured: None,
             light_uniforms: Vec::new(),
             particles: SystemParticles::default(),
             targets: SystemTargets::default(),
@@ -116,6 +130,11 @@ impl SystemState {
         self.prepared.as_ref()?.particle_pass.as_ref()
     }
 
+    /// Returns the pass that adds the system to the density grid of the frame. It comes after the particles are produced.
+    pub fn splat(&self) -> Option<&DensitySplat> {
+        self.prepared.as_ref()?.splat.as_ref()
+    }
+
     /// Returns this frame's choice of the path `auto`.
     pub fn choice(&self) -> Option<PathChoice> {
         self.prepared.as_ref()?.choice
@@ -134,7 +153,7 @@ impl SystemState {
     pub fn memory_use(&self) -> MemoryUse {
         let tiled = self.tiles.memory() + self.particles.tiled_memory();
         let buffers = self.uniform.size() + self.lights.size() + self.particles.instance_bytes() + tiled.total();
-        MemoryUse { targets: self.targets.bytes(), buffers, tiled }
+        MemoryUse { targets: self.targets.bytes(), buffers, tiled, shadow: 0 }
     }
 
     pub fn counts(&self) -> FrameCounts {
@@ -200,6 +219,21 @@ impl SystemState {
         self.frames_absent.tick(is_missing)
     }
 
+    /// Measures the system. Returns its box and its settings, for the shadow of the frame.
+    pub fn measure_box(
+        &mut self,
+        shared: &Shared,
+        view: &ViewGeometry,
+        system: &ParticleSystem<'_>,
+    ) -> (Bounds, ResolvedSettings) {
+        let space = ParticleSpace::new(view, &system.world_from_particles);
+        let frame_count = system.material.info.frame_count;
+        let settings = ResolvedSettings::new(system.settings, space.scale, view.size, frame_count, shared.support);
+        let bounds = self.particles.measure(view, &space, system, &settings);
+        self.measured = Some(MeasuredSystem { space, settings, bounds });
+        (bounds, settings)
+    }
+
     /// Places the system in the view, uploads its data, and prepares targets and pipelines.
     pub fn write(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) {
         self.prepared = self.prepare(context, system);
@@ -220,11 +254,9 @@ impl SystemState {
     fn prepare(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) -> Option<PreparedSystem> {
         let FrameContext { gpu, shared, frame, view, .. } = context;
         let material = &system.material.info;
-        let space = ParticleSpace::new(view, &system.world_from_particles);
-        let settings =
-            ResolvedSettings::new(system.settings, space.scale, view.size, material.frame_count, shared.six_way);
-        let bounds = self.particles.measure(view, &space, system, &settings);
-        light_uniforms(view, frame.lights, frame.exposure, &bounds, &mut self.light_uniforms);
+        let MeasuredSystem { space, settings, bounds } = self.measured.take()?;
+        let smoke_shadow = context.shadow.map(|grid| grid.shadow);
+        light_uniforms(view, frame.lights, frame.exposure, &bounds, smoke_shadow, &mut self.light_uniforms);
         let known = self.particles.known(system.particles);
         let (particles, particles_per_sample) = known.unwrap_or((&[], 1));
         let in_world = SystemInput {
@@ -240,6 +272,7 @@ impl SystemState {
             up: frame.up.normalize_or(Vec3::Y),
             exposure: frame.exposure,
             time: frame.time,
+            shadow: smoke_shadow,
         };
         let setup = system_setup(view, context.host_size, &in_world)?;
         let trim = SpriteTrim::new(&settings, material);
@@ -256,14 +289,19 @@ impl SystemState {
 
         let plan = plan(context.inputs, &settings, setup.back_faces);
         let depth = context.bindings.get(plan.reads_linear_target())?;
+        let optical_depths = context.shadow.map_or(&shared.no_shadow, |grid| grid.optical_depths);
+        if self.bindings.optical_depths != *optical_depths {
+            self.bindings = SystemBindings::new(shared, &self.uniform, &self.lights, optical_depths);
+        }
         let groups = Groups {
             frame: depth.frame.clone(),
-            system: self.bindings.clone(),
+            system: self.bindings.group.clone(),
             material: system.material.bind_group.clone(),
             lighting: system.material.lighting.clone(),
         };
         let (sprites, particle_pass) = self.particles.upload(context, &space, system.particles, &settings, &groups)?;
         let measure = self.particles.measure_pass(context, system, &settings, &groups, &self.uniform);
+        let splat = self.particles.splat_pass(context, system.particles, &sprites, &groups);
         let sampled = matches!(particle_pass, Some(ParticlePass::Emit(_))).then_some(particles_per_sample);
         let builder = PassBuilder { gpu: *gpu, pipelines: &shared.pipelines, groups, sprites };
         let passes = match &plan {
@@ -285,8 +323,24 @@ impl SystemState {
             alive: AliveCopy::new(&system.particles, &self.uniform),
             measure,
             particle_pass,
+            splat,
             passes,
         })
+    }
+}
+
+impl SystemBindings {
+    fn new(shared: &Shared, uniform: &wgpu::Buffer, lights: &wgpu::Buffer, optical_depths: &wgpu::TextureView) -> Self {
+        let group = shared.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("haze system"),
+            layout: &shared.layouts.system,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: lights.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(optical_depths) },
+            ],
+        });
+        Self { group, optical_depths: optical_depths.clone() }
     }
 }
 

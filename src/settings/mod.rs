@@ -12,6 +12,7 @@ pub(crate) mod fields;
 mod lighting;
 mod scale_budget;
 pub(crate) mod settings_macro;
+mod shadow;
 mod soft_fade;
 mod technique;
 mod traversal;
@@ -30,6 +31,7 @@ pub use lighting::{
 };
 pub use scale_budget::{Budget, ScaleBudget};
 pub(crate) use settings_macro::settings;
+pub use shadow::Shadow;
 pub use soft_fade::{FadeCurve, SoftFade};
 pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
 pub use traversal::{FieldRef, FieldValue, PathStep, field_path, field_values, for_each_field};
@@ -153,6 +155,8 @@ settings! {
         volumetric: Volumetric = Volumetric::default(), group;
         /// Diffuse light, by normal.
         diffuse: Diffuse = Diffuse::default(), group;
+        /// Shadow of smoke on smoke.
+        shadow: Shadow = Shadow::default(), group;
         /// Soft scatter, by amount: light without a source.
         soft_scatter: SoftScatter = SoftScatter::default(), group;
         /// Glow around lights behind the smoke.
@@ -169,6 +173,16 @@ impl Settings {
     /// True if sprites are lit by six-way maps.
     pub fn is_six_way(&self) -> bool {
         self.lighting == Lighting::SixWay && !self.technique.is_volumetric() && !self.sprite.debug_sprite
+    }
+
+    /// True if smoke can shade the diffuse light of this system: each light is looked up by itself.
+    pub fn can_receive_shadow(&self) -> bool {
+        self.is_forward() || self.is_six_way() || self.diffuse.mode == DiffuseMode::Ramp
+    }
+
+    /// True if smoke shades the diffuse light of this system.
+    pub fn receives_shadow(&self) -> bool {
+        self.shadow.strength > 0.0 && self.can_receive_shadow()
     }
 
     /// Order in which sprites are drawn. Forward sprites hide each other and are always sorted.

@@ -17,11 +17,13 @@ pub enum AttachmentRole {
     SixWay,
     /// Sum of the normals' weights.
     Weights,
+    /// Weighted optical depths towards three lights in rgb, sum of weights in a.
+    OpticalDepths,
 }
 
 impl AttachmentRole {
     /// All roles, in order.
-    pub const ALL: [Self; 3] = [Self::NormalAndAmount, Self::SixWay, Self::Weights];
+    pub const ALL: [Self; 4] = [Self::NormalAndAmount, Self::SixWay, Self::Weights, Self::OpticalDepths];
 
     /// True if a system with these settings has the texture.
     pub fn is_used(self, settings: &Settings) -> bool {
@@ -30,6 +32,7 @@ impl AttachmentRole {
             Self::SixWay => settings.is_six_way(),
             // Six-way light has a sum of weights of its own.
             Self::Weights => settings.accumulate.sums_weights() && !settings.is_six_way(),
+            Self::OpticalDepths => settings.receives_shadow(),
         }
     }
 
@@ -39,6 +42,7 @@ impl AttachmentRole {
             Self::NormalAndAmount => ("path", "raster"),
             Self::SixWay => ("lighting", "six_way"),
             Self::Weights => ("accumulate.order", "weighted"),
+            Self::OpticalDepths => ("shadow.strength", "1"),
         }
     }
 }

@@ -4,7 +4,21 @@ use std::ops::Deref;
 
 use glam::UVec2;
 
-use crate::settings::{Lighting, LightingResolution, RenderPath, Settings};
+use crate::settings::{Lighting, LightingResolution, RenderPath, Settings, Shadow};
+
+/// Capabilities of a device that settings depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Support {
+    /// True if it can light by six-way maps; otherwise normals replace them.
+    pub six_way: bool,
+    /// True if smoke can shade smoke; otherwise it is drawn without shadow.
+    pub shadow: bool,
+}
+
+impl Support {
+    /// Everything, as the CPU renderer supports it.
+    pub const ALL: Self = Self { six_way: true, shadow: true };
+}
 
 /// Settings of a system for one frame, after every choice that depends on the view, the sprite or the device. Both
 /// renderers make these choices here, once per frame.
@@ -17,14 +31,15 @@ pub struct ResolvedSettings {
 
 impl ResolvedSettings {
     /// `particle_scale`: metres per unit of the particles' space; sprite sizes grow by it. `picture`: size of the view,
-    /// pixels. `frame_count`: number of frames of the sprite. `has_six_way`: false if the
-    /// device cannot light by six-way maps; normals replace them.
-    pub fn new(settings: &Settings, particle_scale: f32, picture: UVec2, frame_count: f32, has_six_way: bool) -> Self {
-        let lighting = if has_six_way { settings.lighting } else { Lighting::Normals };
+    /// pixels. `frame_count`: number of frames of the sprite.
+    pub fn new(settings: &Settings, particle_scale: f32, picture: UVec2, frame_count: f32, support: Support) -> Self {
+        let lighting = if support.six_way { settings.lighting } else { Lighting::Normals };
+        let strength = if support.shadow { settings.shadow.strength } else { 0.0 };
+        let shadow = Shadow { strength, ..settings.shadow };
         let mut sprite = settings.sprite.for_frames(frame_count);
         sprite.size *= particle_scale;
         let scale = settings.accumulate.effective_scale(picture);
-        Self { settings: Settings { lighting, sprite, ..*settings }, scale }
+        Self { settings: Settings { lighting, shadow, sprite, ..*settings }, scale }
     }
 
     /// Returns the same settings with the path that `auto` chose.

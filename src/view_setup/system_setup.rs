@@ -1,12 +1,13 @@
 //! One particle system in a view: the texels of its target, and its uniforms.
 
-use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::optical_depth::optical_depths;
 use super::particle_space::ParticleSpace;
 use super::projected_bounds::{TargetRect, project_bounds, target_rect};
 use super::resolved_settings::ResolvedSettings;
 use super::smoke_extent::SmokeExtent;
+use super::smoke_shadow::SmokeShadow;
 use super::sprite_projector::TexelGrid;
 use super::view_geometry::ViewGeometry;
 use crate::assets::material_assets::MaterialInfo;
@@ -41,6 +42,8 @@ pub struct SystemInput<'a> {
     pub exposure: f32,
     /// Seconds.
     pub time: f32,
+    /// Shadow of the frame's smoke; `None` if no system receives it.
+    pub shadow: Option<&'a SmokeShadow>,
 }
 
 /// A visible system.
@@ -70,7 +73,7 @@ impl SystemSetup {
 /// may be a part of the targets.
 pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_>) -> Option<SystemSetup> {
     let SystemInput { bounds, depth, space, extent, particles, particles_per_sample, .. } = *system;
-    let SystemInput { settings, material, lights, up, exposure, time, .. } = *system;
+    let SystemInput { settings, material, lights, up, exposure, time, shadow, .. } = *system;
     let projected = project_bounds(bounds, view)?;
     let extent = SmokeExtent::new(view, extent, bounds, &projected, depth);
     // A sample does not include the farthest particle.
@@ -103,7 +106,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         depth_limit: (projected.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         smoke_depth_limit: (farthest.min(projected.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         alive_count: u32::MAX,
-        padding: [0.0; 2],
+        mean_alpha: material.density.mean_alpha,
+        peak_alpha: material.density.peak_alpha,
         six_way_color: settings.diffuse.six_way_color,
         six_way_anisotropy: settings.diffuse.six_way_anisotropy,
         sprite_size: material.sprite_size,
@@ -138,6 +142,12 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
             BlendOrder::Weighted => optical_depths((view, space), particles, particles_per_sample, settings, &extent),
         },
         spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
+        grid_from_view: shadow.map_or(Mat4::IDENTITY, |shadow| shadow.grid.grid_from_view(view)),
+        grid_size: shadow.map_or(Vec3::ONE, |shadow| shadow.grid.size.as_vec3()),
+        cells_per_metre: shadow.map_or(1.0, |shadow| shadow.grid.cells_per_metre()),
+        shadow_strength: if shadow.is_some() && settings.receives_shadow() { settings.shadow.strength } else { 0.0 },
+        shadow_density: settings.shadow.density,
+        padding: [0.0; 2],
     };
     // If sprites show through the scene, the scene may hide the front of the box.
     let back_faces = projected.near <= view.depth.near || uniform.show_through_distance > 0.0;

@@ -2,26 +2,30 @@
 
 use glam::Vec3;
 
+use super::smoke_shadow::SmokeShadow;
 use super::view_geometry::ViewGeometry;
 use crate::formula::uniforms::LightUniform;
 use crate::frame::{Bounds, Light, LightKind};
 
-/// Writes the lights that reach the bounding box to `out`, in view space. `exposure` multiplies their colors.
+/// Writes the lights that reach the bounding box to `out`, in view space. `exposure` multiplies their colors. `shadow`:
+/// that of the frame.
 pub fn light_uniforms(
     view: &ViewGeometry,
     lights: &[Light],
     exposure: f32,
     bounds: &Bounds,
+    shadow: Option<&SmokeShadow>,
     out: &mut Vec<LightUniform>,
 ) {
     out.clear();
-    let reaches = |light: &&Light| {
+    let reaches = |(_, light): &(usize, &Light)| {
         let nearest = light.position.clamp(bounds.min, bounds.max);
         let lit = light.intensity > 0.0 && light.color != Vec3::ZERO;
         lit && (light.kind == LightKind::Directional || nearest.distance(light.position) < light.range)
     };
-    out.extend(lights.iter().filter(reaches).map(|light| {
+    out.extend(lights.iter().enumerate().filter(reaches).map(|(index, light)| {
         let uniform = light.uniform(&view.view_from_world);
-        LightUniform { color: uniform.color * exposure, ..uniform }
+        let shadow_slot = shadow.map_or(0.0, |shadow| shadow.slot(index));
+        LightUniform { color: uniform.color * exposure, shadow_slot, ..uniform }
     }));
 }

@@ -125,6 +125,8 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| (s.settings.coverage, s.settings.ramp_filter) = (CoverageMode::Ramp, RampFilter::Nearest),
     |s, _| (s.settings.diffuse.mode, s.settings.specular_scatter.intensity) = (DiffuseMode::SphericalHarmonics, 0.0),
     |s, _| (s.settings.diffuse.backlight, s.material.backlight_ramp) = (Backlight::Ramp, "diffuse_ember".into()),
+    |s, _| s.settings.shadow.strength = 1.0,
+    |s, _| (s.settings.shadow.strength, s.settings.diffuse.mode) = (1.0, DiffuseMode::Cubemap),
     |s, _| (s.emitter.turbulence, s.emitter.extent, s.emitter.buoyancy) = (0.0, Vec3::ZERO, 0.0),
     |s, _| (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into()),
     |s, _| {
@@ -280,7 +282,7 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
         "no effect in these cases: {unreported:?}"
     );
     // All reasons except the one about the demo scene.
-    assert_eq!(reasons.len(), 44, "{reasons:#?}");
+    assert_eq!(reasons.len(), 46, "{reasons:#?}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use haze::builtin;
 use haze::image::Image;
 use haze::settings::*;
 
-use crate::gpu::gpu;
+use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, MIN_PSNR_WITH_STEPS, psnr};
 use crate::test_scene::{DepthKind, TestScene};
 
@@ -141,7 +141,8 @@ fn stages() -> Vec<TestScene> {
     let tested: fn(&mut Settings) = |s| (s.accumulate.scale, s.accumulate.encoding) = (1, NormalEncoding::Biased);
     let weighted: fn(&mut Settings) = |s| s.accumulate.order = BlendOrder::Weighted;
     let six_way: fn(&mut Settings) = |s| s.lighting = Lighting::SixWay;
-    vec![
+    let shaded: fn(&mut Settings) = |s| s.shadow.strength = 0.7;
+    let mut stages = vec![
         scene(Technique::Soft, RenderPath::Raster, nothing),
         scene(Technique::Soft, RenderPath::Raster, weighted),
         scene(Technique::Soft, RenderPath::Forward, nothing),
@@ -151,7 +152,11 @@ fn stages() -> Vec<TestScene> {
         scene(Technique::SphericalBillboard, RenderPath::Raster, nothing),
         scene(Technique::Density, RenderPath::Raster, nothing),
         scene(Technique::VolumetricSoft, RenderPath::Raster, nothing),
-    ]
+    ];
+    if is_tiled_available() {
+        stages.push(scene(Technique::Soft, RenderPath::Raster, shaded));
+    }
+    stages
 }
 
 /// Values that give the same image wherever both can be drawn, with the reason.
@@ -183,6 +188,11 @@ fn every_setting_changes_the_image_and_both_renderers_agree() {
             has_more = mover.has_more;
             name = mover.moved.clone();
             let Some(name) = &mover.moved else { break };
+            // Shadow needs compute shaders.
+            if name.starts_with("shadow.") && !is_tiled_available() {
+                has_effect = true;
+                break;
+            }
             // Some values are invalid together with others.
             if scene.settings.validate(String::new).is_err() {
                 continue;

@@ -21,6 +21,7 @@ mod noise_volume;
 mod normal;
 mod order;
 mod ramp;
+mod shadow;
 mod six_way;
 mod smoke_extent;
 mod soft_fade;
@@ -76,6 +77,7 @@ fn formulas() -> Vec<Formula> {
         normal::formulas(),
         order::formulas(),
         ramp::formulas(),
+        shadow::formulas(),
         six_way::formulas(),
         smoke_extent::formulas(),
         soft_fade::formulas(),
@@ -189,6 +191,13 @@ const INDIRECT: &[(&str, &str)] = &[
     ("attachments_from_slots", "maps texture slots to roles by override constants"),
     ("sample_attachments", "reads the pass's textures by the tested sample_target"),
     ("load_attachments", "reads the pass's textures"),
+    ("sprite_optical_depth", "calls mean_optical_depth with a particle's amount; whole frames with shadow cover it"),
+    ("optical_depths_of", "reads the volume of optical depths; whole frames with shadow cover it"),
+    ("load_density", "reads the density grid; whole frames with shadow cover it"),
+    ("sample_density", "reads the density grid; whole frames with shadow cover it"),
+    ("optical_depth_towards", "reads the density grid; whole frames with shadow cover it"),
+    ("depths_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
+    ("depths_of_sprite", "reads a buffer; tests of the tiled path with shadow cover it"),
 ];
 
 #[test]

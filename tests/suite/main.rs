@@ -29,6 +29,7 @@ mod random_presets;
 mod resource_counter;
 mod shader_layout;
 mod shaders;
+mod shadow;
 mod six_way;
 mod soak;
 mod techniques;

@@ -1,7 +1,8 @@
 //! Compares definitions that exist in both Rust and WGSL: struct layouts, constants, and the numbers of setting enums.
 
 use haze::formula::uniforms::{
-    EmitterUniform, LightUniform, MeasureUniform, SystemUniform, TilesUniform, UniformField, ViewUniform,
+    EmitterUniform, LightUniform, MeasureUniform, ShadowMarchUniform, SplatUniform, SystemUniform, TilesUniform,
+    UniformField, ViewUniform,
 };
 use haze::{Particle, formula, frame, settings, shader, view_setup};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -111,6 +112,9 @@ fn wgsl_structs_match_rust() {
     assert_layout(&composed("lib/tiles.wgsl"), "Tiles", TilesUniform::FIELDS, size_of::<TilesUniform>());
     assert_layout(&composed("lib/emitter.wgsl"), "Emitter", EmitterUniform::FIELDS, size_of::<EmitterUniform>());
     assert_layout(&composed("measure.wgsl"), "Measure", MeasureUniform::FIELDS, size_of::<MeasureUniform>());
+    assert_layout(&composed("density_splat.wgsl"), "Splat", SplatUniform::FIELDS, size_of::<SplatUniform>());
+    let march = composed("shadow_march.wgsl");
+    assert_layout(&march, "ShadowMarch", ShadowMarchUniform::FIELDS, size_of::<ShadowMarchUniform>());
 }
 
 #[test]

@@ -188,11 +188,14 @@ impl Host {
         particles: Particles<'_>,
     ) -> Result<(), Error> {
         let (bounds, world_from_particles) = (scene.bounds, scene.world_from_particles);
-        let system = ParticleSystem {
+        let mut systems = vec![ParticleSystem {
             bounds,
             world_from_particles,
             ..ParticleSystem::new(0, particles, &scene.settings, &self.material)
-        };
+        }];
+        systems.extend((1..).zip(&scene.others).map(|(key, (particles, settings))| {
+            ParticleSystem::new(key, Particles::Slice(particles), settings, &self.material)
+        }));
         let scene_depth = match scene.depth {
             DepthKind::Buffer => SceneDepth::Buffer(&self.depth),
             DepthKind::Multisampled => SceneDepth::Multisampled(&self.samples),
@@ -201,7 +204,7 @@ impl Host {
         };
         let frame = FrameInput {
             lights: &scene.lights,
-            systems: &[system],
+            systems: &systems,
             target_size: scene.host.target_size,
             exposure: scene.exposure,
             time: scene.time,

@@ -26,6 +26,8 @@ pub struct TestScene {
     pub view_direction_z: f32,
     pub lights: Vec<Light>,
     pub particles: Vec<Particle>,
+    /// Particles and settings of further systems.
+    pub others: Vec<(Vec<Particle>, Settings)>,
     pub bounds: Option<Bounds>,
     pub settings: Settings,
     pub material: MaterialAssets,
@@ -121,6 +123,7 @@ fn baked_material() -> MaterialAssets {
     let line =
         |from: Vec3, to: Vec3| Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| from.lerp(to, i as f32 / 15.0)));
     let glow = |i: u32| Vec3::splat((1.0 - (i % 16) as f32 / 15.0) * (i / 16) as f32 / 7.0);
+    let dim = |i: u32| vec3(0.9, 0.7, 0.5).powf(0.4 * (i % 16) as f32) * (1.0 - (i / 16) as f32 / 8.0);
     let rim = |i: u32| vec3(0.8, 0.5, 0.3) * (1.2 - (i % 16) as f32 / 15.0) * (1.0 - (i / 16) as f32 / 4.0);
     MaterialAssets {
         sprite: ball_sprite(false),
@@ -129,6 +132,7 @@ fn baked_material() -> MaterialAssets {
         noise: recipe_noise(),
         diffuse_ramp: line(Vec3::splat(0.05), Vec3::ONE),
         backlight_ramp: Ramp::from_linear(UVec2::new(16, 4), (0..64).map(rim)),
+        shadow_ramp: Ramp::from_linear(UVec2::new(16, 4), (0..64).map(dim)),
         soft_scatter_ramp: line(Vec3::splat(0.3), Vec3::ZERO),
         specular_ramp: Ramp::from_linear(UVec2::new(16, 8), (0..128).map(glow)),
         motif: line(Vec3::ZERO, Vec3::ONE),
@@ -164,6 +168,7 @@ impl TestScene {
                 Light { position: vec3(0.5, 0.3, -8.5), intensity: 3.0, ..Light::default() },
             ],
             particles: (0..60).map(particle).collect(),
+            others: Vec::new(),
             bounds: None,
             // Fixed, because the choice of `auto` depends on the device.
             settings: Settings { path: RenderPath::Raster, boost: 1.5, ..Settings::default() },
@@ -229,15 +234,18 @@ impl TestScene {
 
     pub fn try_on_cpu(&self) -> Result<Image<Vec4>, FieldError> {
         let mut picture = Image::new(self.view.size, BACKDROP);
+        let system = |particles, settings| haze_reference::ParticleSystem::new(particles, settings, &self.material);
+        let mut systems = vec![haze_reference::ParticleSystem {
+            world_from_particles: self.world_from_particles,
+            bounds: self.bounds,
+            ..system(&self.particles, &self.settings)
+        }];
+        systems.extend(self.others.iter().map(|(particles, settings)| system(particles, settings)));
         let frame = haze_reference::FrameInput {
             view: self.view,
             scene_depth: &self.ndc_depth(),
             lights: &self.lights,
-            systems: &[haze_reference::ParticleSystem {
-                world_from_particles: self.world_from_particles,
-                bounds: self.bounds,
-                ..haze_reference::ParticleSystem::new(&self.particles, &self.settings, &self.material)
-            }],
+            systems: &systems,
             exposure: self.exposure,
             time: self.time,
             up: self.up,

@@ -4,10 +4,13 @@
 pub mod accumulated;
 pub mod blend_unit;
 mod input;
+pub mod optical_depths;
 pub mod pass;
 mod probe;
 pub mod sprite;
 pub mod visible_system;
+
+use std::sync::Arc;
 
 use glam::Vec4;
 
@@ -18,6 +21,8 @@ use haze::settings::DebugView;
 use accumulated::AccumulatedTarget;
 pub use accumulated::AccumulatedTextures;
 pub use input::{FrameInput, ParticleSystem};
+use pass::density_splat::density_from_steps;
+use pass::shadow_march::shadow_march;
 pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
 use visible_system::visible_systems;
 
@@ -26,7 +31,14 @@ use visible_system::visible_systems;
 /// # Errors
 /// The first view, light or setting that is invalid; `picture` is untouched then.
 pub fn render(frame: &FrameInput<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldError> {
-    let systems = visible_systems(frame, picture.size)?;
+    let mut systems = visible_systems(frame, picture.size)?;
+    if let Some(shadow) = systems.first().and_then(|(_, visible)| visible.shadow) {
+        let size = shadow.grid.size;
+        let mut steps = vec![0; size.element_product() as usize];
+        systems.iter().for_each(|(_, visible)| visible.density_splat(size, &mut steps));
+        let depths = Arc::new(shadow_march(&density_from_steps(&steps), &shadow));
+        systems.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(depths.clone()));
+    }
     for (_, visible) in &systems {
         if visible.settings.is_forward() {
             if frame.debug_view.shows_lit_smoke() {

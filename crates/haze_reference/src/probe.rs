@@ -148,7 +148,7 @@ impl<'a> ProbedSystem<'a> {
         let view = ViewGeometry::new(&haze::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {
-            light_uniforms(&view, std::slice::from_ref(light), frame.exposure, &visible.bounds, &mut reached);
+            light_uniforms(&view, std::slice::from_ref(light), frame.exposure, &visible.bounds, None, &mut reached);
             !reached.is_empty()
         });
         let lights = lights.map(|(index, _)| index).collect();

@@ -3,9 +3,11 @@
 use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::visible_system::VisibleSystem;
+use haze::formula::density_grid::mean_optical_depth;
 use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use haze::formula::normal::rotate_normal;
 use haze::formula::order::{optical_depth_in_front, order_weight};
+use haze::formula::shadow::{foreign_optical_depths, own_optical_depth};
 use haze::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel};
 use haze::formula::soft_fade::soft_fade;
 use haze::formula::sprite::{
@@ -16,6 +18,7 @@ use haze::formula::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere,
     spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
 };
+use haze::formula::uniforms::SystemUniform;
 use haze::frame::Particle;
 use haze::settings::{BlendOrder, Technique};
 use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid};
@@ -40,6 +43,8 @@ pub struct SpriteSetup {
     pub reach: Vec4,
     /// Share of the particle's life that has passed.
     pub age: f32,
+    /// Optical depths of the smoke before the sprite, towards the lights with shadow.
+    pub optical_depths: Vec3,
     /// Weight of the normal under the order `weighted`.
     pub weight: f32,
     /// Upper left corner of the pixels that the sprite can cover.
@@ -112,10 +117,22 @@ impl VisibleSystem<'_> {
             frames,
             reach: projector.trimmed_extent(&sprite),
             age: particle.age,
+            optical_depths: self.optical_depths_of(particle, centre),
             weight: self.order_weight(view_depth),
             min,
             max,
         })
+    }
+
+    /// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `centre`: view space.
+    fn optical_depths_of(&self, particle: &Particle, centre: Vec3) -> Vec3 {
+        let system = &self.system;
+        let Some(depths) = self.optical_depths.as_ref().filter(|_| system.shadow_strength > 0.0) else {
+            return Vec3::ZERO;
+        };
+        let radius = particle.radius * system.size * system.cells_per_metre;
+        let own = own_optical_depth(radius, sprite_optical_depth(system, particle));
+        foreign_optical_depths(depths.sample(system.grid_from_view.transform_point3(centre)), own)
     }
 
     fn order_weight(&self, view_depth: f32) -> f32 {
@@ -277,4 +294,10 @@ impl VisibleSystem<'_> {
         let total = 1.0 - transmittance;
         SpriteFragment { normal: normal / total.max(1.0e-6), six_way: SixWay::default(), amount: total }
     }
+}
+
+/// Mean optical depth over the square of a particle's sprite, as it casts shadow.
+pub fn sprite_optical_depth(system: &SystemUniform, particle: &Particle) -> f32 {
+    let amount = particle.shown_amount() * system.opacity;
+    system.shadow_density * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha)
 }

@@ -1,8 +1,11 @@
 //! Visible system, with the geometry that its passes share.
 
+use std::sync::Arc;
+
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::input::{FrameInput, ParticleSystem};
+use super::optical_depths::OpticalDepths;
 use haze::assets::image::Image;
 use haze::assets::material_assets::{MaterialAssets, MaterialInfo};
 use haze::error::FieldError;
@@ -16,8 +19,8 @@ use haze::frame::validate_input::{
 use haze::frame::{Bounds, Particle, View};
 use haze::settings::{BlendOrder, DebugView};
 use haze::view_setup::{
-    ParticleMeasures, ParticleSpace, ResolvedSettings, SpriteTrim, SystemInput, SystemSetup, ViewGeometry,
-    light_uniforms, system_setup,
+    ParticleMeasures, ParticleSpace, ResolvedSettings, SmokeShadow, SpriteTrim, Support, SystemInput, SystemSetup,
+    ViewGeometry, light_uniforms, system_setup,
 };
 
 /// Visible system, with the input of its passes.
@@ -44,6 +47,10 @@ pub struct VisibleSystem<'a> {
     pub settings: ResolvedSettings,
     /// Images of the system.
     pub material: &'a MaterialAssets,
+    /// Shadow of the frame's smoke, if any system receives it.
+    pub shadow: Option<SmokeShadow>,
+    /// Optical depths of that smoke, once they are computed.
+    pub optical_depths: Option<Arc<OpticalDepths>>,
 }
 
 impl<'a> VisibleSystem<'a> {
@@ -53,14 +60,11 @@ impl<'a> VisibleSystem<'a> {
         frame: &FrameInput<'a>,
         system: &ParticleSystem<'a>,
         material: &MaterialInfo,
+        shadow: Option<&SmokeShadow>,
     ) -> Option<Self> {
-        let space = ParticleSpace::new(view, &system.world_from_particles);
-        let settings = ResolvedSettings::new(system.settings, space.scale, frame.view.size, material.frame_count, true);
-        let mut measures = ParticleMeasures::default();
-        measures.measure(&space, view.depth.near, system.particles, &settings);
-        let bounds = system.bounds.map_or(measures.bounds, |bounds| space.world_bounds(&bounds));
+        let MeasuredSystem { space, settings, mut measures, bounds } = MeasuredSystem::new(view, system, material);
         let mut lights = Vec::new();
-        light_uniforms(view, frame.lights, frame.exposure, &bounds, &mut lights);
+        light_uniforms(view, frame.lights, frame.exposure, &bounds, shadow, &mut lights);
         let in_world = SystemInput {
             particles_per_sample: 1,
             bounds: &bounds,
@@ -74,6 +78,7 @@ impl<'a> VisibleSystem<'a> {
             up: frame.up.normalize_or(Vec3::Y),
             exposure: frame.exposure,
             time: frame.time,
+            shadow,
         };
         let setup = system_setup(view, frame.view.size, &in_world)?;
         let mut particles = Vec::new();
@@ -90,6 +95,8 @@ impl<'a> VisibleSystem<'a> {
             scene_depth: frame.scene_depth,
             settings,
             material: system.material,
+            shadow: shadow.copied(),
+            optical_depths: None,
         })
     }
 
@@ -116,6 +123,27 @@ impl<'a> VisibleSystem<'a> {
     }
 }
 
+/// A system with its box, before it is placed in the view.
+struct MeasuredSystem {
+    space: ParticleSpace,
+    settings: ResolvedSettings,
+    measures: ParticleMeasures,
+    /// World space.
+    bounds: Bounds,
+}
+
+impl MeasuredSystem {
+    fn new(view: &ViewGeometry, system: &ParticleSystem<'_>, material: &MaterialInfo) -> Self {
+        let space = ParticleSpace::new(view, &system.world_from_particles);
+        let settings =
+            ResolvedSettings::new(system.settings, space.scale, view.size, material.frame_count, Support::ALL);
+        let mut measures = ParticleMeasures::default();
+        measures.measure(&space, view.depth.near, system.particles, &settings);
+        let bounds = system.bounds.map_or(measures.bounds, |bounds| space.world_bounds(&bounds));
+        Self { space, settings, measures, bounds }
+    }
+}
+
 /// Visible systems with their indices in the frame, far to near, for a picture of this size.
 pub fn visible_systems<'a>(
     frame: &FrameInput<'a>,
@@ -131,15 +159,24 @@ pub fn visible_systems<'a>(
             return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));
         }
     }
-    let mut systems = Vec::new();
+    let mut infos = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
         validate_settings(index, system.settings, frame.view.size)?;
         validate_world_from_particles(index, &system.world_from_particles)?;
         validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
         let info = system.material.info();
         info.validate(index, system.settings)?;
-        systems.extend(VisibleSystem::new(&view, frame, system, &info).map(|visible| (index, visible)));
+        infos.push(info);
     }
+    let with_infos = || frame.systems.iter().zip(&infos);
+    let boxes = with_infos().map(|(system, info)| {
+        let MeasuredSystem { bounds, settings, .. } = MeasuredSystem::new(&view, system, info);
+        (bounds, settings)
+    });
+    let shadow = SmokeShadow::new(frame.lights, boxes);
+    let visible =
+        |(index, (system, info))| Some((index, VisibleSystem::new(&view, frame, system, info, shadow.as_ref())?));
+    let mut systems: Vec<_> = with_infos().enumerate().filter_map(visible).collect();
     systems.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
     Ok(systems)
 }

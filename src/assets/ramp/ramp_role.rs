@@ -11,6 +11,8 @@ choice! {
         Diffuse = "diffuse",
         /// Diffuse light from behind, by the same angle.
         Backlight = "backlight",
+        /// Light that has come through smoke, by the smoke's optical depth and the angle between light and viewer.
+        Shadow = "shadow",
         /// Soft scatter, by amount.
         Scatter = "scatter",
         /// Specular scatter of a light behind the smoke, by distance and amount.

@@ -2,6 +2,7 @@
 
 #[doc(hidden)]
 pub mod alpha_bounds;
+pub(crate) mod sprite_density;
 
 use std::path::Path;
 use std::sync::Arc;

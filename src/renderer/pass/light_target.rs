@@ -14,7 +14,7 @@ use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_an
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{LIT_FORMAT, attachment_constants};
 use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
-use crate::view_setup::AttachmentSet;
+use crate::view_setup::{AttachmentRole, AttachmentSet};
 
 /// Lighting options that select a pipeline, here and in transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,6 +40,7 @@ impl LightingKey {
             enum_constant!("BACKLIGHT", self.backlight),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
             bool_constant("EXACT_FILTERING", self.exact_filtering),
+            bool_constant("SHADOW", self.attachments.contains(AttachmentRole::OpticalDepths)),
         ];
         shared.into_iter().chain(attachment_constants(self.attachments)).chain(of_pass).collect()
     }

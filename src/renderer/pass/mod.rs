@@ -2,6 +2,7 @@
 //! counts, targets) and does not depend on their owner.
 
 pub(crate) mod accumulate;
+pub(crate) mod density_splat;
 pub(crate) mod depth_downsample;
 pub(crate) mod depth_resolve;
 pub(crate) mod depth_sort;
@@ -10,6 +11,7 @@ pub(crate) mod emit;
 pub(crate) mod forward;
 pub(crate) mod light_target;
 pub(crate) mod measure;
+pub(crate) mod shadow_march;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;
 pub(crate) mod tile_accumulate;

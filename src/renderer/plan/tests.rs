@@ -18,7 +18,7 @@ fn inputs() -> PipelineInputs<'static> {
 }
 
 fn resolved(settings: &Settings) -> ResolvedSettings {
-    ResolvedSettings::new(settings, 1.0, UVec2::new(1280, 720), 2.0, true)
+    ResolvedSettings::new(settings, 1.0, UVec2::new(1280, 720), 2.0, Support::ALL)
 }
 
 fn deferred<'a>(inputs: &PipelineInputs<'a>, settings: &Settings) -> DeferredPlan<'a> {

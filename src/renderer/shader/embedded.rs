@@ -16,6 +16,7 @@ macro_rules! embed {
 
 pub(super) const SOURCES: &[(&str, &str)] = embed![
     "accumulate.wgsl",
+    "density_splat.wgsl",
     "depth_downsample.wgsl",
     "depth_resolve.wgsl",
     "depth_sort.wgsl",
@@ -24,6 +25,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "forward.wgsl",
     "light_target.wgsl",
     "measure.wgsl",
+    "shadow_march.wgsl",
     "sort.wgsl",
     "specular_scatter.wgsl",
     "tile_accumulate.wgsl",
@@ -37,6 +39,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/bindings.wgsl",
     "lib/blending.wgsl",
     "lib/color.wgsl",
+    "lib/density_grid.wgsl",
     "lib/depth.wgsl",
     "lib/diffuse.wgsl",
     "lib/diffuse_bake.wgsl",
@@ -50,6 +53,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/order.wgsl",
     "lib/ramp.wgsl",
     "lib/scan.wgsl",
+    "lib/shadow.wgsl",
     "lib/six_way.wgsl",
     "lib/smoke_extent.wgsl",
     "lib/soft_fade.wgsl",

@@ -117,7 +117,7 @@ fn layout(device: &wgpu::Device, formats: TiledFormats) -> wgpu::BindGroupLayout
         format,
         view_dimension: wgpu::TextureViewDimension::D2,
     });
-    let types = [uniform, read, read, read, read, read, depth].into_iter().chain(targets);
+    let types = [uniform, read, read, read, read, read, depth].into_iter().chain(targets).chain([read]);
     let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,

@@ -3,6 +3,7 @@
 mod accumulate_variants;
 mod emitted_particles;
 mod measured_particles;
+mod shadow_volume;
 mod sort_buffers;
 mod sorted_particles;
 mod storage_buffers;
@@ -13,6 +14,7 @@ mod tiled_system;
 
 pub(crate) use emitted_particles::EmittedParticles;
 pub(crate) use measured_particles::MeasuredParticles;
+pub(crate) use shadow_volume::{FrameShadow, ShadowVolume, SplatParticles, volume};
 pub(crate) use sorted_particles::SortedParticles;
 pub(crate) use tile_buffers::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 pub(crate) use tiled_passes::TiledPasses;

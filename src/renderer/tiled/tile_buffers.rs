@@ -17,6 +17,8 @@ use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 pub(crate) const TILE_SPRITE_BYTES: u64 = 64;
 /// Bytes of a packed rectangle.
 const RECT_BYTES: u64 = 8;
+/// Bytes of a sprite's optical depths.
+const DEPTHS_BYTES: u64 = 16;
 /// Unit of `TilesUniform::first`, bytes.
 pub(crate) const PARTICLE_ALIGNMENT: u64 = 16;
 
@@ -29,6 +31,8 @@ pub(super) struct TileBuffers {
     /// Indirect dispatch size for the visible sprites.
     pub workgroups: wgpu::Buffer,
     sprites: wgpu::Buffer,
+    /// Optical depths of the smoke before each sprite; one element if no system receives shadow.
+    optical_depths: wgpu::Buffer,
     rects: wgpu::Buffer,
     pub sort: SortBuffers,
     sorted_rects: wgpu::Buffer,
@@ -62,6 +66,8 @@ pub(super) struct Capacity {
     /// Sprite counts: one per bin and run.
     pub runs: u32,
     pub entries: u32,
+    /// Sprites with optical depths.
+    pub shaded: u32,
 }
 
 impl Capacity {
@@ -73,11 +79,12 @@ impl Capacity {
             bins: self.bins.next_power_of_two(),
             runs: self.runs.next_power_of_two().min(max_words),
             entries: self.entries.min(1 << 31).next_power_of_two().min(max_words),
+            shaded: self.shaded.next_power_of_two(),
         }
     }
 
-    fn all(&self) -> [u32; 4] {
-        [self.particles, self.bins, self.runs, self.entries]
+    fn all(&self) -> [u32; 5] {
+        [self.particles, self.bins, self.runs, self.entries, self.shaded]
     }
 
     pub fn holds(&self, needed: &Self) -> bool {
@@ -92,7 +99,7 @@ impl Capacity {
 impl TileBuffers {
     pub fn new(device: &wgpu::Device, tiled: &TiledPipelines, capacity: Capacity) -> Self {
         let storage = |name, count, bytes| storage(device, name, count, bytes);
-        let Capacity { particles, bins, runs, entries } = capacity;
+        let Capacity { particles, bins, runs, entries, shaded } = capacity;
         let uniform = uniform_buffer(device, "haze tiles", size_of::<TilesUniform>() as u64);
         let counters = storage("haze tile counters", 2, WORD_BYTES);
         let rects = storage("haze sprite rectangles", particles, RECT_BYTES);
@@ -115,6 +122,7 @@ impl TileBuffers {
         Self {
             capacity,
             sprites: storage("haze tile sprites", particles, TILE_SPRITE_BYTES),
+            optical_depths: storage("haze sprite depths", shaded, DEPTHS_BYTES),
             read_back: Arc::new(read_back),
             gather,
             bin,
@@ -137,7 +145,7 @@ impl TileBuffers {
         let bytes = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|buffer| buffer.size()).sum();
         let [keys, counts] = self.sort.bytes();
         TiledMemory {
-            sprites: bytes(&[&self.uniform, &self.sprites, &self.rects, &self.sorted_rects]),
+            sprites: bytes(&[&self.uniform, &self.sprites, &self.optical_depths, &self.rects, &self.sorted_rects]),
             keys,
             counts: counts + bytes(&[&self.bin_counts, &self.counters, &self.workgroups, &self.read_back]),
             lists: bytes(&[&self.lists, &self.bins]),
@@ -149,8 +157,9 @@ impl TileBuffers {
         match &self.project {
             Some((bound, group)) if *bound == particles => group.clone(),
             _ => {
-                let Self { uniform, sprites, rects, sort, .. } = self;
-                let buffers = [&*sprites, rects, sort.keys(), sort.indices()].map(wgpu::Buffer::as_entire_binding);
+                let Self { uniform, sprites, optical_depths, rects, sort, .. } = self;
+                let buffers = [&*sprites, rects, sort.keys(), sort.indices(), optical_depths];
+                let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
                 let own = [uniform.as_entire_binding(), particles.binding()];
                 let group = bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers));
                 self.project = Some((particles, group.clone()));
@@ -188,10 +197,11 @@ impl TileBuffers {
         match &self.accumulate {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {
-                let Self { uniform, sprites, rects, sort, lists, bins, .. } = self;
+                let Self { uniform, sprites, optical_depths, rects, sort, lists, bins, .. } = self;
                 let buffers = [&*uniform, sprites, rects, sort.indices(), lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
+                let resources = resources.chain([optical_depths.as_entire_binding()]);
                 let group = bind(gpu.device, &tiled.accumulate.get(formats).layout, resources);
                 self.accumulate = Some((views.map(wgpu::TextureView::clone).to_vec(), group.clone()));
                 group

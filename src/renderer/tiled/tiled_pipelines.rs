@@ -4,14 +4,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::accumulate_variants::AccumulateVariants;
 use crate::error::Error;
-use crate::formula::uniforms::{EmitterUniform, MeasureUniform, TilesUniform};
+use crate::formula::uniforms::{EmitterUniform, MeasureUniform, ShadowMarchUniform, SplatUniform, TilesUniform};
 use crate::renderer::gpu::pipeline::{
     ComputePipelineDescription, PipelineStore, PipelineVariants, Shader, pipeline_variants,
 };
-use crate::renderer::layouts::Layouts;
+use crate::renderer::layouts::{Layouts, SHADOW_FORMAT};
+use crate::renderer::pass::density_splat;
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
 use crate::renderer::pass::measure::{self, MeasureKey};
+use crate::renderer::pass::shadow_march;
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::TileAccumulateKey;
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
@@ -31,6 +33,8 @@ pub(crate) struct TiledPipelines {
     pub emit: PipelineVariants<(), ComputePipelineDescription>,
     pub measure: PipelineVariants<MeasureKey, ComputePipelineDescription>,
     pub depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
+    pub density_splat: PipelineVariants<(), ComputePipelineDescription>,
+    pub shadow_march: PipelineVariants<(), ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
     gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
@@ -45,6 +49,8 @@ pub(crate) struct TiledLayouts {
     pub emit: wgpu::BindGroupLayout,
     pub measure: wgpu::BindGroupLayout,
     pub depth_sort: wgpu::BindGroupLayout,
+    pub density_splat: wgpu::BindGroupLayout,
+    pub shadow_march: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
     pub gather: wgpu::BindGroupLayout,
@@ -98,6 +104,8 @@ impl TiledPipelines {
             emit: pipeline_variants!(store, shader, emit, &[Some(&own.emit)]),
             measure: pipeline_variants!(store, shader, measure, &with(&own.measure)),
             depth_sort: pipeline_variants!(store, shader, depth_sort, &with(&own.depth_sort)),
+            density_splat: pipeline_variants!(store, shader, density_splat, &with(&own.density_splat)),
+            shadow_march: pipeline_variants!(store, shader, shadow_march, &[Some(&own.shadow_march)]),
             project: pipeline_variants!(store, shader, tile_project, &with(&own.project)),
             sort: pipeline_variants!(store, shader, sort, &[Some(&own.sort)]),
             gather: pipeline_variants!(store, shader, tile_gather, &[Some(&own.gather)]),
@@ -133,6 +141,12 @@ impl TiledPipelines {
     /// Compiles the pipelines that measure a host's particles.
     pub fn compile_measure(&self) -> Result<(), Error> {
         MeasureKey::ALL.into_iter().try_for_each(|key| self.measure.check(key))
+    }
+
+    /// Compiles the pipelines of shadow.
+    pub fn compile_shadow(&self) -> Result<(), Error> {
+        self.density_splat.check(())?;
+        self.shadow_march.check(())
     }
 
     /// Compiles the pipelines that sort a host's particles back to front.
@@ -186,6 +200,11 @@ impl TiledLayouts {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let volume = wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: SHADOW_FORMAT,
+            view_dimension: wgpu::TextureViewDimension::D3,
+        };
         let layout = |label, types: &[wgpu::BindingType]| {
             let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
                 binding,
@@ -200,7 +219,12 @@ impl TiledLayouts {
             emit: layout("haze emit inputs", &[uniform_of(size_of::<EmitterUniform>()), written]),
             measure: layout("haze measure inputs", &[uniform_of(size_of::<MeasureUniform>()), read, written, written]),
             depth_sort: layout("haze depth_sort inputs", &[uniform, read, written, written, written]),
-            project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
+            density_splat: layout("haze density_splat inputs", &[uniform_of(size_of::<SplatUniform>()), read, written]),
+            shadow_march: layout(
+                "haze shadow_march inputs",
+                &[uniform_of(size_of::<ShadowMarchUniform>()), read, volume],
+            ),
+            project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
             gather: layout("haze tile_gather inputs", &[uniform, read, read, read, written, written, written]),
             bin: layout("haze tile_bin inputs", &[uniform, read, read, written, written, written, written]),

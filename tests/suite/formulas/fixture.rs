@@ -10,7 +10,7 @@ use haze::frame::MAX_LIGHTS;
 use haze::image::Image;
 use haze::settings::Settings;
 use haze::sprite::{Sprite, SpriteLayout};
-use haze::view_setup::{AttachmentRole, ResolvedSettings, SpriteTrim};
+use haze::view_setup::{AttachmentRole, ResolvedSettings, SpriteTrim, Support};
 use haze::{Light, LightKind, MaterialAssets};
 use haze_reference::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use haze_reference::visible_system::{VisibleSystem, visible_systems};
@@ -48,6 +48,7 @@ pub static MATERIAL: LazyLock<MaterialAssets> = LazyLock::new(|| {
         noise: test_noise().clone(),
         diffuse_ramp: test_ramp(),
         backlight_ramp: test_ramp(),
+        shadow_ramp: test_ramp(),
         soft_scatter_ramp: test_ramp(),
         specular_ramp: test_ramp(),
         motif: test_ramp(),
@@ -76,6 +77,7 @@ static SYSTEM: LazyLock<VisibleSystem<'static>> = LazyLock::new(|| {
     let system = &mut visible.system;
     (system.target_origin, system.target_size) = (Vec2::ZERO, SIZE.as_vec2());
     (system.frame_count, system.sprite_size, system.detail_lod) = (3.0, 8.0, 0.0);
+    visible.lights.iter_mut().zip([2.0, 0.0, 3.0, 1.0]).for_each(|(light, slot)| light.shadow_slot = slot);
     visible
 });
 
@@ -100,8 +102,10 @@ pub fn visible_system(settings: &Settings) -> VisibleSystem<'_> {
         particles: Vec::new(),
         trim: SpriteTrim::new(settings, &INFO),
         scene_depth: &DEPTHS,
-        settings: ResolvedSettings::new(settings, 1.0, SIZE, system.frame_count, true),
+        settings: ResolvedSettings::new(settings, 1.0, SIZE, system.frame_count, Support::ALL),
         material: &MATERIAL,
+        shadow: None,
+        optical_depths: None,
     }
 }
 

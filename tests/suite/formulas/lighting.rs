@@ -18,7 +18,7 @@ fn light(x: &[f32]) -> LightUniform {
         spot_scale: x[8],
         spot_offset: x[9],
         radius: x[10],
-        padding: 0.0,
+        shadow_slot: 0.0,
     }
 }
 

@@ -3,6 +3,7 @@
 
 use glam::{IVec2, Vec3, Vec4};
 use haze::formula::six_way::SixWay;
+use haze::formula::uniforms::LightUniform;
 use haze::image::Image;
 use haze::settings::*;
 use haze_reference::accumulated::AccumulatedTarget;
@@ -120,24 +121,37 @@ fn accumulated() -> Vec<Formula> {
     ]
 }
 
+/// The system, with or without shadow.
+fn shaded_system(settings: &Settings, has_shadow: bool) -> VisibleSystem<'_> {
+    let mut visible = visible_system(settings);
+    visible.system.shadow_strength = if has_shadow { 0.8 } else { 0.0 };
+    visible
+}
+
 fn diffuse() -> Vec<Formula> {
     vec![
         Formula {
             name: "diffuse_from_lights",
             file: "lib/diffuse.wgsl",
             wgsl: "BACKLIGHT = u32(x(0)); \
-                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7))));",
+                   SHADOW = x(8) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
+                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), vec3f(0.3, 0.8, x(8))));",
             reference: |x| {
                 let settings = changed(|s| s.diffuse.backlight = Backlight::ALL[x[0] as usize]);
-                visible_system(&settings).diffuse_from_lights(v3(&x[1..]), x[4], v3(&x[5..])).to_array().to_vec()
+                let (visible, depths) = (shaded_system(&settings, x[8] > 0.5), Vec3::new(0.3, 0.8, x[8]));
+                visible.diffuse_from_lights(v3(&x[1..]), x[4], v3(&x[5..]), depths).to_array().to_vec()
             },
             cases: unit_vectors(
-                with_choices(count(Backlight::ALL), &[SIDE, SIDE, SIDE, (0.0, 1.0), PLACE[0], PLACE[1], PLACE[2]]),
+                with_choices(
+                    count(Backlight::ALL),
+                    &[SIDE, SIDE, SIDE, (0.0, 1.0), PLACE[0], PLACE[1], PLACE[2], (0.0, 3.0)],
+                ),
                 1,
             ),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("sum += falloff * lights[i].color * light.attenuation;", "sum += falloff * lights[i].color;"),
+                ("lights[i].color * light.attenuation * shadow;", "lights[i].color * shadow;"),
+                ("lights[i].color * light.attenuation * shadow;", "lights[i].color * light.attenuation;"),
                 (
                     "diffuse_coordinate(normal, light.direction), covered",
                     "diffuse_coordinate(normal, light.direction), 0.5",
@@ -153,12 +167,14 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "let s = SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
                    system.six_way_color = vec3f(0.9, 0.7, 0.5); \
-                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8))));",
+                   SHADOW = x(0) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
+                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), vec3f(0.3, 0.8, x(1))));",
             reference: |x| {
-                let mut visible = visible_system(&DEFAULTS);
+                let mut visible = shaded_system(&DEFAULTS, x[0] > 0.5);
                 visible.system.six_way_color = Vec3::new(0.9, 0.7, 0.5);
                 let six_way = SixWay { positive: v3(x), negative: v3(&x[3..]) };
-                visible.diffuse_from_six_way(&six_way, v3(&x[6..])).to_array().to_vec()
+                let depths = Vec3::new(0.3, 0.8, x[1]);
+                visible.diffuse_from_six_way(&six_way, v3(&x[6..]), depths).to_array().to_vec()
             },
             cases: random(
                 100,
@@ -168,6 +184,32 @@ fn diffuse() -> Vec<Formula> {
             mutants: &[
                 ("return sum * system.six_way_color", "return sum"),
                 ("(response * light.attenuation)", "response"),
+                ("(response * light.attenuation) * shadow;", "(response * light.attenuation);"),
+            ],
+        },
+        Formula {
+            name: "shadow_on_light",
+            file: "lib/diffuse.wgsl",
+            wgsl: "SHADOW = true; system.shadow_strength = 0.8; let position = vec3f(x(7), x(8), x(9)); \
+                   let to_viewer = direction_to_viewer(position, view.orthographic); \
+                   y3(0, shadow_on_light(x(0), vec3f(x(1), x(2), x(3)), vec3f(x(4), x(5), x(6)), to_viewer));",
+            reference: |x| {
+                let visible = shaded_system(&DEFAULTS, true);
+                let light = LightUniform { shadow_slot: x[0], ..visible.lights[0] };
+                visible.shadow_on_light(&light, v3(&x[4..]), v3(&x[7..]), v3(&x[1..])).to_array().to_vec()
+            },
+            cases: unit_vectors(
+                with_choices(4, &[(0.0, 3.0), (0.0, 3.0), (0.0, 3.0), SIDE, SIDE, SIDE, PLACE[0], PLACE[1], PLACE[2]]),
+                4,
+            ),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                (
+                    "shadow_position(depth_of_slot(slot, depths), to_light",
+                    "shadow_position(depth_of_slot(slot, depths), -to_light",
+                ),
+                ("|| slot < 0.5", ""),
+                (", system.shadow_strength);", ", 1.0);"),
             ],
         },
         Formula {
@@ -213,11 +255,11 @@ fn surfaces() -> Vec<Formula> {
         Formula {
             name: "surface_from_accumulation",
             file: "lib/lit_smoke.wgsl",
-            wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY_SLOT = u32(x(9) > 0.7); WEIGHTS_SLOT = u32(x(9) < 0.3); \
+            wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY_SLOT = u32(x(9) > 0.7); WEIGHTS_SLOT = u32(x(9) < 0.3); OPTICAL_DEPTHS_SLOT = 1u; \
                    NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, x(9) < 0.3); \
                    let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), \
-                   Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5))); \
-                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative);",
+                   Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5), vec4f(x(1), x(2), x(3), x(4)))); \
+                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.optical_depths);",
             reference: |x| {
                 let settings = changed(|s| {
                     s.accumulate.decode = NormalDecode::ALL[x[0] as usize];
@@ -229,10 +271,10 @@ fn surfaces() -> Vec<Formula> {
                         (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
                     }
                 });
-                let surface =
-                    with_target(&settings, |_| {}, |target| target.surface(&[v4(&x[1..]), v4(&x[5..]), v4(&x[5..])]));
+                let attachments = [v4(&x[1..]), v4(&x[5..]), v4(&x[5..]), v4(&x[1..])];
+                let surface = with_target(&settings, |_| {}, |target| target.surface(&attachments));
                 let SixWay { positive, negative } = surface.six_way;
-                [surface.normal, positive, negative].map(|v| v.to_array()).concat()
+                [surface.normal, positive, negative, surface.optical_depths].map(|v| v.to_array()).concat()
             },
             cases: with_choices(
                 count(NormalDecode::ALL),
@@ -241,6 +283,7 @@ fn surfaces() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("weights = attachments.weights;", "weights = accumulated.a * 2.0;"),
+                ("depths.rgb / max(depths.a, 1.0e-6)", "depths.rgb"),
                 ("max(accumulated.rgb, vec3f(0.0)) * scale", "accumulated.rgb * scale"),
                 (
                     "normal_from_six_way(surface.six_way.positive, surface.six_way.negative)",
@@ -263,7 +306,7 @@ fn lit_surfaces() -> Vec<Formula> {
         file: "lib/lit_smoke.wgsl",
         wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
                    for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
-                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5))); \
+                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), vec3f(0.0)); \
                    y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",
         reference: |x| {
             let settings = changed(|s| {
@@ -277,7 +320,7 @@ fn lit_surfaces() -> Vec<Formula> {
                 visible.system.spherical_harmonics = std::array::from_fn(|i| Vec4::new(0.3, 0.2, 0.1, 0.0) * i as f32);
             };
             let six_way = SixWay { positive: Vec3::new(0.2, 0.4, 0.6), negative: Vec3::new(0.1, 0.3, 0.5) };
-            let surface = Surface { normal: v3(&x[1..]), six_way };
+            let surface = Surface { normal: v3(&x[1..]), six_way, optical_depths: Vec3::ZERO };
             with_target(&settings, change, |target| target.diffuse(&surface, x[4], v3(&x[5..])).to_array().to_vec())
         },
         cases: unit_vectors(
@@ -292,10 +335,10 @@ fn lit_surfaces() -> Vec<Formula> {
             ("return light * system.diffuse_intensity;", "return light;"),
             ("motif_position(normal) * 0.5 + 0.5", "motif_position(normal)"),
             (
-                "diffuse_from_six_way(surface.six_way, position) * system.diffuse_intensity",
-                "diffuse_from_six_way(surface.six_way, position)",
+                "diffuse_from_six_way(surface.six_way, position, surface.optical_depths) * system.diffuse_intensity",
+                "diffuse_from_six_way(surface.six_way, position, surface.optical_depths)",
             ),
-            ("coverage(amount, system.boost), position)", "amount, position)"),
+            ("coverage(amount, system.boost), position,", "amount, position,"),
         ],
     }]
 }

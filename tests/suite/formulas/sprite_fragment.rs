@@ -25,6 +25,7 @@ fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
         frames: flipbook_frames(0.7, 3.0),
         reach: glam::Vec4::ONE,
         age: 0.5,
+        optical_depths: Vec3::ZERO,
         weight: 1.0,
         min: Vec2::ZERO,
         max: Vec2::ZERO,

@@ -47,6 +47,10 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
         Some((index.parse::<usize>().ok()?, field))
     };
     if let Some((index, field)) = item("systems") {
+        // The shadow that a system casts may fall on another.
+        if field == "settings.shadow.density" && preset.systems.iter().any(|system| system.settings.receives_shadow()) {
+            return None;
+        }
         return find_reason(SYSTEM_RULES, preset.systems.get(index)?, field, size);
     }
     if let Some((index, field)) = item("lights") {

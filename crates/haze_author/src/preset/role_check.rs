@@ -21,6 +21,7 @@ pub fn role_warnings(names: &MaterialNames, loaded: &MaterialAssets) -> Vec<(&'s
     let others = [
         ("diffuse_ramp", &names.diffuse_ramp, check_diffuse_ramp(&loaded.diffuse_ramp)),
         ("backlight_ramp", &names.backlight_ramp, check_diffuse_ramp(&loaded.backlight_ramp)),
+        ("shadow_ramp", &names.shadow_ramp, check_shadow_ramp(&loaded.shadow_ramp)),
         ("specular_ramp", &names.specular_ramp, check_specular_ramp(&loaded.specular_ramp)),
         ("motif", &names.motif, check_motif(&loaded.motif)),
     ];
@@ -38,6 +39,17 @@ fn check_diffuse_ramp(ramp: &Ramp) -> Option<String> {
     let specular =
         || "black where it faces the light, as a specular ramp is; expected dot(n, l) across, amount up".into();
     check_rows(ramp).or_else(|| is_specular.then(specular))
+}
+
+/// Checks a ramp that is looked up by the smoke before a light.
+fn check_shadow_ramp(ramp: &Ramp) -> Option<String> {
+    let size = ramp.size();
+    let lit = (0..size.y).map(|y| ramp.texel(UVec2::new(0, y)).min_element()).fold(1.0, f32::min);
+    let dark = || {
+        let first = "darker than 0.5 in the first column, where no smoke is before the light";
+        format!("{first}; expected white there: thin smoke is lit by full light")
+    };
+    (lit < 0.5).then(dark)
 }
 
 /// Checks a ramp that is looked up in one row.

@@ -49,7 +49,7 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding>
         );
     }
     let jump = lines().find_map(|(axis, line)| Some((axis, find_step(&luminances(line))?)));
-    let may_jump = matches!(role, None | Some(RampRole::Diffuse | RampRole::Coverage));
+    let may_jump = matches!(role, None | Some(RampRole::Diffuse | RampRole::Coverage | RampRole::Shadow));
     if let Some((axis, at)) = jump.filter(|_| !may_jump) {
         find("step", format!("luminance jumps at {at:.2} {axis}; expected a slope of several texels"));
     }

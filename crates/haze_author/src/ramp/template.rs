@@ -122,6 +122,27 @@ pub const TEMPLATES: &[Template] = &[
         place: "",
     },
     one_axis(
+        RampRole::Shadow,
+        "golden_shadow",
+        "light turns gold, then brown",
+        Curve::Monotone,
+        &[(0.0, 0xffffff), (0.3, 0xf2cf96), (0.6, 0xb87b3e), (0.85, 0x5c3018), (1.0, 0x1c0d08)],
+    ),
+    one_axis(
+        RampRole::Shadow,
+        "cold_shadow",
+        "light turns blue, then black",
+        Curve::Monotone,
+        &[(0.0, 0xffffff), (0.3, 0xb9cbe2), (0.6, 0x6480a6), (0.85, 0x26395c), (1.0, 0x070b16)],
+    ),
+    one_axis(
+        RampRole::Shadow,
+        "toon_shadow",
+        "light and shade, with a hard border",
+        Curve::Constant,
+        &[(0.0, 0xffffff), (0.5, 0x777a86), (0.8, 0x3a3d4c), (1.0, 0x3a3d4c)],
+    ),
+    one_axis(
         RampRole::Scatter,
         "fog",
         "light where thin, blue where thick",

@@ -4,7 +4,7 @@ use glam::Vec4;
 
 use crate::accumulated::AccumulatedTextures;
 use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
-use crate::sprite::SpriteFragment;
+use crate::sprite::{SpriteFragment, SpriteSetup};
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::normal::accumulation_from_normal;
@@ -19,8 +19,8 @@ impl VisibleSystem<'_> {
         let rounds_once = self.settings.path == RenderPath::Tiled;
         AttachmentRole::ALL.map(|role| {
             let format = self.format(role);
-            let blended = |fragment, weight, texel| {
-                let sum = self.blended(role, fragment, weight, texel);
+            let blended = |fragment, sprite: &SpriteSetup, texel| {
+                let sum = self.blended(role, fragment, sprite, texel);
                 if rounds_once { sum } else { quantise(format, sum) }
             };
             set.contains(role).then(|| {
@@ -36,7 +36,7 @@ impl VisibleSystem<'_> {
     /// Counted layers in the first texture, and no others.
     pub fn overdraw(&self, reduced_depth: &Image<f32>) -> AccumulatedTextures {
         let format = self.settings.accumulate.format;
-        let counted = |_, _, texel| quantise(format, texel + Vec4::splat(1.0 / 255.0));
+        let counted = |_, _: &SpriteSetup, texel| quantise(format, texel + Vec4::splat(1.0 / 255.0));
         AttachmentRole::ALL.map(|role| {
             let is_counted = AttachmentSet::NORMAL_AND_AMOUNT.contains(role);
             is_counted.then(|| self.blend(reduced_depth, counted))
@@ -46,14 +46,15 @@ impl VisibleSystem<'_> {
     fn format(&self, role: AttachmentRole) -> AccumulationFormat {
         match role {
             AttachmentRole::NormalAndAmount | AttachmentRole::SixWay => self.settings.accumulate.format,
-            AttachmentRole::Weights => AccumulationFormat::Rgba16Float,
+            AttachmentRole::Weights | AttachmentRole::OpticalDepths => AccumulationFormat::Rgba16Float,
         }
     }
 
-    /// Texel of the texture with this role after one more fragment, before rounding. `weight`: weight of its normal.
-    fn blended(&self, role: AttachmentRole, fragment: SpriteFragment, weight: f32, texel: Vec4) -> Vec4 {
+    /// Texel of the texture with this role after one more fragment, before rounding.
+    fn blended(&self, role: AttachmentRole, fragment: SpriteFragment, sprite: &SpriteSetup, texel: Vec4) -> Vec4 {
         let accumulate = &self.settings.accumulate;
         let SpriteFragment { normal, six_way, amount } = fragment;
+        let weight = sprite.weight;
         let weighted = amount * weight;
         let source = match role {
             AttachmentRole::NormalAndAmount if self.settings.is_six_way() => {
@@ -62,6 +63,7 @@ impl VisibleSystem<'_> {
             AttachmentRole::NormalAndAmount => accumulation_from_normal(accumulate.encoding, normal, amount, weight),
             AttachmentRole::SixWay => (six_way.negative * weighted).extend(weighted),
             AttachmentRole::Weights => Vec4::splat(weighted),
+            AttachmentRole::OpticalDepths => (sprite.optical_depths * weighted).extend(weighted),
         };
         match (self.settings.order(), role) {
             (BlendOrder::Sorted, _) => premultiplied_over(source, texel),
@@ -70,15 +72,19 @@ impl VisibleSystem<'_> {
         }
     }
 
-    /// Blends `f(fragment, weight, texel)` of every fragment into a target.
-    fn blend(&self, reduced_depth: &Image<f32>, f: impl Fn(SpriteFragment, f32, Vec4) -> Vec4 + Sync) -> Image<Vec4> {
+    /// Blends `f(fragment, sprite, texel)` of every fragment into a target.
+    fn blend(
+        &self,
+        reduced_depth: &Image<f32>,
+        f: impl Fn(SpriteFragment, &SpriteSetup, Vec4) -> Vec4 + Sync,
+    ) -> Image<Vec4> {
         let mut target = Image::new(self.setup.rect.size, Vec4::ZERO);
         let origin = self.setup.rect.origin.as_vec2();
         let scene = |at| reduced_depth.load(at);
         target.for_bands(|first_row, band| {
             let grid = TexelGrid { origin, scale: self.setup.rect.scale as f32, size: self.setup.rect.size };
             self.for_fragments(&grid, first_row, band, scene, |_, sprite, fragment, texel: &mut Vec4| {
-                *texel = f(fragment, sprite.weight, *texel);
+                *texel = f(fragment, sprite, *texel);
             });
         });
         target

@@ -12,6 +12,7 @@ use haze::formula::lighting::{
     backlight_weight, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
 };
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::formula::shadow::{depth_of_slot, shadow_position};
 use haze::formula::six_way::{SixWay, six_way_response};
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
@@ -22,13 +23,20 @@ impl VisibleSystem<'_> {
         sample_ramp(ramp, self.settings.ramp_filter, u)
     }
 
-    /// Sum of all lights through the diffuse ramp.
-    pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
-        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position)).sum()
+    /// Sum of all lights through the diffuse ramp. `depths`: optical depths towards the lights with shadow.
+    pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3, depths: Vec3) -> Vec3 {
+        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position, depths)).sum()
     }
 
     /// Contribution of a light through the diffuse ramp.
-    pub fn diffuse_from_light(&self, light: &LightUniform, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
+    pub fn diffuse_from_light(
+        &self,
+        light: &LightUniform,
+        normal: Vec3,
+        covered: f32,
+        position: Vec3,
+        depths: Vec3,
+    ) -> Vec3 {
         let sample = sample_light(light, position);
         let at = Vec2::new(diffuse_coordinate(normal, sample.direction), covered);
         let look_up = |ramp| sample_ramp_2d(ramp, self.settings.ramp_filter, at);
@@ -38,20 +46,32 @@ impl VisibleSystem<'_> {
             let weight = backlight_weight(sample.direction, to_viewer);
             falloff = falloff.lerp(look_up(&self.material.backlight_ramp), weight);
         }
-        falloff * light.color * sample.attenuation
+        falloff * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, depths)
+    }
+
+    /// Share of a light that comes through the smoke before it.
+    pub fn shadow_on_light(&self, light: &LightUniform, to_light: Vec3, position: Vec3, depths: Vec3) -> Vec3 {
+        if self.system.shadow_strength <= 0.0 || light.shadow_slot < 0.5 {
+            return Vec3::ONE;
+        }
+        let to_viewer = direction_to_viewer(position, self.view.orthographic);
+        let at = shadow_position(depth_of_slot(light.shadow_slot, depths), to_light, to_viewer);
+        let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
+        Vec3::ONE.lerp(painted, self.system.shadow_strength)
     }
 
     /// Sum of all lights through six-way maps.
-    pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3) -> Vec3 {
-        self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position)).sum()
+    pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3, depths: Vec3) -> Vec3 {
+        self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position, depths)).sum()
     }
 
     /// Contribution of a light through six-way maps.
-    pub fn six_way_from_light(&self, light: &LightUniform, six_way: &SixWay, position: Vec3) -> Vec3 {
+    pub fn six_way_from_light(&self, light: &LightUniform, six_way: &SixWay, position: Vec3, depths: Vec3) -> Vec3 {
         let sample = sample_light(light, position);
         let response =
             six_way_response(six_way.positive, six_way.negative, sample.direction, self.system.six_way_anisotropy);
-        light.color * (response * sample.attenuation) * self.system.six_way_color
+        let shadow = self.shadow_on_light(light, sample.direction, position, depths);
+        light.color * (response * sample.attenuation) * self.system.six_way_color * shadow
     }
 
     /// Even backlight of smoke by its amount.
@@ -79,7 +99,7 @@ impl VisibleSystem<'_> {
                     DiffuseMode::Motif => motif_normal(place),
                     _ => cube_direction(face, place).normalize(),
                 };
-                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.centre));
+                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.centre, Vec3::ZERO));
                 *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
             });
             baked

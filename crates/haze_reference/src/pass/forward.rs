@@ -27,8 +27,8 @@ impl VisibleSystem<'_> {
                 let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
                 let covered = coverage(amount, system.boost);
                 let diffuse = match self.settings.is_six_way() {
-                    true => self.diffuse_from_six_way(&fragment.six_way, position),
-                    false => self.diffuse_from_lights(normal, covered, position),
+                    true => self.diffuse_from_six_way(&fragment.six_way, position, sprite.optical_depths),
+                    false => self.diffuse_from_lights(normal, covered, position, sprite.optical_depths),
                 };
                 let diffuse = diffuse * system.diffuse_intensity;
                 let color = self.sample_ramp(&self.material.age_ramp, sprite.age);

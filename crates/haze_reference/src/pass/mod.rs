@@ -1,9 +1,11 @@
 //! Passes of the CPU renderer, each named like its shader.
 
 mod accumulate;
+pub mod density_splat;
 mod depth_downsample;
 mod diffuse_bake;
 mod forward;
 mod light_target;
+pub mod shadow_march;
 mod specular_scatter;
 pub mod transfer;

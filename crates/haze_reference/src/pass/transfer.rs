@@ -22,17 +22,21 @@ pub struct Surface {
     pub normal: Vec3,
     /// From six-way maps.
     pub six_way: SixWay,
+    /// Mean optical depths of the smoke before the surface, towards the lights with shadow.
+    pub optical_depths: Vec3,
 }
 
 impl AccumulatedTarget<'_> {
     /// Diffuse light on a surface, by the system's mode.
     pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
-        let (visible, normal) = (self.visible, surface.normal);
+        let (visible, normal, depths) = (self.visible, surface.normal, surface.optical_depths);
         if visible.settings.is_six_way() {
-            return visible.diffuse_from_six_way(&surface.six_way, position) * visible.system.diffuse_intensity;
+            return visible.diffuse_from_six_way(&surface.six_way, position, depths) * visible.system.diffuse_intensity;
         }
         let light = match visible.settings.diffuse.mode {
-            DiffuseMode::Ramp => visible.diffuse_from_lights(normal, coverage(amount, visible.system.boost), position),
+            DiffuseMode::Ramp => {
+                visible.diffuse_from_lights(normal, coverage(amount, visible.system.boost), position, depths)
+            }
             DiffuseMode::Cubemap => {
                 let cube = cube_coordinate(normal);
                 sample_baked(&self.baked[cube.face as usize], cube.position)
@@ -132,15 +136,17 @@ impl AccumulatedTarget<'_> {
     pub fn surface(&self, attachments: &Attachments) -> Surface {
         let settings = self.visible.settings;
         let accumulate = &settings.accumulate;
-        let [accumulated, six_way, weights] = *attachments;
+        let [accumulated, six_way, weights, depths] = *attachments;
+        let optical_depths = depths.xyz() / depths.w.max(1.0e-6);
         if AttachmentRole::SixWay.is_used(&settings) {
             let scale = 1.0 / six_way.w.max(1.0e-6);
             let [positive, negative] = [accumulated, six_way].map(|light| light.xyz().max(Vec3::ZERO) * scale);
-            return Surface { normal: normal_from_six_way(positive, negative), six_way: SixWay { positive, negative } };
+            let normal = normal_from_six_way(positive, negative);
+            return Surface { normal, six_way: SixWay { positive, negative }, optical_depths };
         }
         let weights = if AttachmentRole::Weights.is_used(&settings) { weights.x } else { accumulated.w };
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
-        Surface { normal, six_way: SixWay::default() }
+        Surface { normal, six_way: SixWay::default(), optical_depths }
     }
 
     /// Amount and surface at a pixel.
@@ -152,8 +158,8 @@ impl AccumulatedTarget<'_> {
     /// Contribution of a light if none is baked.
     pub fn diffuse_from_light(&self, light: &LightUniform, surface: &Surface, covered: f32, position: Vec3) -> Vec3 {
         match self.visible.settings.is_six_way() {
-            true => self.visible.six_way_from_light(light, &surface.six_way, position),
-            false => self.visible.diffuse_from_light(light, surface.normal, covered, position),
+            true => self.visible.six_way_from_light(light, &surface.six_way, position, surface.optical_depths),
+            false => self.visible.diffuse_from_light(light, surface.normal, covered, position, surface.optical_depths),
         }
     }
 }

@@ -60,12 +60,13 @@ const TEXT_HEIGHT: f32 = 16.0;
 fn write_blank(output: &Path, role: RampRole) -> Result<(), Error> {
     let across = match role {
         RampRole::Diffuse | RampRole::Backlight => ["away from the light", "facing it"],
+        RampRole::Shadow => ["in full light", "behind thick smoke"],
         RampRole::Scatter => ["thin", "thick"],
         RampRole::Specular => ["at the light", "far from it: black"],
         RampRole::Coverage => ["thin; black hides nothing", "thick; white hides all"],
         RampRole::Age => ["born", "dies"],
     };
-    let has_two_axes = matches!(role, RampRole::Specular | RampRole::Backlight);
+    let has_two_axes = matches!(role, RampRole::Specular | RampRole::Backlight | RampRole::Shadow);
     let size = UVec2::new(512, if has_two_axes { 256 } else { 64 });
     // The first template of the role is the background.
     let Some(template) = TEMPLATES.iter().find(|template| template.role == role) else { return Ok(()) };
@@ -80,8 +81,12 @@ fn write_blank(output: &Path, role: RampRole) -> Result<(), Error> {
     write(8.0, middle, &left);
     write(size.x as f32 - 8.0 - text_width(TEXT_HEIGHT, &right), middle, &right);
     if has_two_axes {
-        write(180.0, 4.0, "top: thick smoke");
-        let bottom = if role == RampRole::Specular { "bottom: no smoke: black" } else { "bottom: thin smoke" };
+        let [top, bottom] = match role {
+            RampRole::Shadow => ["top: light behind the smoke", "bottom: light on the viewer's side"],
+            RampRole::Specular => ["top: thick smoke", "bottom: no smoke: black"],
+            _ => ["top: thick smoke", "bottom: thin smoke"],
+        };
+        write(180.0, 4.0, top);
         write(180.0, size.y as f32 - TEXT_HEIGHT - 6.0, bottom);
     }
     write_png(output, &picture.into(), CompressionEffort::Small)?;

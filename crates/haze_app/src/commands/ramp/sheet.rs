@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let backend = arguments.shot.run.backend()?;
     let mut sheet = render_sheet(&backend, &shots, columns, &arguments.shot.output, &ExportProgress::terminal())?;
     for (index, (cell, ramp)) in (0..).zip(&ramps) {
-        let has_two_axes = cell.role == RampRole::Specular;
+        let has_two_axes = matches!(cell.role, RampRole::Specular | RampRole::Shadow);
         let inset = if has_two_axes { size / INSET_DIVISOR } else { UVec2::new(size.x, size.y / STRIP_DIVISOR) };
         sheet.inset(index, &ramp_image(ramp, inset));
     }
@@ -155,6 +155,7 @@ fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
         let MaterialAssets {
             diffuse_ramp,
             backlight_ramp,
+            shadow_ramp,
             soft_scatter_ramp,
             specular_ramp,
             coverage_ramp,
@@ -171,6 +172,12 @@ fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
             RampRole::Backlight => {
                 settings.diffuse.backlight = Backlight::Ramp;
                 backlight_ramp
+            }
+            RampRole::Shadow => {
+                if settings.shadow.strength <= 0.0 {
+                    settings.shadow.strength = 1.0;
+                }
+                shadow_ramp
             }
             RampRole::Scatter => {
                 settings.soft_scatter.mode = SoftScatterMode::Ramp;

@@ -153,6 +153,7 @@ impl RampEdits {
             for (name, ramp) in [
                 (&names.diffuse_ramp, &mut assets.diffuse_ramp),
                 (&names.backlight_ramp, &mut assets.backlight_ramp),
+                (&names.shadow_ramp, &mut assets.shadow_ramp),
                 (&names.soft_scatter_ramp, &mut assets.soft_scatter_ramp),
                 (&names.specular_ramp, &mut assets.specular_ramp),
                 (&names.coverage_ramp, &mut assets.coverage_ramp),

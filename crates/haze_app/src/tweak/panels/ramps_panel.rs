@@ -58,6 +58,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     for (field, title, name) in [
         ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
         ("backlight_ramp", "Diffuse, lit from behind", &system.material.backlight_ramp),
+        ("shadow_ramp", "Shadow, by smoke before the light and its angle", &system.material.shadow_ramp),
         ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
         ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
         ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),

@@ -38,6 +38,7 @@ pub const LOOK_CONTROLS: &[LookControl] = &[
     control("swirl size", ControlTarget::System("emitter.turbulence_scale", Some((0.1, 6.0)))),
     param(&SOFTNESS),
     control("key light", ControlTarget::KeyLight("intensity", Some((0.0, 100.0)))),
+    control("shadow", ControlTarget::System("settings.shadow.strength", None)),
     control("scatter color", ControlTarget::System("settings.soft_scatter.scatter_color", None)),
     control("glow", ControlTarget::System("settings.specular_scatter.intensity", Some((0.0, 4.0)))),
     control("exposure", ControlTarget::Camera("exposure", Some((-4.0, 4.0)))),

@@ -105,7 +105,7 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &
 }
 
 /// Groups of a system's settings on the Smoke tab. The others are on the Advanced tab.
-pub const SMOKE_TAB_GROUPS: [&str; 4] = ["diffuse", "soft_scatter", "specular_scatter", "soft_fade"];
+pub const SMOKE_TAB_GROUPS: [&str; 5] = ["diffuse", "shadow", "soft_scatter", "specular_scatter", "soft_fade"];
 
 /// Returns the tab of a setting.
 fn tab_of(path: &str) -> Tab {

@@ -172,7 +172,11 @@ fn a_blank_of_every_role_has_labelled_axes() {
     for role in RampRole::ALL {
         let name = format!("{}_mine.png", role.name());
         let line = stdout_of(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
-        let size = if matches!(role, RampRole::Specular | RampRole::Backlight) { "512x256" } else { "512x64" };
+        let size = if matches!(role, RampRole::Specular | RampRole::Backlight | RampRole::Shadow) {
+            "512x256"
+        } else {
+            "512x64"
+        };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
         // Text at both ends: without it, a ramp changes little from one line to the next.
         let picture = haze::image::read_png(&folder.path().join(&name)).unwrap().to_luma8();

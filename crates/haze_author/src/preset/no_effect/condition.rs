@@ -73,7 +73,8 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
     } else {
         settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0
     };
-    !(by_normal || by_amount || others)
+    let by_shadow = is_lit && settings.receives_shadow();
+    !(by_normal || by_amount || by_shadow || others)
 }
 
 pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {

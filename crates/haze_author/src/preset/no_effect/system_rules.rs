@@ -210,10 +210,22 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.diffuse.backlight",
             "settings.diffuse.six_way_color",
             "settings.diffuse.six_way_anisotropy",
+            "settings.shadow",
             "material.diffuse_ramp",
             "material.backlight_ramp",
+            "material.shadow_ramp",
             "material.motif",
         ],
+    ),
+    rule(
+        "only with lighting six_way, path forward or diffuse.mode ramp",
+        |s, _| !s.settings.can_receive_shadow(),
+        &["settings.shadow", "material.shadow_ramp"],
+    ),
+    rule(
+        "only at a shadow.strength above 0",
+        |s, _| s.settings.shadow.strength <= 0.0,
+        &["settings.shadow.density", "settings.shadow.resolution", "material.shadow_ramp"],
     ),
     rule(
         "diffuse.mode painted_motif takes its light from the motif",

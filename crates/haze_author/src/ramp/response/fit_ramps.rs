@@ -101,7 +101,7 @@ impl Puff {
 }
 
 /// Converts solved values to a recipe that interpolates linearly in linear light, along rows and between rows.
-fn recipe(values: &[Vec3], stops: usize, exposure: f32) -> RampRecipe {
+pub(super) fn recipe(values: &[Vec3], stops: usize, exposure: f32) -> RampRecipe {
     let rows = values.len() / stops;
     let share = |index: usize, count: usize| if count > 1 { index as f32 / (count - 1) as f32 } else { 0.0 };
     let stop = |(index, &value): (usize, &Vec3)| {

@@ -1,0 +1,92 @@
+//! Fits a shadow ramp to the path-traced light of many puffs.
+
+use glam::{Vec2, Vec3};
+
+use super::fit_ramps::recipe;
+use super::normal_equations::{NormalEquations, knots};
+use crate::ramp::ramp_recipe::RampRecipe;
+use haze::formula::color::luminance;
+
+/// Number of free parameters of a fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShadowShape {
+    /// Number of stops per row, at least 2: from no smoke before the light to endless smoke.
+    pub stops: u32,
+    /// Number of rows: from a light on the viewer's side to a light behind the smoke.
+    pub rows: u32,
+}
+
+impl Default for ShadowShape {
+    fn default() -> Self {
+        Self { stops: 9, rows: 5 }
+    }
+}
+
+/// Smoke under one light, pixel by pixel: as drawn without shadow, and as it should be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadedLight {
+    /// Light of the smoke without shadow, as bright as it should be where no smoke is before the light.
+    pub unshaded: Vec<Vec3>,
+    /// Lookup positions in the shadow ramp.
+    pub places: Vec<Vec2>,
+    /// Path-traced light.
+    pub truth: Vec<Vec3>,
+}
+
+/// Weight of a light's mean brightness relative to its pixels.
+const BRIGHTNESS: f32 = 30.0;
+/// Weight of the smoothness term, as in the fit of diffuse ramps.
+const STIFFNESS: f64 = 0.02;
+/// Weight of white in the first column, relative to the mean diagonal of the normal equations.
+const FULL_LIGHT: f64 = 100.0;
+const STEPS: u32 = 400;
+
+/// Fits a ramp by least squares. Each light is weighted by its inverse brightness, so relative errors of dark and bright
+/// lights count alike. Returns the ramp, and its value in full light relative to its brightest: smoke of a bright medium is
+/// brighter among other smoke than alone.
+pub fn fit_shadow_ramp(lights: &[ShadedLight], shape: ShadowShape) -> (RampRecipe, f32) {
+    let (stops, rows) = (shape.stops.max(2) as usize, shape.rows.max(1) as usize);
+    let place = |row: usize, stop: usize| row * stops + stop;
+    // The smoke's own color multiplies the ramp, so the channels have matrices of their own.
+    let channels = [0, 1, 2].map(|channel| {
+        let mut equations = NormalEquations::new(rows * stops);
+        for light in lights {
+            let count = light.truth.len().max(1) as f32;
+            let whole: Vec3 = light.truth.iter().sum::<Vec3>() / count;
+            let weight = 1.0 / luminance(whole).powi(2).max(1.0e-12);
+            let mut sums = vec![0.0; rows * stops];
+            for ((unshaded, at), truth) in light.unshaded.iter().zip(&light.places).zip(&light.truth) {
+                let mut terms = Vec::with_capacity(4);
+                for (row, of_row) in knots(at.y, rows) {
+                    for (stop, of_stop) in knots(at.x, stops) {
+                        terms.push((place(row, stop), of_row * of_stop * unshaded[channel]));
+                    }
+                }
+                equations.add(&terms, Vec3::splat(truth[channel]), weight / count);
+                terms.iter().for_each(|&(place, share)| sums[place] += share / count);
+            }
+            let sums: Vec<_> = sums.into_iter().enumerate().collect();
+            equations.add(&sums, Vec3::splat(whole[channel]), BRIGHTNESS * weight);
+        }
+        let square = equations.mean_square();
+        for row in 0..rows {
+            equations.add(&[(place(row, 0), 1.0)], Vec3::ONE, (square * FULL_LIGHT) as f32);
+        }
+        let mut hold = |[before, here, after]: [usize; 3]| {
+            let stiffness = (square * STIFFNESS) as f32;
+            equations.add(&[(before, 1.0), (here, -2.0), (after, 1.0)], Vec3::ZERO, stiffness);
+        };
+        for row in 0..rows {
+            (2..stops).for_each(|stop| hold([2, 1, 0].map(|back| place(row, stop - back))));
+        }
+        for stop in 0..stops {
+            (2..rows).for_each(|row| hold([2, 1, 0].map(|back| place(row - back, stop))));
+        }
+        equations.solve(STEPS)
+    });
+    let [red, green, blue] = channels;
+    let values = red.iter().zip(&green).zip(&blue).map(|((r, g), b)| Vec3::new(r.x, g.x, b.x));
+    let values: Vec<_> = values.collect();
+    let brightest = values.iter().map(|value| value.max_element()).fold(1.0, f32::max);
+    (recipe(&values, stops, brightest), 1.0 / brightest)
+}

@@ -1,0 +1,70 @@
+// shadow_march
+// Marches from every cell of the density grid to the lights with shadow.
+//
+// Reads   optical depths across the cells, in fixed-point steps.
+// Writes  optical depths towards the lights.
+// Space   Cells of the grid.
+
+#import "lib/density_grid.wgsl"
+#import "lib/shadow.wgsl"
+
+struct ShadowMarch {
+    // Position, and 0 in w; or the direction to the light, and 1 in w.
+    lights: array<vec4f, 3>,
+    // Number of cells along each axis.
+    size: vec3f,
+    padding: f32,
+}
+
+@group(0) @binding(0) var<uniform> march: ShadowMarch;
+// The lower word first.
+@group(0) @binding(1) var<storage, read> density: array<vec2u>;
+@group(0) @binding(2) var optical_depths: texture_storage_3d<rgba16float, write>;
+
+// Optical depth across a cell; 0 outside the grid.
+fn load_density(cell: vec3i) -> f32 {
+    let size = vec3i(march.size);
+    if any(cell < vec3i(0)) || any(cell >= size) {
+        return 0.0;
+    }
+    let steps = density[(cell.z * size.y + cell.y) * size.x + cell.x];
+    return optical_depth_of_steps(steps.x, steps.y);
+}
+
+// Between the centres of eight cells.
+fn sample_density(place: vec3f) -> f32 {
+    let low = floor(place - 0.5);
+    let high_weight = place - 0.5 - low;
+    let low_weight = 1.0 - high_weight;
+    var sum = 0.0;
+    for (var corner = 0; corner < 8; corner++) {
+        let offset = vec3i(corner & 1, (corner >> 1u) & 1, corner >> 2u);
+        let weight = select(low_weight, high_weight, offset == vec3i(1));
+        sum += load_density(vec3i(low) + offset) * weight.x * weight.y * weight.z;
+    }
+    return sum;
+}
+
+fn optical_depth_towards(light: vec4f, origin: vec3f) -> f32 {
+    let ray = shadow_ray(light, origin, march.size);
+    let step = ray.w / f32(SHADOW_STEPS);
+    var depth = 0.0;
+    for (var i = 0u; i < SHADOW_STEPS; i++) {
+        depth += sample_density(origin + ray.xyz * ((f32(i) + 0.5) * step));
+    }
+    return min(depth * step, MAX_OPTICAL_DEPTH);
+}
+
+@compute @workgroup_size(4, 4, 4)
+fn march_cells(@builtin(global_invocation_id) cell: vec3u) {
+    if any(cell >= vec3u(march.size)) {
+        return;
+    }
+    let origin = vec3f(cell) + 0.5;
+    let depths = vec3f(
+        optical_depth_towards(march.lights[0], origin),
+        optical_depth_towards(march.lights[1], origin),
+        optical_depth_towards(march.lights[2], origin),
+    );
+    textureStore(optical_depths, cell, vec4f(depths, 0.0));
+}

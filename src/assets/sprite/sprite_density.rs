@@ -1,0 +1,65 @@
+//! Density of a sprite's image, as the shadow of smoke needs it.
+
+use super::Sprite;
+use crate::formula::density_grid::mean_optical_depth;
+
+/// Largest alpha whose optical depth is counted: that of an alpha of 1 is infinite. 0.98 is 3.9.
+const MAX_ALPHA: f32 = 0.98;
+
+/// Parameters of [`mean_optical_depth`], over all frames of a sprite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SpriteDensity {
+    pub mean_alpha: f32,
+    pub peak_alpha: f32,
+}
+
+impl SpriteDensity {
+    pub fn new(sprite: &Sprite) -> Self {
+        let mut counts = [0_u32; 256];
+        let mut total = 0_u32;
+        for alpha in sprite.level_bytes(0).iter().skip(3).step_by(4) {
+            counts[usize::from(*alpha)] += 1;
+            total += 1;
+        }
+        let mean = |of_alpha: fn(f32) -> f32| {
+            let alphas = (0_u8..=255).map(|code| f32::from(code) / 255.0);
+            let sum: f64 = counts.iter().zip(alphas).map(|(&n, alpha)| f64::from(n) * f64::from(of_alpha(alpha))).sum();
+            (sum / f64::from(total.max(1))) as f32
+        };
+        let mean_alpha = mean(|alpha| alpha);
+        let opaque = mean(|alpha| -(1.0 - alpha.min(MAX_ALPHA)).ln());
+        // The depth at amount 1 grows with the peak: bisects.
+        let (mut low, mut high) = (0.0, MAX_ALPHA);
+        for _ in 0..24 {
+            let middle = 0.5 * (low + high);
+            if mean_optical_depth(1.0, mean_alpha, middle) < opaque {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Self { mean_alpha, peak_alpha: 0.5 * (low + high) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_of_a_sprite_is_exact_for_faint_and_for_opaque_smoke() {
+        let alphas = [0, 40, 128, 200, 255, 90, 10, 0, 0];
+        let sprite = Sprite::with_levels(3, 1, alphas.map(|alpha| [128, 128, 255, alpha]).to_vec());
+        let SpriteDensity { mean_alpha, peak_alpha } = SpriteDensity::new(&sprite);
+        let exact = |amount: f32| {
+            let depth = |code: u8| -(1.0 - amount * (f32::from(code) / 255.0).min(0.98)).ln();
+            alphas.into_iter().map(depth).sum::<f32>() / 9.0
+        };
+        for (amount, tolerance) in [(0.01, 0.03), (0.3, 0.1), (0.7, 0.1), (1.0, 1e-3)] {
+            let depth = mean_optical_depth(amount, mean_alpha, peak_alpha);
+            assert!((depth / exact(amount) - 1.0).abs() < tolerance, "{amount}: {depth}, expected {}", exact(amount));
+        }
+        let clear = SpriteDensity::new(&Sprite::with_levels(1, 1, vec![[0; 4]]));
+        assert!(mean_optical_depth(1.0, clear.mean_alpha, clear.peak_alpha).abs() < 1e-9);
+    }
+}

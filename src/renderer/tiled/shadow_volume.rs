@@ -1,0 +1,161 @@
+//! Density grid of a frame, optical depths towards its lights, and the splats of its systems.
+
+use glam::UVec2;
+
+use super::storage_buffers::{bind, storage};
+use super::tile_buffers::ParticleRange;
+use super::tiled_pipelines::TiledPipelines;
+use crate::formula::uniforms::{ShadowMarchUniform, SplatUniform};
+use crate::renderer::gpu::Gpu;
+use crate::renderer::gpu::idle_counter::IdleCounter;
+use crate::renderer::gpu::record::uniform_buffer;
+use crate::renderer::layouts::SHADOW_FORMAT;
+use crate::renderer::pass::Groups;
+use crate::renderer::pass::density_splat::DensitySplat;
+use crate::renderer::pass::shadow_march::ShadowMarch;
+use crate::renderer::sprite_instances::Sprites;
+use crate::view_setup::SmokeShadow;
+
+/// Bytes of a cell: two words.
+const CELL_BYTES: u64 = 8;
+/// Bytes of a texel of the volume.
+const TEXEL_BYTES: u64 = 8;
+/// Workgroups in a row of a dispatch: the limit of every device.
+const MAX_COLUMNS: u32 = 65535;
+
+/// Density grid of a renderer, kept between frames.
+#[derive(Debug, Default)]
+pub(crate) struct ShadowVolume {
+    buffers: Option<VolumeBuffers>,
+    idle: IdleCounter,
+}
+
+#[derive(Debug)]
+struct VolumeBuffers {
+    /// Cells along each axis that fit.
+    resolution: u32,
+    uniform: wgpu::Buffer,
+    density: wgpu::Buffer,
+    optical_depths: wgpu::TextureView,
+    march: wgpu::BindGroup,
+}
+
+/// Density grid of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameShadow<'a> {
+    pub shadow: &'a SmokeShadow,
+    pub density: &'a wgpu::Buffer,
+    pub optical_depths: &'a wgpu::TextureView,
+}
+
+impl ShadowVolume {
+    /// Prepares the grid for a frame; releases it after 120 frames without shadow.
+    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, shadow: Option<&SmokeShadow>) {
+        if self.idle.tick(shadow.is_none()) {
+            self.buffers = None;
+        }
+        let Some(shadow) = shadow else { return };
+        if self.buffers.as_ref().is_some_and(|held| held.resolution != shadow.resolution) {
+            self.buffers = None;
+        }
+        let buffers = self.buffers.get_or_insert_with(|| VolumeBuffers::new(gpu.device, tiled, shadow.resolution));
+        gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&shadow.march));
+    }
+
+    /// Returns the grid with the frame's shadow.
+    pub fn of_frame<'a>(&'a self, shadow: &'a SmokeShadow) -> Option<FrameShadow<'a>> {
+        let VolumeBuffers { density, optical_depths, .. } = self.buffers.as_ref()?;
+        Some(FrameShadow { shadow, density, optical_depths })
+    }
+
+    /// Clears the density.
+    pub fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.buffers.iter().for_each(|held| encoder.clear_buffer(&held.density, 0, None));
+    }
+
+    /// Returns the pass that marches to the lights.
+    pub fn march(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowMarch> {
+        let inputs = self.buffers.as_ref()?.march.clone();
+        Some(ShadowMarch { pipeline: tiled.shadow_march.get(()), inputs, size: shadow.grid.size })
+    }
+
+    /// Returns the bytes of GPU memory held.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.as_ref().map_or(0, |held| {
+            held.uniform.size() + held.density.size() + TEXEL_BYTES * u64::from(held.resolution).pow(3)
+        })
+    }
+}
+
+impl VolumeBuffers {
+    fn new(device: &wgpu::Device, tiled: &TiledPipelines, resolution: u32) -> Self {
+        let uniform = uniform_buffer(device, "haze shadow_march", size_of::<ShadowMarchUniform>() as u64);
+        let density = storage(device, "haze density", resolution.pow(3), CELL_BYTES);
+        let optical_depths = volume(device, resolution, wgpu::TextureUsages::STORAGE_BINDING);
+        let resources = [
+            uniform.as_entire_binding(),
+            density.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&optical_depths),
+        ];
+        let march = bind(device, &tiled.layouts.shadow_march, resources);
+        Self { resolution, uniform, density, optical_depths, march }
+    }
+}
+
+/// Creates a volume of optical depths.
+pub(crate) fn volume(device: &wgpu::Device, resolution: u32, usage: wgpu::TextureUsages) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("haze optical depths"),
+        size: wgpu::Extent3d { width: resolution, height: resolution, depth_or_array_layers: resolution },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: SHADOW_FORMAT,
+        usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Splat of one system, kept between frames.
+#[derive(Debug, Default)]
+pub(crate) struct SplatParticles {
+    buffers: Option<SplatBuffers>,
+}
+
+#[derive(Debug)]
+struct SplatBuffers {
+    uniform: wgpu::Buffer,
+    /// Recreated when the particles or the grid are in another buffer.
+    inputs: Option<(ParticleRange, wgpu::Buffer, wgpu::BindGroup)>,
+}
+
+impl SplatParticles {
+    /// Prepares the pass that adds `sprites` to a grid.
+    pub fn write(
+        &mut self,
+        gpu: &Gpu<'_>,
+        tiled: &TiledPipelines,
+        (sprites, groups): (&Sprites, &Groups),
+        density: &wgpu::Buffer,
+    ) -> DensitySplat {
+        let range = ParticleRange::new(&tiled.limits, sprites);
+        let workgroups = UVec2::new(sprites.count.clamp(1, MAX_COLUMNS), sprites.count.div_ceil(MAX_COLUMNS));
+        let uniform = SplatUniform { count: sprites.count, first: range.first, columns: workgroups.x, padding: 0 };
+        let held = self.buffers.get_or_insert_with(|| SplatBuffers {
+            uniform: uniform_buffer(gpu.device, "haze density_splat", size_of::<SplatUniform>() as u64),
+            inputs: None,
+        });
+        gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&uniform));
+        let inputs = match &held.inputs {
+            Some((bound, grid, group)) if *bound == range && grid == density => group.clone(),
+            _ => {
+                let resources = [held.uniform.as_entire_binding(), range.binding(), density.as_entire_binding()];
+                let group = bind(gpu.device, &tiled.layouts.density_splat, resources);
+                held.inputs = Some((range, density.clone(), group.clone()));
+                group
+            }
+        };
+        DensitySplat { pipeline: tiled.density_splat.get(()), groups: groups.clone(), inputs, workgroups }
+    }
+}

@@ -1,0 +1,20 @@
+//! Shadow of smoke on smoke.
+
+use super::settings_macro::settings;
+
+settings! {
+    /// Shadow of smoke on smoke. All systems of a frame shade each other, under the three lights that are brightest on them.
+    /// A coarse grid around the smoke holds its density; the light that comes through it is looked up in the shadow ramp.
+    /// Devices without compute shaders draw no shadow.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Shadow {
+        /// Mix of the shadow ramp and full light. 0: no shadow, and no cost. 1: the ramp as painted. With lighting by
+        /// normals, only for `diffuse.mode` `ramp`.
+        strength: f32 = 0.0, number(0.0..=1.0, "");
+        /// Multiplies the density that the system's sprites have as casters. Higher: darker shadows of thinner smoke.
+        density: f32 = 1.0, number(0.0..=16.0, "");
+        /// Cells along the longest side of the grid; the largest number among the systems of a frame counts. Higher: finer
+        /// shadows, at a cost that grows with its third power.
+        resolution: u32 = 24, integer(4..=96, "cells");
+    }
+}

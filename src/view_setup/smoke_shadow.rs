@@ -1,0 +1,118 @@
+//! Shadow of the smoke of a frame: the grid around all systems, and the lights that cast it.
+
+use glam::{DMat4, DVec3, UVec3, Vec3, Vec4};
+
+use super::resolved_settings::ResolvedSettings;
+use super::view_geometry::ViewGeometry;
+use crate::formula::color::luminance;
+use crate::formula::lighting::distance_attenuation;
+use crate::formula::shadow::SHADOWED_LIGHTS;
+use crate::formula::uniforms::ShadowMarchUniform;
+use crate::frame::{Bounds, Light, LightKind};
+
+/// Smallest cell, metres.
+const MIN_CELL: f64 = 1.0e-4;
+/// Sizes of cells between one and its double. A box that grows changes the size of its cells rarely, and then by little.
+const SIZES_PER_OCTAVE: f64 = 16.0;
+
+/// Grid of cubic cells along the axes of the world. Corners of cells lie at multiples of the cell size, so that smoke does
+/// not move against the grid while its box grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmokeGrid {
+    /// Corner of the first cell, metres.
+    origin: DVec3,
+    /// Side of a cell, metres.
+    cell: f64,
+    /// Number of cells along each axis.
+    pub size: UVec3,
+}
+
+impl SmokeGrid {
+    /// Grid around a box, with at most `resolution` cells along each axis. `resolution`: at least 2.
+    fn new(bounds: &Bounds, resolution: u32) -> Self {
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let longest = (max - min).max_element();
+        let exact = longest / f64::from(resolution.max(2) - 1);
+        let cell = ((exact.max(MIN_CELL).log2() * SIZES_PER_OCTAVE).ceil() / SIZES_PER_OCTAVE).exp2();
+        let first = (min / cell).floor();
+        let size = ((max / cell).ceil() - first).clamp(DVec3::ONE, DVec3::splat(f64::from(resolution)));
+        Self { origin: first * cell, cell, size: size.as_uvec3() }
+    }
+
+    /// Returns the matrix from view space to cells.
+    pub fn grid_from_view(&self, view: &ViewGeometry) -> glam::Mat4 {
+        let world_from_view = view.view_from_world.as_dmat4().inverse();
+        let grid_from_world = DMat4::from_scale(DVec3::splat(1.0 / self.cell)) * DMat4::from_translation(-self.origin);
+        (grid_from_world * world_from_view).as_mat4()
+    }
+
+    pub fn cells_per_metre(&self) -> f32 {
+        (1.0 / self.cell) as f32
+    }
+
+    fn place(&self, world: Vec3) -> Vec3 {
+        ((world.as_dvec3() - self.origin) / self.cell).as_vec3()
+    }
+}
+
+/// Shadow of the smoke of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmokeShadow {
+    pub grid: SmokeGrid,
+    /// Largest resolution of all systems: size of the texture along each axis.
+    pub resolution: u32,
+    /// Indices of the lights that cast shadows.
+    lights: [Option<usize>; SHADOWED_LIGHTS],
+    pub march: ShadowMarchUniform,
+}
+
+impl SmokeShadow {
+    /// `systems`: box and settings of each system. Returns `None` if no system receives shadow, or there is no smoke.
+    pub fn new(lights: &[Light], systems: impl Iterator<Item = (Bounds, ResolvedSettings)>) -> Option<Self> {
+        let mut around = Bounds::EMPTY;
+        let mut resolution = None;
+        for (bounds, settings) in systems {
+            if !bounds.is_empty() {
+                (around.min, around.max) = (around.min.min(bounds.min), around.max.max(bounds.max));
+            }
+            if settings.receives_shadow() {
+                resolution = resolution.max(Some(settings.shadow.resolution));
+            }
+        }
+        let resolution = resolution.filter(|_| !around.is_empty())?;
+        let grid = SmokeGrid::new(&around, resolution);
+        let chosen = brightest_lights(lights, &around);
+        let placed = chosen.map(|index| match index.and_then(|index| lights.get(index)) {
+            // A light in the middle of nothing: no smoke is before it.
+            None => Vec4::ZERO,
+            Some(light) if light.kind == LightKind::Directional => {
+                (-light.direction.normalize_or(Vec3::NEG_Y)).extend(1.0)
+            }
+            Some(light) => grid.place(light.position).extend(0.0),
+        });
+        let march = ShadowMarchUniform { lights: placed, size: grid.size.as_vec3(), padding: 0.0 };
+        Some(Self { grid, resolution, lights: chosen, march })
+    }
+
+    /// Returns the channel of a light's optical depths, 1 to 3; 0 for a light without shadow.
+    pub fn slot(&self, light: usize) -> f32 {
+        self.lights.iter().position(|&chosen| chosen == Some(light)).map_or(0.0, |slot| slot as f32 + 1.0)
+    }
+}
+
+/// Returns the indices of the lights that are brightest at the box, in ascending order.
+fn brightest_lights(lights: &[Light], bounds: &Bounds) -> [Option<usize>; SHADOWED_LIGHTS] {
+    let brightness = |light: &Light| {
+        let emitted = luminance(light.color) * light.intensity;
+        if light.kind == LightKind::Directional {
+            return emitted;
+        }
+        let distance = light.position.clamp(bounds.min, bounds.max).distance_squared(light.position);
+        emitted * distance_attenuation(distance, 1.0 / light.range, light.radius)
+    };
+    let mut bright: Vec<_> = lights.iter().map(brightness).enumerate().filter(|(_, light)| *light > 0.0).collect();
+    bright.sort_by(|a, b| b.1.total_cmp(&a.1));
+    bright.truncate(SHADOWED_LIGHTS);
+    bright.sort_by_key(|(index, _)| *index);
+    std::array::from_fn(|slot| bright.get(slot).map(|(index, _)| *index))
+}

@@ -1,0 +1,147 @@
+//! Formula tests of `shaders/lib/density_grid.wgsl` and `shaders/lib/shadow.wgsl`.
+
+use haze::formula::{density_grid, shadow};
+
+use super::Formula;
+use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v3, with_choices};
+
+const SIDE: (f32, f32) = (-1.0, 1.0);
+/// Places in a grid of 9 x 12 x 7 cells.
+const PLACE: [(f32, f32); 3] = [(0.0, 9.0), (0.0, 12.0), (0.0, 7.0)];
+
+pub fn formulas() -> Vec<Formula> {
+    [density(), lookups()].into_iter().flatten().collect()
+}
+
+fn density() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "mean_optical_depth",
+            file: "lib/density_grid.wgsl",
+            wgsl: "y(0, mean_optical_depth(x(0), x(1), x(2)));",
+            reference: |x| vec![density_grid::mean_optical_depth(x[0], x[1], x[2])],
+            cases: random(100, &[(-0.2, 1.2), (0.0, 1.0), (0.01, 0.97)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("/ peak;", ";"), ("saturate(amount) * peak", "saturate(amount)")],
+        },
+        Formula {
+            name: "bump_integral",
+            file: "lib/density_grid.wgsl",
+            wgsl: "y(0, bump_integral(x(0)));",
+            reference: |x| vec![density_grid::bump_integral(x[0])],
+            cases: random(60, &[(-1.5, 1.5)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("clamp(q, -1.0, 1.0)", "q"), ("square * 0.2", "0.2")],
+        },
+        Formula {
+            name: "bump_radius",
+            file: "lib/density_grid.wgsl",
+            wgsl: "y(0, bump_radius(x(0)));",
+            reference: |x| vec![density_grid::bump_radius(x[0])],
+            cases: random(30, &[(0.0, 4.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("max(radius, 1.5)", "radius")],
+        },
+        Formula {
+            name: "cell_optical_depth",
+            file: "lib/density_grid.wgsl",
+            wgsl: "y(0, cell_optical_depth(vec3f(x(0), x(1), x(2)), x(3), x(4)));",
+            reference: |x| vec![density_grid::cell_optical_depth(v3(x), x[3], x[4])],
+            cases: random(200, &[(-4.0, 3.0), (-4.0, 3.0), (-4.0, 3.0), (0.3, 5.0), (0.0, 2.0)]),
+            tolerance: ARITHMETIC * 10.0,
+            // The second: a grid that is half a cell off.
+            mutants: &[("(x * y * z)", "(x * y)"), ("(low + 1.0) / reach", "(low + 0.5) / reach")],
+        },
+        Formula {
+            name: "density_steps",
+            file: "lib/density_grid.wgsl",
+            wgsl: "y(0, f32(density_steps(x(0))));",
+            reference: |x| vec![density_grid::density_steps(x[0]) as f32],
+            cases: random(60, &[(-1.0, 3.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("DENSITY_STEPS + 0.5", "DENSITY_STEPS - 0.5"),
+                ("max(optical_depth, 0.0)", "abs(optical_depth)"),
+            ],
+        },
+        Formula {
+            name: "optical_depth_of_steps",
+            file: "lib/density_grid.wgsl",
+            wgsl: "y(0, optical_depth_of_steps(u32(x(0)), u32(x(1))));",
+            reference: |x| vec![density_grid::optical_depth_of_steps(x[0] as u32, x[1] as u32)],
+            cases: random(60, &[(0.0, 1.0e6), (0.0, 3.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("f32(high) * 65536.0", "f32(high)")],
+        },
+    ]
+}
+
+fn lookups() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "shadow_ray",
+            file: "lib/shadow.wgsl",
+            wgsl: "let r = shadow_ray(vec4f(x(1), x(2), x(3), x(0)), vec3f(x(4), x(5), x(6)), vec3f(9.0, 12.0, 7.0)); \
+                   y3(0, r.xyz); y(3, r.w);",
+            reference: |x| {
+                let light = glam::Vec4::new(x[1], x[2], x[3], x[0]);
+                shadow::shadow_ray(light, v3(&x[4..]), glam::vec3(9.0, 12.0, 7.0)).to_array().to_vec()
+            },
+            // Lamps in the grid and beyond it, and suns.
+            cases: unit_vectors(
+                with_choices(2, &[SIDE, SIDE, SIDE, PLACE[0], PLACE[1], PLACE[2], (2.0, 30.0)])
+                    .into_iter()
+                    .map(|mut case| {
+                        let length = if case[0] > 0.5 { 1.0 } else { case[7] };
+                        case[1..4].iter_mut().for_each(|axis| *axis *= length);
+                        case
+                    })
+                    .collect(),
+                1,
+            ),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("origin * (1.0 - light.w)", "origin"),
+                ("select(origin, size - origin,", "select(size - origin, origin,"),
+                ("select(min(leave, distance), leave,", "select(leave, leave,"),
+                ("let direction = to_light / distance", "let direction = -to_light / distance"),
+            ],
+        },
+        Formula {
+            name: "own_optical_depth",
+            file: "lib/shadow.wgsl",
+            wgsl: "y(0, own_optical_depth(x(0), x(1)));",
+            reference: |x| vec![shadow::own_optical_depth(x[0], x[1])],
+            cases: random(60, &[(0.1, 9.0), (0.0, 2.0)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[("return 4.0 *", "return 8.0 *"), ("0.09 * kept * kept", "0.09")],
+        },
+        Formula {
+            name: "foreign_optical_depths",
+            file: "lib/shadow.wgsl",
+            wgsl: "y3(0, foreign_optical_depths(vec3f(x(0), x(1), x(2)), x(3)));",
+            reference: |x| shadow::foreign_optical_depths(v3(x), x[3]).to_array().to_vec(),
+            cases: random(60, &[(0.0, 4.0), (0.0, 4.0), (0.0, 4.0), (0.0, 3.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("in_grid - own", "in_grid"), ("max(in_grid - own, vec3f(0.0))", "in_grid - own")],
+        },
+        Formula {
+            name: "shadow_position",
+            file: "lib/shadow.wgsl",
+            wgsl: "let p = shadow_position(x(0), vec3f(x(1), x(2), x(3)), vec3f(x(4), x(5), x(6))); y(0, p.x); y(1, p.y);",
+            reference: |x| shadow::shadow_position(x[0], v3(&x[1..]), v3(&x[4..])).to_array().to_vec(),
+            cases: unit_vectors(unit_vectors(random(100, &[(0.0, 12.0), SIDE, SIDE, SIDE, SIDE, SIDE, SIDE]), 1), 4),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("exp2(-optical_depth)", "exp2(optical_depth)"), ("0.5 - 0.5 * dot", "0.5 + 0.5 * dot")],
+        },
+        Formula {
+            name: "depth_of_slot",
+            file: "lib/shadow.wgsl",
+            wgsl: "y(0, depth_of_slot(x(0), vec3f(x(1), x(2), x(3))));",
+            reference: |x| vec![shadow::depth_of_slot(x[0], v3(&x[1..]))],
+            cases: with_choices(4, &[(0.0, 3.0), (0.0, 3.0), (0.0, 3.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("vec3f(1.0, 2.0, 3.0)", "vec3f(3.0, 2.0, 1.0)")],
+        },
+    ]
+}
