@@ -55,16 +55,22 @@ fn optical_depth_towards(light: vec4f, origin: vec3f) -> f32 {
     return min(depth * step, MAX_OPTICAL_DEPTH);
 }
 
-@compute @workgroup_size(4, 4, 4)
-fn march_cells(@builtin(global_invocation_id) cell: vec3u) {
-    if any(cell >= vec3u(march.size)) {
-        return;
+// Cells of a workgroup along each axis.
+const SIDE: u32 = 4u;
+
+// One per light and cell of the workgroup.
+var<workgroup> depths: array<array<f32, 64>, SHADOWED_LIGHTS>;
+
+// An invocation per light and cell: the grid is small, and a march long.
+@compute @workgroup_size(4, 4, 12)
+fn march_cells(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let place = vec3u(local.xy, local.z % SIDE);
+    let light = local.z / SIDE;
+    let cell = workgroup * SIDE + place;
+    let index = (place.z * SIDE + place.y) * SIDE + place.x;
+    depths[light][index] = optical_depth_towards(march.lights[light], vec3f(cell) + 0.5);
+    workgroupBarrier();
+    if light == 0u && all(cell < vec3u(march.size)) {
+        textureStore(optical_depths, cell, vec4f(depths[0][index], depths[1][index], depths[2][index], 0.0));
     }
-    let origin = vec3f(cell) + 0.5;
-    let depths = vec3f(
-        optical_depth_towards(march.lights[0], origin),
-        optical_depth_towards(march.lights[1], origin),
-        optical_depth_towards(march.lights[2], origin),
-    );
-    textureStore(optical_depths, cell, vec4f(depths, 0.0));
 }

@@ -13,6 +13,7 @@ mod layout;
 mod occluders;
 mod offscreen_context;
 pub mod offscreen_renderer;
+pub mod puff_cloud;
 mod ray_caster;
 mod scene;
 mod scene_renderer;

@@ -9,8 +9,8 @@ use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::gpu::record::begin_compute;
 use crate::renderer::gpu::timing::Timing;
 
-/// Invocations of a workgroup along each axis, as in `shaders/shadow_march.wgsl`.
-const WORKGROUP: u32 = 4;
+/// Cells of a workgroup along each axis: SIDE in `shaders/shadow_march.wgsl`.
+const SIDE: u32 = 4;
 
 /// Returns the pipeline's parts.
 pub(crate) fn describe((): ()) -> ComputePipelineDescription {
@@ -32,7 +32,7 @@ impl ShadowMarch {
         let mut pass = begin_compute(encoder, "shadow_march", timing);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.inputs, &[]);
-        let workgroups = |cells: u32| cells.div_ceil(WORKGROUP);
+        let workgroups = |cells: u32| cells.div_ceil(SIDE);
         pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), workgroups(self.size.z));
     }
 }

@@ -1,8 +1,9 @@
 //! Figures of GPU time for the docs.
 
-use glam::UVec2;
-use haze::Settings;
+use glam::{UVec2, UVec3, Vec3, vec3};
+use haze::noise::{pcg3d, unit};
 use haze::settings::{Backlight, Lighting, RenderPath};
+use haze::{Light, LightKind, Particle, Settings, wgpu};
 use haze_demo::headless::Headless;
 
 use super::{draw_and_measure, timed_gpu, timed_host};
@@ -73,3 +74,75 @@ fn prints_cost_of_six_way_lighting_and_ramps() {
     let [one, two, behind] = times[..] else { return };
     println!("transfer: one axis {one:.3} ms, two axes {:.2}, light from behind {:.2}", two / one, behind / one);
 }
+
+/// Prints the figures of docs/shadow.md: whole frames of 4,096 sprites under three lights, and the passes of shadow.
+#[test]
+#[ignore = "prints figures for the docs"]
+fn prints_cost_of_shadow() {
+    let Some(gpu) = timed_gpu() else { return };
+    if !is_tiled_available() {
+        return;
+    }
+    let is_cpu = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+    let mut scene = TestScene::new(if is_cpu { UVec2::new(1280, 720) } else { UVec2::new(1920, 1080) });
+    scene.lights.push(Light { kind: LightKind::Directional, direction: Vec3::NEG_Y, ..Light::default() });
+    scene.settings.accumulate.scale = 2;
+    let some = scene.particles.clone();
+    let particle = |index: u32| {
+        let place = pcg3d(UVec3::new(index, 3, 9));
+        let place = (vec3(unit(place.x), unit(place.y), unit(place.z)) - 0.5) * vec3(4.0, 2.4, 2.0);
+        Particle { position: place + vec3(0.0, 0.0, -6.0), radius: 0.2, amount: 0.1, ..some[index as usize % 60] }
+    };
+    scene.particles = (0..4096).map(particle).collect();
+    for path in [RenderPath::Raster, RenderPath::Tiled] {
+        scene.settings.path = path;
+        let stages: Vec<_> = [0, 16, 24, 32, 48, 64, 96]
+            .map(|resolution| {
+                let mut scene = scene.clone();
+                if resolution > 0 {
+                    (scene.settings.shadow.strength, scene.settings.shadow.resolution) = (1.0, resolution);
+                }
+                scene
+            })
+            .into();
+        let whole = medians(gpu, &stages, ALL_PASSES);
+        let splat = medians(gpu, &stages[1..], &["density_splat"]);
+        let march = medians(gpu, &stages[1..], &["shadow_march"]);
+        println!("{}: without shadow {:.3} ms", path.name(), whole[0]);
+        let pair = [stages[0].clone(), stages[2].clone()];
+        let passes: &[&str] = match path {
+            RenderPath::Raster => &["accumulate", "transfer"],
+            _ => &["tile_project", "tile_accumulate", "transfer"],
+        };
+        for pass in passes {
+            let times = medians(gpu, &pair, &[pass]);
+            println!("{pass}: {:.3} ms, {:.3} ms", times[0], times[1]);
+        }
+        for (index, stage) in stages[1..].iter().enumerate() {
+            println!(
+                "{} cells: {:.3} ms, {:.2}; density_splat {:.3} ms, shadow_march {:.3} ms",
+                stage.settings.shadow.resolution,
+                whole[index + 1],
+                whole[index + 1] / whole[0],
+                splat[index],
+                march[index]
+            );
+        }
+    }
+}
+
+/// Passes of a frame.
+const ALL_PASSES: &[&str] = &[
+    "depth_downsample",
+    "sort",
+    "density_splat",
+    "shadow_march",
+    "accumulate",
+    "tile_project",
+    "tile_gather",
+    "tile_bin",
+    "tile_refine",
+    "tile_accumulate",
+    "transfer",
+    "specular_scatter",
+];

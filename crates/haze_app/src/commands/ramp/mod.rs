@@ -3,6 +3,7 @@
 mod bake;
 mod check;
 mod fit;
+mod fit_shadow;
 mod import;
 mod new;
 mod ramp_image;
@@ -33,6 +34,9 @@ enum RampCommand {
     Import(import::Arguments),
     /// Path-trace a puff of steam, ash, … under a ring of lights, and write ramps that are fitted to its brightness.
     Fit(fit::Arguments),
+    /// Path-trace clouds of many puffs under a ring of lights, and write a shadow ramp that is fitted to the light that
+    /// comes through them.
+    FitShadow(fit_shadow::Arguments),
     /// Render a preset with every ramp of a folder, on one labelled sheet. Ramps that cannot be read are reported and
     /// left out; the command then exits with 1.
     Sheet(sheet::Arguments),
@@ -49,6 +53,7 @@ pub fn run(arguments: &RampArguments) -> Result<(), Failures> {
         RampCommand::Watch(arguments) => watch::run(arguments),
         RampCommand::New(arguments) => new::run(arguments).map_err(Failures::from),
         RampCommand::Fit(arguments) => fit::run(arguments).map_err(Failures::from),
+        RampCommand::FitShadow(arguments) => fit_shadow::run(arguments).map_err(Failures::from),
         RampCommand::Import(arguments) => import::run(arguments).map_err(Failures::from),
         RampCommand::Sheet(arguments) => sheet::run(arguments),
         RampCommand::Show(arguments) => show::run(arguments).map_err(Failures::from),

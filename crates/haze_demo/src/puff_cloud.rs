@@ -1,0 +1,253 @@
+//! Clouds of many puffs: path-traced as one volume, and drawn by the CPU renderer. Shadow ramps are fitted to the
+//! difference.
+
+use std::f32::consts::TAU;
+use std::path::Path;
+
+use glam::camera::rh::proj::directx::orthographic;
+use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles as _, vec3};
+use haze::image::Image;
+use haze::noise::{pcg3d, unit};
+use haze::preset::MaterialNames;
+use haze::ramp::Ramp;
+use haze::settings::{Backlight, DebugView, Lighting, Settings, Technique};
+use haze::sprite::Sprite;
+use haze::{Error, Light, LightKind, MaterialAssets, Particle, View};
+use haze_author::path_trace::{DensityVolume, Medium, PathTrace};
+use haze_author::ramp::response::{Response, ShadedLight};
+use haze_author::sprite::bake::SpriteRecipe;
+use haze_author::sprite::six_way::six_way_layout;
+use haze_reference::{FrameInput, ParticleSystem};
+
+/// Number of lights in the ring around a cloud.
+pub const LIGHTS: usize = 8;
+/// Flipbook frames in use; each puff shows one frame.
+const FRAMES: u32 = 2;
+/// Number of puffs of a cloud.
+const PUFFS: u32 = 24;
+
+/// One image per light: linear radiance, premultiplied by coverage.
+pub type LightImages = Vec<Image<Vec3>>;
+
+/// Arrangement of puffs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CloudShape {
+    /// Higher than wide.
+    Column,
+    /// As wide as high.
+    Ball,
+    /// Flat.
+    Layer,
+}
+
+impl CloudShape {
+    /// All shapes.
+    pub const ALL: [Self; 3] = [Self::Column, Self::Ball, Self::Layer];
+
+    /// Name, for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Column => "column",
+            Self::Ball => "ball",
+            Self::Layer => "layer",
+        }
+    }
+
+    /// Half the extent of the puffs' centres.
+    fn half_extent(self) -> Vec3 {
+        match self {
+            Self::Column => vec3(0.25, 0.6, 0.25),
+            Self::Ball => Vec3::splat(0.4),
+            Self::Layer => vec3(0.6, 0.18, 0.6),
+        }
+    }
+}
+
+/// Directions to the lights: a horizontal ring, the first towards the viewer.
+pub fn ring_of_lights() -> Vec<Vec3> {
+    let turns = (0..LIGHTS).map(|index| index as f32 * TAU / LIGHTS as f32);
+    turns.map(|turn| vec3(turn.sin(), 0.0, turn.cos())).collect()
+}
+
+/// A sprite, as a medium fills it.
+#[derive(Clone, Debug)]
+pub struct PuffKind {
+    recipe: SpriteRecipe,
+    medium: Medium,
+    path_trace: PathTrace,
+    puffs: Vec<DensityVolume>,
+}
+
+/// Puffs in a cube with sides of 2 m.
+#[derive(Clone, Debug)]
+pub struct PuffCloud<'a> {
+    /// The puffs.
+    pub particles: Vec<Particle>,
+    kind: &'a PuffKind,
+}
+
+/// Settings and images that draw a kind of puff.
+#[derive(Clone, Debug)]
+pub struct PuffMaterial {
+    /// Lighting by normals, or by six-way maps.
+    pub settings: Settings,
+    /// Ramps, sprite and six-way maps.
+    pub assets: MaterialAssets,
+    /// Multiplies the drawn light of a puff alone, so that it is as bright as the path trace.
+    pub exposure: f32,
+}
+
+impl PuffKind {
+    /// `path_trace.size`: side of the images, and of the volumes of clouds.
+    pub fn new(recipe: &SpriteRecipe, medium: &Medium, path_trace: PathTrace) -> Self {
+        let size = path_trace.size;
+        let recipe =
+            SpriteRecipe { size, columns: FRAMES, rows: 1, extinction: medium.density, tolerance: 0, ..recipe.clone() };
+        let puff = |frame| SpriteRecipe { size: size / 2, ..recipe.clone() }.volume(frame as f32);
+        let puffs = (0..FRAMES).map(puff).collect();
+        Self { recipe, medium: *medium, path_trace, puffs }
+    }
+
+    /// Volume of one puff.
+    pub fn puff(&self, frame: u32) -> &DensityVolume {
+        &self.puffs[(frame % FRAMES) as usize]
+    }
+
+    /// A cloud of puffs at random places.
+    pub fn cloud(&self, shape: CloudShape, seed: u32) -> PuffCloud<'_> {
+        let puff = |index: u32| {
+            let (a, b) = (pcg3d(UVec3::new(index, 0, seed)), pcg3d(UVec3::new(index, 1, seed)));
+            let place = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
+            Particle {
+                position: place * shape.half_extent(),
+                radius: 0.26 + 0.12 * unit(b.x),
+                rotation: 0.0,
+                amount: 1.0,
+                frame: (b.y % FRAMES) as f32,
+                age: 0.5,
+            }
+        };
+        PuffCloud { particles: (0..PUFFS).map(puff).collect(), kind: self }
+    }
+
+    /// One puff.
+    pub fn single(&self) -> PuffCloud<'_> {
+        let particle = Particle { position: Vec3::ZERO, radius: 0.8, rotation: 0.0, amount: 1.0, frame: 0.0, age: 0.5 };
+        PuffCloud { particles: vec![particle], kind: self }
+    }
+
+    /// Material with ramps for diffuse light, and with six-way maps of the medium.
+    ///
+    /// # Errors
+    /// If an image cannot be baked.
+    pub fn materials(&self, diffuse: &Ramp, backlight: &Ramp) -> Result<[PuffMaterial; 2], Error> {
+        let mut settings = Settings { boost: 1.0, technique: Technique::Hard, ..Settings::default() };
+        settings.accumulate.scale = 1;
+        settings.diffuse.backlight = Backlight::Ramp;
+        (settings.soft_scatter.intensity, settings.specular_scatter.intensity) = (0.0, 0.0);
+        let sheet = self.recipe.bake(|_| Ok::<_, Error>(()))?.picture;
+        let maps = self.recipe.bake_six_way(&self.medium, self.path_trace.samples, |_, _| Ok::<_, Error>(()))?;
+        let layout = self.recipe.layout();
+        let sprite = |picture, layout| Sprite::from_image(Path::new("puff"), picture, layout);
+        let assets = MaterialAssets {
+            sprite: sprite(&sheet, layout)?,
+            detail: None,
+            six_way: Some(sprite(&maps.picture, six_way_layout(layout))?),
+            diffuse_ramp: diffuse.clone(),
+            backlight_ramp: backlight.clone(),
+            ..MaterialNames::default().load(Path::new(""))?
+        };
+        let mut six_way = Settings { lighting: Lighting::SixWay, ..settings };
+        six_way.diffuse.six_way_anisotropy = maps.anisotropy;
+        six_way.diffuse.six_way_color = maps.color;
+        let single = self.single();
+        let truth = single.truth(&ring_of_lights());
+        let material = |settings| {
+            let material = PuffMaterial { settings, assets: assets.clone(), exposure: 1.0 };
+            let drawn = single.drawn(&ring_of_lights(), &material)?;
+            Ok::<_, Error>(PuffMaterial { exposure: Response::new(&drawn, &truth).exposure, ..material })
+        };
+        Ok([material(settings)?, material(six_way)?])
+    }
+}
+
+impl PuffMaterial {
+    /// The same with a shadow ramp.
+    pub fn with_shadow(&self, ramp: &Ramp) -> Self {
+        let mut shaded = self.clone();
+        shaded.settings.shadow.strength = 1.0;
+        shaded.assets.shadow_ramp = ramp.clone();
+        shaded
+    }
+}
+
+impl PuffCloud<'_> {
+    /// Path trace of the summed densities of all puffs.
+    pub fn truth(&self, lights: &[Vec3]) -> LightImages {
+        let PuffKind { medium, path_trace, .. } = self.kind;
+        let side = path_trace.size;
+        let mut all = DensityVolume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
+        for index in 0..all.densities.len() as u32 {
+            let voxel = UVec3::new(index % side, index / side % side, index / (side * side));
+            let place = all.voxel_centre(voxel);
+            let density = |puff: &Particle| {
+                let local = (place - puff.position) / puff.radius;
+                let is_inside = local.abs().max_element() < 1.0;
+                // Divided by the radius, so that the optical depth through a puff does not depend on its size.
+                if is_inside { self.kind.puff(puff.frame as u32).density(local) / puff.radius } else { 0.0 }
+            };
+            all.densities[index as usize] = self.particles.iter().map(density).sum();
+        }
+        let Ok(traced) = path_trace.run(&all, medium, lights, |_| Ok::<_, std::convert::Infallible>(()));
+        traced.light
+    }
+
+    /// The cloud drawn by the CPU renderer, under one light after the other.
+    ///
+    /// # Errors
+    /// If a setting of the material is not valid.
+    pub fn drawn(&self, lights: &[Vec3], material: &PuffMaterial) -> Result<LightImages, Error> {
+        let size = UVec2::splat(self.kind.path_trace.size);
+        let view = Mat4::from_translation(vec3(0.0, 0.0, -3.0));
+        let view = View::new(view, orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), size);
+        let systems = [ParticleSystem::new(&self.particles, &material.settings, &material.assets)];
+        let of_light = |to_light: &Vec3| {
+            let light = Light { kind: LightKind::Directional, direction: -*to_light, ..Light::default() };
+            let mut picture = Image::new(size, Vec4::ZERO);
+            let scene_depth = Image::new(size, 1.0);
+            let frame = FrameInput {
+                lights: &[light],
+                systems: &systems,
+                debug_view: DebugView::Final,
+                ..FrameInput::new(view, &scene_depth)
+            };
+            haze_reference::render(&frame, &mut picture)?;
+            Ok(Image { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() })
+        };
+        lights.iter().map(of_light).collect()
+    }
+
+    /// Equations of a shadow ramp: what it multiplies, where it is looked up, and the path trace.
+    ///
+    /// # Errors
+    /// As [`PuffCloud::drawn`].
+    pub fn shaded_lights(&self, material: &PuffMaterial, truth: &LightImages) -> Result<Vec<ShadedLight>, Error> {
+        let lights = ring_of_lights();
+        let unshaded = self.drawn(&lights, material)?;
+        // Its value is its first coordinate, which the shaded image then shows.
+        let coordinates = Ramp::from_linear(UVec2::new(256, 1), (0..256).map(|x| Vec3::splat(x as f32 / 255.0)));
+        let shaded = self.drawn(&lights, &material.with_shadow(&coordinates))?;
+        let equations = |(index, to_light): (usize, &Vec3)| {
+            let place = |(plain, shaded): (&Vec3, &Vec3)| {
+                let across = if plain.y > 1.0e-5 { (shaded.y / plain.y).clamp(0.0, 1.0) } else { 0.0 };
+                Vec2::new(across, 0.5 - 0.5 * to_light.z)
+            };
+            ShadedLight {
+                unshaded: unshaded[index].texels.iter().map(|light| *light * material.exposure).collect(),
+                places: unshaded[index].texels.iter().zip(&shaded[index].texels).map(place).collect(),
+                truth: truth[index].texels.clone(),
+            }
+        };
+        Ok(lights.iter().enumerate().map(equations).collect())
+    }
+}
