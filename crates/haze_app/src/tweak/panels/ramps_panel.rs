@@ -76,10 +76,21 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let ink = ui.visuals().text_color();
         if field == "specular_ramp" {
             let density = survey.map(|survey| survey.by_glow(index));
-            ramp_place =
-                ramp_place.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
+            ramp_place = ramp_place.or(plane(
+                ui,
+                (&spoken, GLOW_AXES),
+                (&material.specular_ramp, filter),
+                density.as_deref(),
+                probe,
+            ));
             let [across, up] = axis_samples(density.as_deref(), probe, ink);
             ramp_stops::editor(ui, session, ramp, &across, &up);
+            continue;
+        }
+        if field == "shadow_ramp" {
+            let axes = "across: smoke before the light; up: from a light on this side to one behind the smoke";
+            plane(ui, (&spoken, axes), (&material.shadow_ramp, filter), None, None);
+            ramp_stops::editor(ui, session, ramp, &AxisSamples::default(), &AxisSamples::default());
             continue;
         }
         let lights = survey.filter(|_| is_diffuse(field)).map_or_else(Vec::new, |survey| survey.by_light(index));
@@ -109,6 +120,9 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     session.follow_ramps(true);
     ramp_place
 }
+
+/// Axes of the specular ramp.
+const GLOW_AXES: &str = "across: distance² from the light; up: amount";
 
 fn is_diffuse(field: &str) -> bool {
     matches!(field, "diffuse_ramp" | "backlight_ramp")
@@ -236,7 +250,7 @@ fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
 /// Draws the specular ramp with rising amounts upwards, and the sampled places over it.
 fn plane(
     ui: &mut Ui,
-    name: &str,
+    (name, axes): (&str, &str),
     (ramp, filter): (&Ramp, RampFilter),
     density: Option<&[f32]>,
     probe: Option<&SystemProbe>,
@@ -257,6 +271,6 @@ fn plane(
         let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
         ui.painter().circle(place, 4.0, light_color(light), Stroke::new(1.5, Color32::BLACK));
     }
-    ui.weak("across: distance² from the light; up: amount");
+    ui.weak(axes);
     at.map(|at| RampPlace::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))
 }
