@@ -10,10 +10,10 @@ use crate::formula::shadow::SHADOWED_LIGHTS;
 use crate::formula::uniforms::ShadowMarchUniform;
 use crate::frame::{Bounds, Light, LightKind};
 
-/// Smallest cell, metres.
-const MIN_CELL: f64 = 1.0e-4;
-/// Sizes of cells between one and its double. A box that grows changes the size of its cells rarely, and then by little.
-const SIZES_PER_OCTAVE: f64 = 16.0;
+/// Smallest extent of a grid, metres.
+const MIN_EXTENT: f64 = 1.0e-3;
+/// Extents of grids between one and its double. A box that grows changes the size of its cells rarely: each change shows.
+const EXTENTS_PER_OCTAVE: f64 = 2.0;
 
 /// Grid of cubic cells along the axes of the world. Corners of cells lie at multiples of the cell size, so that smoke does
 /// not move against the grid while its box grows.
@@ -31,9 +31,9 @@ impl SmokeGrid {
     /// Grid around a box, with at most `resolution` cells along each axis. `resolution`: at least 2.
     fn new(bounds: &Bounds, resolution: u32) -> Self {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let longest = (max - min).max_element();
-        let exact = longest / f64::from(resolution.max(2) - 1);
-        let cell = ((exact.max(MIN_CELL).log2() * SIZES_PER_OCTAVE).ceil() / SIZES_PER_OCTAVE).exp2();
+        let longest = (max - min).max_element().max(MIN_EXTENT);
+        let extent = ((longest.log2() * EXTENTS_PER_OCTAVE).ceil() / EXTENTS_PER_OCTAVE).exp2();
+        let cell = extent / f64::from(resolution.max(2) - 1);
         let first = (min / cell).floor();
         let size = ((max / cell).ceil() - first).clamp(DVec3::ONE, DVec3::splat(f64::from(resolution)));
         Self { origin: first * cell, cell, size: size.as_uvec3() }
