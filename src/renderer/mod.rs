@@ -195,8 +195,8 @@ impl Renderer {
             let state = states.iter_mut().find(|state| state.key == system.key)?;
             Some(state.measure_box(shared, &view, system))
         });
-        let shadow = SmokeShadow::new(frame.lights, measured);
-        // Places and clears the density grid around all systems, if any of them receives shadow.
+        let shadow = SmokeShadow::new(&view, frame.lights, measured);
+        // Places and clears the density grid around all systems, if any system receives shadow.
         if let Some(tiled) = &shared.pipelines.tiled {
             self.shadow_volume.write(&gpu, tiled, shadow.as_ref());
         }

@@ -31,6 +31,8 @@ pub(crate) struct SystemParticles {
     frames_unsorted: IdleCounter,
     /// Counts frames in which no host's particles were measured.
     frames_unmeasured: IdleCounter,
+    /// Counts frames in which the particles were not added to a density grid, whose buffer the splat's bind group keeps.
+    frames_unsplatted: IdleCounter,
 }
 
 impl SystemParticles {
@@ -137,8 +139,15 @@ impl SystemParticles {
     }
 
     /// Releases buffers that have not been needed for 120 frames. `is_untiled`: true if that is so for the path
-    /// `tiled`. `is_measured`: true if a host's particles were measured in this frame.
-    pub fn release_unused(&mut self, is_untiled: bool, is_measured: bool, pass: Option<&ParticlePass>) {
+    /// `tiled`. `is_measured`: true if a host's particles were measured in this frame; `is_splatted`: true if they were added
+    /// to a density grid.
+    pub fn release_unused(
+        &mut self,
+        is_untiled: bool,
+        is_measured: bool,
+        is_splatted: bool,
+        pass: Option<&ParticlePass>,
+    ) {
         if is_untiled {
             self.emitted = EmittedParticles::default();
         }
@@ -147,6 +156,9 @@ impl SystemParticles {
         }
         if self.frames_unmeasured.tick(!is_measured) {
             self.measured = MeasuredParticles::default();
+        }
+        if self.frames_unsplatted.tick(!is_splatted) {
+            self.splat = SplatParticles::default();
         }
     }
 

@@ -153,7 +153,7 @@ impl SystemState {
     pub fn memory_use(&self) -> MemoryUse {
         let tiled = self.tiles.memory() + self.particles.tiled_memory();
         let buffers = self.uniform.size() + self.lights.size() + self.particles.instance_bytes() + tiled.total();
-        MemoryUse { targets: self.targets.bytes(), buffers, tiled, shadow: 0 }
+        MemoryUse { targets: self.targets.bytes(), buffers, tiled, ..MemoryUse::default() }
     }
 
     pub fn counts(&self) -> FrameCounts {
@@ -248,7 +248,8 @@ impl SystemState {
         }
         let particle_pass = self.prepared.as_ref().and_then(|prepared| prepared.particle_pass.as_ref());
         let is_measured = self.measure().is_some();
-        self.particles.release_unused(is_released, is_measured, particle_pass);
+        let is_splatted = self.splat().is_some();
+        self.particles.release_unused(is_released, is_measured, is_splatted, particle_pass);
     }
 
     fn prepare(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) -> Option<PreparedSystem> {

@@ -175,7 +175,7 @@ impl Settings {
         self.lighting == Lighting::SixWay && !self.technique.is_volumetric() && !self.sprite.debug_sprite
     }
 
-    /// True if smoke can shade the diffuse light of this system: each light is looked up by itself.
+    /// True if smoke can shade the diffuse light of this system: each light has a lookup of its own.
     pub fn can_receive_shadow(&self) -> bool {
         self.is_forward() || self.is_six_way() || self.diffuse.mode == DiffuseMode::Ramp
     }

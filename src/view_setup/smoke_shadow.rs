@@ -1,6 +1,6 @@
 //! Shadow of the smoke of a frame: the grid around all systems, and the lights that cast it.
 
-use glam::{DMat4, DVec3, UVec3, Vec3, Vec4};
+use glam::{DMat4, DVec3, Mat4, UVec3, Vec3, Vec4};
 
 use super::resolved_settings::ResolvedSettings;
 use super::view_geometry::ViewGeometry;
@@ -40,7 +40,7 @@ impl SmokeGrid {
     }
 
     /// Returns the matrix from view space to cells.
-    pub fn grid_from_view(&self, view: &ViewGeometry) -> glam::Mat4 {
+    fn grid_from_view(&self, view: &ViewGeometry) -> Mat4 {
         let world_from_view = view.view_from_world.as_dmat4().inverse();
         let grid_from_world = DMat4::from_scale(DVec3::splat(1.0 / self.cell)) * DMat4::from_translation(-self.origin);
         (grid_from_world * world_from_view).as_mat4()
@@ -59,6 +59,8 @@ impl SmokeGrid {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmokeShadow {
     pub grid: SmokeGrid,
+    /// From view space to cells.
+    pub grid_from_view: Mat4,
     /// Largest resolution of all systems: size of the texture along each axis.
     pub resolution: u32,
     /// Indices of the lights that cast shadows.
@@ -68,7 +70,11 @@ pub struct SmokeShadow {
 
 impl SmokeShadow {
     /// `systems`: box and settings of each system. Returns `None` if no system receives shadow, or there is no smoke.
-    pub fn new(lights: &[Light], systems: impl Iterator<Item = (Bounds, ResolvedSettings)>) -> Option<Self> {
+    pub fn new(
+        view: &ViewGeometry,
+        lights: &[Light],
+        systems: impl Iterator<Item = (Bounds, ResolvedSettings)>,
+    ) -> Option<Self> {
         let mut around = Bounds::EMPTY;
         let mut resolution = None;
         for (bounds, settings) in systems {
@@ -91,7 +97,7 @@ impl SmokeShadow {
             Some(light) => grid.place(light.position).extend(0.0),
         });
         let march = ShadowMarchUniform { lights: placed, size: grid.size.as_vec3(), padding: 0.0 };
-        Some(Self { grid, resolution, lights: chosen, march })
+        Some(Self { grid, grid_from_view: grid.grid_from_view(view), resolution, lights: chosen, march })
     }
 
     /// Returns the channel of a light's optical depths, 1 to 3; 0 for a light without shadow.

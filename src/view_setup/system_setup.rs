@@ -142,7 +142,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
             BlendOrder::Weighted => optical_depths((view, space), particles, particles_per_sample, settings, &extent),
         },
         spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
-        grid_from_view: shadow.map_or(Mat4::IDENTITY, |shadow| shadow.grid.grid_from_view(view)),
+        grid_from_view: shadow.map_or(Mat4::IDENTITY, |shadow| shadow.grid_from_view),
         grid_size: shadow.map_or(Vec3::ONE, |shadow| shadow.grid.size.as_vec3()),
         cells_per_metre: shadow.map_or(1.0, |shadow| shadow.grid.cells_per_metre()),
         shadow_strength: if shadow.is_some() && settings.receives_shadow() { settings.shadow.strength } else { 0.0 },

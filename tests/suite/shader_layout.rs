@@ -196,6 +196,10 @@ fn wgsl_constants_match_rust() {
     assert_eq!(constant(&accumulate, "NO_LIST"), f64::from(formula::tiles::NO_LIST));
     assert_eq!(constant(&accumulate, "HIDDEN_KEY"), f64::from(formula::tiles::HIDDEN_KEY));
     assert_eq!(constant(&accumulate, "OPAQUE"), f64::from(formula::tiles::OPAQUE));
+    let march = composed("shadow_march.wgsl");
+    assert_eq!(constant(&march, "SHADOWED_LIGHTS"), formula::shadow::SHADOWED_LIGHTS as f64);
+    assert_eq!(constant(&march, "SHADOW_STEPS"), f64::from(formula::shadow::SHADOW_STEPS));
+    assert_eq!(constant(&march, "MAX_OPTICAL_DEPTH"), f64::from(formula::shadow::MAX_OPTICAL_DEPTH));
 }
 
 macro_rules! assert_choices {

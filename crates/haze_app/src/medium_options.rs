@@ -39,6 +39,18 @@ pub struct MediumNumbers {
     density: Option<f32>,
 }
 
+/// Medium and sprite of path-traced puffs, and the quality of the path trace.
+#[derive(Args)]
+pub struct PuffArguments {
+    #[command(flatten)]
+    pub medium: MediumArguments,
+    /// Sprite that shapes the smoke: a `*.sprite.json` file, or the name of a built-in sprite.
+    #[arg(long, default_value_os_t = default_sprite())]
+    pub sprite: PathBuf,
+    #[command(flatten)]
+    pub quality: PathTraceArguments,
+}
+
 /// Parser of the names of media.
 pub fn medium_names() -> PossibleValuesParser {
     PossibleValuesParser::new(MEDIA.iter().map(|named| named.name))

@@ -55,14 +55,15 @@ pub struct VisibleSystem<'a> {
 
 impl<'a> VisibleSystem<'a> {
     /// Returns `None` if the system is not visible.
-    pub fn new(
+    fn new(
         view: &ViewGeometry,
         frame: &FrameInput<'a>,
         system: &ParticleSystem<'a>,
-        material: &MaterialInfo,
+        measured: MeasuredSystem,
         shadow: Option<&SmokeShadow>,
     ) -> Option<Self> {
-        let MeasuredSystem { space, settings, mut measures, bounds } = MeasuredSystem::new(view, system, material);
+        let MeasuredSystem { material, space, settings, mut measures, bounds } = measured;
+        let material = &material;
         let mut lights = Vec::new();
         light_uniforms(view, frame.lights, frame.exposure, &bounds, shadow, &mut lights);
         let in_world = SystemInput {
@@ -125,6 +126,7 @@ impl<'a> VisibleSystem<'a> {
 
 /// A system with its box, before it is placed in the view.
 struct MeasuredSystem {
+    material: MaterialInfo,
     space: ParticleSpace,
     settings: ResolvedSettings,
     measures: ParticleMeasures,
@@ -133,14 +135,14 @@ struct MeasuredSystem {
 }
 
 impl MeasuredSystem {
-    fn new(view: &ViewGeometry, system: &ParticleSystem<'_>, material: &MaterialInfo) -> Self {
+    fn new(view: &ViewGeometry, system: &ParticleSystem<'_>, material: MaterialInfo) -> Self {
         let space = ParticleSpace::new(view, &system.world_from_particles);
         let settings =
             ResolvedSettings::new(system.settings, space.scale, view.size, material.frame_count, Support::ALL);
         let mut measures = ParticleMeasures::default();
         measures.measure(&space, view.depth.near, system.particles, &settings);
         let bounds = system.bounds.map_or(measures.bounds, |bounds| space.world_bounds(&bounds));
-        Self { space, settings, measures, bounds }
+        Self { material, space, settings, measures, bounds }
     }
 }
 
@@ -159,24 +161,21 @@ pub fn visible_systems<'a>(
             return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));
         }
     }
-    let mut infos = Vec::new();
+    let mut measured = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
         validate_settings(index, system.settings, frame.view.size)?;
         validate_world_from_particles(index, &system.world_from_particles)?;
         validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
         let info = system.material.info();
         info.validate(index, system.settings)?;
-        infos.push(info);
+        measured.push(MeasuredSystem::new(&view, system, info));
     }
-    let with_infos = || frame.systems.iter().zip(&infos);
-    let boxes = with_infos().map(|(system, info)| {
-        let MeasuredSystem { bounds, settings, .. } = MeasuredSystem::new(&view, system, info);
-        (bounds, settings)
-    });
-    let shadow = SmokeShadow::new(frame.lights, boxes);
-    let visible =
-        |(index, (system, info))| Some((index, VisibleSystem::new(&view, frame, system, info, shadow.as_ref())?));
-    let mut systems: Vec<_> = with_infos().enumerate().filter_map(visible).collect();
+    let boxes = measured.iter().map(|measured| (measured.bounds, measured.settings));
+    let shadow = SmokeShadow::new(&view, frame.lights, boxes);
+    let visible = |(index, (system, measured))| {
+        Some((index, VisibleSystem::new(&view, frame, system, measured, shadow.as_ref())?))
+    };
+    let mut systems: Vec<_> = frame.systems.iter().zip(measured).enumerate().filter_map(visible).collect();
     systems.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
     Ok(systems)
 }

@@ -10,7 +10,7 @@ use proptest::sample::select;
 
 use super::read;
 
-/// Part of a path. Several of them are joined or linked to each other.
+/// Part of a path. Several parts are joined or linked to each other.
 #[derive(Clone, Debug)]
 enum Target {
     Absolute(&'static str),

@@ -11,7 +11,7 @@ use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
 
 use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::bake_job::{PaintedPng, check_not_painted, image_path};
-use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
+use crate::medium_options::{PuffArguments, sprite_recipe};
 use crate::options::whole_number;
 use crate::output::{FileChecks, print_line};
 use crate::puff_error::print_ramp_error;
@@ -20,12 +20,7 @@ use crate::puff_sheet::{ComparedImages, comparison_sheet};
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    medium: MediumArguments,
-    /// Sprite that shapes the puff: a `*.sprite.json` file, or the name of a built-in sprite.
-    #[arg(long, default_value_os_t = default_sprite())]
-    sprite: PathBuf,
-    #[command(flatten)]
-    quality: PathTraceArguments,
+    puff: PuffArguments,
     /// Stops per row.
     #[arg(long, default_value_t = FitShape::default().stops, allow_hyphen_values = true)]
     #[arg(value_parser = whole_number(2..=64))]
@@ -47,7 +42,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let Arguments { medium, sprite, quality, stops, rows, output, backlight, sheet } = arguments;
+    let Arguments { puff: PuffArguments { medium, sprite, quality }, stops, rows, output, backlight, sheet } =
+        arguments;
     let mut files = FileChecks::for_inputs([sprite]);
     for recipe in [Some(output), backlight.as_ref()].into_iter().flatten() {
         check_recipe_output(&mut files, recipe)?;

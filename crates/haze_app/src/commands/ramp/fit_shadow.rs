@@ -12,7 +12,7 @@ use haze_demo::puff_cloud::{CloudShape, PuffKind, ring_of_lights};
 
 use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::bake_job::{PaintedPng, check_not_painted, image_path};
-use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
+use crate::medium_options::{PuffArguments, sprite_recipe};
 use crate::options::{choices, whole_number};
 use crate::output::{FileChecks, print_line};
 
@@ -22,12 +22,7 @@ const CLOUDS: usize = 12;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    medium: MediumArguments,
-    /// Sprite that shapes the puffs: a `*.sprite.json` file, or the name of a built-in sprite.
-    #[arg(long, default_value_os_t = default_sprite())]
-    sprite: PathBuf,
-    #[command(flatten)]
-    quality: PathTraceArguments,
+    puff: PuffArguments,
     /// Lighting of the puffs. Each has an error of its own by angle, which the ramp makes good.
     #[arg(long, value_parser = choices::<Lighting>(), default_value = Lighting::default().name())]
     lighting: Lighting,
@@ -45,7 +40,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let Arguments { medium, sprite, quality, lighting, stops, rows, output } = arguments;
+    let Arguments { puff: PuffArguments { medium, sprite, quality }, lighting, stops, rows, output } = arguments;
     let mut files = FileChecks::for_inputs([sprite]);
     check_recipe_output(&mut files, output)?;
     files.check_output("--output", &image_path(output), "png")?;

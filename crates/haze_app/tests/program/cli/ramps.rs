@@ -197,6 +197,17 @@ fn a_blank_of_every_role_has_labelled_axes() {
 }
 
 #[test]
+fn shadow_ramps_are_fitted_to_path_traced_clouds() {
+    let folder = folder();
+    let fit = ["ramp", "fit-shadow", "--size", "16", "--samples", "4", "-o", "shadow_mine.ramp.json"];
+    let lines = stdout_of(folder.path(), &fit);
+    assert_eq!(lines.lines().filter(|line| line.contains("% off")).count(), 12, "{lines}");
+    assert!(lines.contains("multiply diffuse.intensity by "), "{lines}");
+    stdout_of(folder.path(), &["ramp", "check", "shadow_mine.png"]);
+    assert!(refusal(folder.path(), &[&fit[..], &["--rows", "0"]].concat()).contains("1 to 16"));
+}
+
+#[test]
 fn ramps_are_fitted_to_path_traced_smoke() {
     let folder = folder();
     let puff = ["--size", "16", "--samples", "8"];

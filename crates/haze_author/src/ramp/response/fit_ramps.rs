@@ -39,12 +39,12 @@ pub struct FittedRamps {
 }
 
 /// Weight of a light's mean brightness relative to its pixels.
-const BRIGHTNESS: f32 = 30.0;
+pub(super) const BRIGHTNESS: f32 = 30.0;
 /// Weight of the smoothness term (second difference of stops), relative to the mean diagonal of the normal equations.
 /// Stops that no pixel looks up then continue their neighbours.
-const STIFFNESS: f64 = 0.02;
+pub(super) const STIFFNESS: f64 = 0.02;
 /// Number of solver iterations. Doubling it changes one stop in ten, by 1 of 255.
-const STEPS: u32 = 400;
+pub(super) const STEPS: u32 = 400;
 
 impl Puff {
     /// Fits ramps by least squares over every lookup of the renderer. Each light is weighted by its inverse brightness,
@@ -82,17 +82,7 @@ impl Puff {
             equations.add(&sums, whole / count, BRIGHTNESS * weight);
         }
         let stiffness = (equations.mean_square() * STIFFNESS) as f32;
-        let mut hold = |[before, here, after]: [usize; 3]| {
-            equations.add(&[(before, 1.0), (here, -2.0), (after, 1.0)], Vec3::ZERO, stiffness);
-        };
-        for ramp in 0..ramps {
-            for row in 0..rows {
-                (2..stops).for_each(|stop| hold([2, 1, 0].map(|back| place(ramp, row, stop - back))));
-            }
-            for stop in 0..stops {
-                (2..rows).for_each(|row| hold([2, 1, 0].map(|back| place(ramp, row - back, stop))));
-            }
-        }
+        (0..ramps).for_each(|ramp| equations.smooth(place(ramp, 0, 0), stops, rows, stiffness));
         let values = equations.solve(STEPS);
         let exposure = values.iter().map(|value| value.max_element()).fold(f32::MIN_POSITIVE, f32::max);
         let recipe = |ramp: usize| recipe(&values[place(ramp, 0, 0)..][..rows * stops], stops, exposure);

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::fit_ramps::recipe;
+use super::fit_ramps::{BRIGHTNESS, STEPS, STIFFNESS, recipe};
 use super::normal_equations::{NormalEquations, knots};
 use crate::ramp::ramp_recipe::RampRecipe;
 use haze::formula::color::luminance;
@@ -33,13 +33,8 @@ pub struct ShadedLight {
     pub truth: Vec<Vec3>,
 }
 
-/// Weight of a light's mean brightness relative to its pixels.
-const BRIGHTNESS: f32 = 30.0;
-/// Weight of the smoothness term, as in the fit of diffuse ramps.
-const STIFFNESS: f64 = 0.02;
 /// Weight of white in the first column, relative to the mean diagonal of the normal equations.
 const FULL_LIGHT: f64 = 100.0;
-const STEPS: u32 = 400;
 
 /// Fits a ramp by least squares. Each light is weighted by its inverse brightness, so relative errors of dark and bright
 /// lights count alike. Returns the ramp, and its value in full light relative to its brightest: smoke of a bright medium is
@@ -72,16 +67,7 @@ pub fn fit_shadow_ramp(lights: &[ShadedLight], shape: ShadowShape) -> (RampRecip
         for row in 0..rows {
             equations.add(&[(place(row, 0), 1.0)], Vec3::ONE, (square * FULL_LIGHT) as f32);
         }
-        let mut hold = |[before, here, after]: [usize; 3]| {
-            let stiffness = (square * STIFFNESS) as f32;
-            equations.add(&[(before, 1.0), (here, -2.0), (after, 1.0)], Vec3::ZERO, stiffness);
-        };
-        for row in 0..rows {
-            (2..stops).for_each(|stop| hold([2, 1, 0].map(|back| place(row, stop - back))));
-        }
-        for stop in 0..stops {
-            (2..rows).for_each(|row| hold([2, 1, 0].map(|back| place(row - back, stop))));
-        }
+        equations.smooth(0, stops, rows, (square * STIFFNESS) as f32);
         equations.solve(STEPS)
     });
     let [red, green, blue] = channels;

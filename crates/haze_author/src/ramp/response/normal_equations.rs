@@ -36,6 +36,21 @@ impl NormalEquations {
         }
     }
 
+    /// Adds a smoothness term over a table of knots from index `first` on: second differences along and across its rows are
+    /// to be 0.
+    pub fn smooth(&mut self, first: usize, stops: usize, rows: usize, weight: f32) {
+        let place = |row: usize, stop: usize| first + row * stops + stop;
+        let mut hold = |[before, here, after]: [usize; 3]| {
+            self.add(&[(before, 1.0), (here, -2.0), (after, 1.0)], Vec3::ZERO, weight);
+        };
+        for row in 0..rows {
+            (2..stops).for_each(|stop| hold([2, 1, 0].map(|back| place(row, stop - back))));
+        }
+        for stop in 0..stops {
+            (2..rows).for_each(|row| hold([2, 1, 0].map(|back| place(row - back, stop))));
+        }
+    }
+
     /// Returns the mean of the matrix's diagonal.
     pub fn mean_square(&self) -> f64 {
         (0..self.count).map(|i| self.matrix[i * self.count + i]).sum::<f64>() / self.count as f64
