@@ -36,7 +36,7 @@ fn add_sprite(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     let particle = Particle(particles[at], particles[at + 1u]);
     let in_view = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     let centre = (system.grid_from_view * vec4f(in_view, 1.0)).xyz;
-    let radius = particle.position_radius.w * system.size * system.cells_per_metre;
+    let radius = density_radius(particle);
     let depth = sprite_optical_depth(particle);
     let magnitude = dot(abs(in_view), vec3f(1.0)) + abs(radius) + dot(abs(particle.rotation_amount_frame_age), vec4f(1.0));
     // False for NaN too.

@@ -7,11 +7,14 @@
 
 #import "lib/sprite_fragment.wgsl"
 #import "lib/diffuse.wgsl"
+#import "lib/shadow_volume.wgsl"
 #import "lib/blending.wgsl"
 #import "lib/color.wgsl"
 
 // True if sprite.age_color is not 0.
 override AGE_COLOR: bool = false;
+// True if the smoke is lit by its depth.
+override BY_DEPTH: bool = false;
 
 override BLEND_MODE: u32 = BLEND_MODE_ALPHA;
 
@@ -22,6 +25,11 @@ fn vertex(
     @builtin(vertex_index) corner: u32,
 ) -> SpriteVertex {
     return sprite_vertex(particle, index, corner, vec4f(1.0, 1.0, 0.0, 0.0), 1.0);
+}
+
+// Ray through a point in view space, as in view_position().
+fn ray_through(position: vec3f) -> vec2f {
+    return position.xy / mix(-position.z, 1.0, view.orthographic);
 }
 
 @fragment
@@ -41,12 +49,16 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
     let covered = coverage(amount, system.boost);
+    var shade = Shade(in.optical_depths, vec3f(1.0));
+    if BY_DEPTH {
+        shade.visible = scene_visibility(ray_through(position), moments_of_sprite(in.centre_radius));
+    }
     var light = vec3f(0.0);
     if SIX_WAY {
-        light = diffuse_from_six_way(fragment.six_way, position, in.optical_depths);
+        light = diffuse_from_six_way(fragment.six_way, position, shade);
     } else {
         let normal = fragment.normal * inverseSqrt(max(dot(fragment.normal, fragment.normal), 1.0e-12));
-        light = diffuse_from_lights(normal, covered, position, in.optical_depths);
+        light = diffuse_from_lights(normal, covered, position, shade);
     }
     light = light * system.diffuse_intensity + soft_scatter(amount);
     if AGE_COLOR {

@@ -23,9 +23,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if amount <= 0.0 {
         return vec4f(0.0);
     }
-    let surface = surface_from_accumulation(accumulated, load_attachments(vec2i(texel)));
     // The centre of the texel represents all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * f32(system.scale);
-    let light = diffuse(surface, amount, shading_position(pixel)) + soft_scatter(amount);
+    let surface = shaded_surface(accumulated, load_attachments(vec2i(texel)), pixel);
+    let light = diffuse(surface, amount, lit_position(surface, pixel)) + soft_scatter(amount);
     return vec4f(bounded_light(light), 1.0) * amount;
 }

@@ -76,7 +76,7 @@ fn accumulate_sprite(texel: Texel, sprite: TileSprite, depths: vec3f, uv: vec2f,
     } else {
         next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, 1.0, weight).rgb;
     }
-    let attachments = attachments_from_fragment(fragment, weight, depths);
+    let attachments = attachments_from_fragment(fragment, weight, depths, in.centre_radius);
     next.attachments = add_attachments(texel.attachments, attachments);
     next.transmittance *= 1.0 - amount;
     return next;

@@ -82,14 +82,14 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
         return vec4f(bounded_light(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
     }
-    let surface = surface_from_accumulation(accumulated, sample_attachments(pixel));
+    let surface = shaded_surface(accumulated, sample_attachments(pixel), pixel);
     if DEBUG_VIEW == DEBUG_VIEW_NORMALS {
         return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;
     }
 
     var light = vec3f(0.0);
     if DEBUG_VIEW != DEBUG_VIEW_SOFT_SCATTER {
-        light += diffuse(surface, amount, shading_position(pixel));
+        light += diffuse(surface, amount, lit_position(surface, pixel));
     }
     if DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
         light += soft_scatter(amount);

@@ -8,6 +8,8 @@
 //!   (host's encoder)   measure            extent of particles in a host's buffer
 //!                      depth_downsample   scene depth ─► reduced depth, linear view metres
 //!                      sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU)
+//!                      density_splat      sprites ─► density grid, if a system receives shadow
+//!                      shadow_march       density grid ─► optical depths towards three lights
 //!                      diffuse_bake       lights ─► cubemap or motif, if a system uses one
 //!                      accumulate         sprites × normal map × soft fade ─► premultiplied normal, amount
 //! Renderer::render     transfer           the system's bounding box: decode, light, upsample, blend on the scene
@@ -19,7 +21,6 @@
 //! - It never creates a device, submits, tonemaps, or requires a device feature.
 //! - It does not simulate. [`emitter`] is a closed-form source of particles; hosts with their own simulation pass a slice or a
 //!   GPU buffer. The crate `haze_author` reads the particles of a simulation from files.
-//! - It casts no shadows, neither of the smoke on the scene nor of the smoke on itself.
 //!
 //! # Quick start
 //! ```no_run
@@ -88,7 +89,7 @@ pub use assets::{builtin, image, noise, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{
     AliveCount, Bounds, EmitterSnapshot, FrameInput, Light, LightKind, Material, Particle, ParticleBuffer,
-    ParticleSystem, Particles, SceneDepth, View,
+    ParticleSystem, Particles, SceneDepth, ShadowMap, ShadowProjection, View,
 };
 pub use renderer::{
     Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,

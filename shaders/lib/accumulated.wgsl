@@ -72,9 +72,13 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     return fitted_value(fit, fade);
 }
 
+// Ray through a pixel, as in view_position().
+fn ray_of_pixel(pixel: vec2f) -> vec2f {
+    return ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
+}
+
 // Point of the smoke that is lit at a pixel, view space. It is on the pixel's ray, flattened to one plane; otherwise
 // the faces of the box would show.
 fn shading_position(pixel: vec2f) -> vec3f {
-    let ray = ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
-    return view_position(ray, -system.centre.z, view.orthographic);
+    return view_position(ray_of_pixel(pixel), -system.centre.z, view.orthographic);
 }

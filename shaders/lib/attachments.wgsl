@@ -9,6 +9,7 @@ override ATTACHMENT_COUNT: u32 = 1u;
 override SIX_WAY_SLOT: u32 = 0u;
 override WEIGHTS_SLOT: u32 = 0u;
 override OPTICAL_DEPTHS_SLOT: u32 = 0u;
+override DEPTH_SLOT: u32 = 0u;
 
 // Values of a fragment or a texel, by role.
 struct Attachments {
@@ -18,6 +19,8 @@ struct Attachments {
     weights: f32,
     // Weighted optical depths towards the lights with shadow in rgb, sum of weights in a.
     optical_depths: vec4f,
+    // Weighted depth_moments() in rg, sum of weights in a.
+    depth: vec4f,
 }
 
 fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
@@ -30,6 +33,9 @@ fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
     }
     if OPTICAL_DEPTHS_SLOT != 0u {
         total.optical_depths += next.optical_depths;
+    }
+    if DEPTH_SLOT != 0u {
+        total.depth += next.depth;
     }
     return total;
 }
@@ -47,6 +53,9 @@ fn slots_from_attachments(first: vec4f, values: Attachments) -> array<vec4f, MAX
     if OPTICAL_DEPTHS_SLOT != 0u {
         slots[OPTICAL_DEPTHS_SLOT] = values.optical_depths;
     }
+    if DEPTH_SLOT != 0u {
+        slots[DEPTH_SLOT] = values.depth;
+    }
     return slots;
 }
 
@@ -63,6 +72,9 @@ fn attachments_from_slots(read: array<vec4f, MAX_TARGET_ATTACHMENTS>) -> Attachm
     }
     if OPTICAL_DEPTHS_SLOT != 0u {
         values.optical_depths = slots[OPTICAL_DEPTHS_SLOT];
+    }
+    if DEPTH_SLOT != 0u {
+        values.depth = slots[DEPTH_SLOT];
     }
     return values;
 }

@@ -4,6 +4,7 @@
 #import "lib/accumulated.wgsl"
 #import "lib/attachments.wgsl"
 #import "lib/normal.wgsl"
+#import "lib/shadow_volume.wgsl"
 #import "lib/diffuse_bake.wgsl"
 
 // Six faces of baked light by normal (cubemap), or one image of a lit sphere (motif).
@@ -31,8 +32,9 @@ struct Surface {
     normal: vec3f,
     // If the target has six-way light.
     six_way: SixWay,
-    // Mean of the smoke before it, towards the lights with shadow.
-    optical_depths: vec3f,
+    shade: Shade,
+    // Moments of its depth, as in depth_moments(), if the target has them.
+    depth: vec2f,
 }
 
 // Samples the textures behind the first at a pixel of the view.
@@ -68,9 +70,13 @@ fn load_attachments(texel: vec2i) -> Attachments {
 // Decodes a texel of the first texture, and the values of the others.
 fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Surface {
     var surface: Surface;
+    surface.shade.visible = vec3f(1.0);
     if OPTICAL_DEPTHS_SLOT != 0u {
         let depths = attachments.optical_depths;
-        surface.optical_depths = depths.rgb / max(depths.a, 1.0e-6);
+        surface.shade.optical_depths = depths.rgb / max(depths.a, 1.0e-6);
+    }
+    if DEPTH_SLOT != 0u {
+        surface.depth = attachments.depth.rg / max(attachments.depth.a, 1.0e-6);
     }
     if SIX_WAY_SLOT != 0u {
         // The fit of an upsampler may fall below 0, which means no light.
@@ -88,9 +94,27 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
     return surface;
 }
 
+// Surface at a pixel, past the scene's shadow.
+fn shaded_surface(accumulated: vec4f, attachments: Attachments, pixel: vec2f) -> Surface {
+    var surface = surface_from_accumulation(accumulated, attachments);
+    if DEPTH_SLOT != 0u {
+        surface.shade.visible = scene_visibility(ray_of_pixel(pixel), surface.depth);
+    }
+    return surface;
+}
+
+// Point of the smoke that is lit at a pixel, view space: at its mean depth, or on the plane of shading_position().
+fn lit_position(surface: Surface, pixel: vec2f) -> vec3f {
+    if DEPTH_SLOT == 0u {
+        return shading_position(pixel);
+    }
+    let depth = mix(system.smoke_near, system.smoke_far, saturate(surface.depth.x));
+    return view_position(ray_of_pixel(pixel), depth, view.orthographic);
+}
+
 fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
     if SIX_WAY_SLOT != 0u {
-        return diffuse_from_six_way(surface.six_way, position, surface.optical_depths) * system.diffuse_intensity;
+        return diffuse_from_six_way(surface.six_way, position, surface.shade) * system.diffuse_intensity;
     }
     let normal = surface.normal;
     var light = vec3f(0.0);
@@ -105,7 +129,7 @@ fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
         }
         case DIFFUSE_MODE_SPHERICAL_HARMONICS: { light = spherical_harmonics(system.spherical_harmonics, normal); }
         default: {
-            light = diffuse_from_lights(normal, coverage(amount, system.boost), position, surface.optical_depths);
+            light = diffuse_from_lights(normal, coverage(amount, system.boost), position, surface.shade);
         }
     }
     return light * system.diffuse_intensity;

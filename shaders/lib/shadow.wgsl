@@ -48,8 +48,8 @@ fn shadow_position(optical_depth: f32, to_light: vec3f, to_viewer: vec3f) -> vec
     return vec2f(saturate(1.0 - exp2(-optical_depth)), saturate(0.5 - 0.5 * dot(to_light, to_viewer)));
 }
 
-// Optical depth towards a light: a channel of `depths` by the light's slot, 1 to 3; 0 without a slot.
-fn depth_of_slot(slot: f32, depths: vec3f) -> f32 {
+// Value of a light with shadow: a channel of `values` by the light's slot, 1 to 3; 0 without a slot.
+fn of_slot(slot: f32, values: vec3f) -> f32 {
     let chosen = max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - slot), vec3f(0.0));
-    return dot(depths, chosen);
+    return dot(values, chosen);
 }

@@ -3,6 +3,7 @@
 #import "lib/sprite_vertex.wgsl"
 #import "lib/attachments.wgsl"
 #import "lib/depth.wgsl"
+#import "lib/depth_moments.wgsl"
 #import "lib/noise_volume.wgsl"
 #import "lib/normal.wgsl"
 #import "lib/six_way.wgsl"
@@ -28,7 +29,13 @@ const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.
 
 // Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal. `optical_depths`: those
 // of its sprite.
-fn attachments_from_fragment(fragment: SpriteFragment, weight: f32, optical_depths: vec3f) -> Attachments {
+// `centre_radius`: the sprite in view space.
+fn attachments_from_fragment(
+    fragment: SpriteFragment,
+    weight: f32,
+    optical_depths: vec3f,
+    centre_radius: vec4f,
+) -> Attachments {
     var values: Attachments;
     if SIX_WAY_SLOT != 0u {
         values.six_way = vec4f(fragment.six_way.negative * weight, weight);
@@ -39,7 +46,16 @@ fn attachments_from_fragment(fragment: SpriteFragment, weight: f32, optical_dept
     if OPTICAL_DEPTHS_SLOT != 0u {
         values.optical_depths = vec4f(optical_depths * weight, weight);
     }
+    if DEPTH_SLOT != 0u {
+        values.depth = vec4f(moments_of_sprite(centre_radius) * weight, 0.0, weight);
+    }
     return values;
+}
+
+// depth_moments() of a sprite in view space.
+fn moments_of_sprite(centre_radius: vec4f) -> vec2f {
+    let radius = centre_radius.w * system.density_reach;
+    return depth_moments(-centre_radius.z, radius, system.smoke_near, system.smoke_far);
 }
 
 // True if the technique reads the scene's depth in the shader.

@@ -5,6 +5,7 @@
 #import "lib/bindings.wgsl"
 #import "lib/density_grid.wgsl"
 #import "lib/shadow.wgsl"
+#import "lib/shadow_volume.wgsl"
 #import "lib/sprite.wgsl"
 #import "lib/soft_fade.wgsl"
 #import "lib/technique.wgsl"
@@ -93,10 +94,16 @@ struct ProjectedSprite {
     optical_depths: vec3f,
 }
 
-// Mean optical depth over the square of a particle's sprite, as it casts shadow.
+// Half the side of the square that the density of a particle's sprite fills, in cells.
+fn density_radius(particle: Particle) -> f32 {
+    return particle.position_radius.w * system.size * system.density_reach * system.cells_per_metre;
+}
+
+// Mean optical depth over that square, as it casts shadow.
 fn sprite_optical_depth(particle: Particle) -> f32 {
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity;
-    return system.shadow_density * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
+    let depth = mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
+    return system.shadow_density * depth / (system.density_reach * system.density_reach);
 }
 
 // Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `centre`: view space.
@@ -104,11 +111,8 @@ fn optical_depths_of(particle: Particle, centre: vec3f) -> vec3f {
     if !SHADOW {
         return vec3f(0.0);
     }
-    let place = (system.grid_from_view * vec4f(centre, 1.0)).xyz;
-    let inside = clamp(place, vec3f(0.5), system.grid_size - 0.5) / vec3f(textureDimensions(shadow_volume));
-    let in_grid = textureSampleLevel(shadow_volume, linear_sampler, inside, 0.0).rgb;
-    let radius = particle.position_radius.w * system.size * system.cells_per_metre;
-    return foreign_optical_depths(in_grid, own_optical_depth(radius, sprite_optical_depth(particle)));
+    let in_grid = sample_volume(0.0, (system.grid_from_view * vec4f(centre, 1.0)).xyz);
+    return foreign_optical_depths(in_grid, own_optical_depth(density_radius(particle), sprite_optical_depth(particle)));
 }
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.

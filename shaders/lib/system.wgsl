@@ -79,6 +79,8 @@ struct System {
     // 0: no shadow.
     shadow_strength: f32,
     shadow_density: f32,
-    padding0: f32,
-    padding1: f32,
+    // Extent of a sprite's density, as a share of the sprite's.
+    density_reach: f32,
+    // 2 if the volume has the scene's visibility beside optical depths; otherwise 1.
+    volume_blocks: f32,
 }

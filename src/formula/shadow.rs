@@ -51,10 +51,10 @@ pub fn shadow_position(optical_depth: f32, to_light: Vec3, to_viewer: Vec3) -> V
     Vec2::new(saturate(1.0 - (-optical_depth).exp2()), saturate(0.5 - 0.5 * to_light.dot(to_viewer)))
 }
 
-/// Optical depth towards a light: a channel of `depths` by the light's slot, 1 to 3; 0 without a slot.
-pub fn depth_of_slot(slot: f32, depths: Vec3) -> f32 {
+/// Value of a light with shadow: a channel of `values` by the light's slot, 1 to 3; 0 without a slot.
+pub fn of_slot(slot: f32, values: Vec3) -> f32 {
     let chosen = (Vec3::ONE - (Vec3::new(1.0, 2.0, 3.0) - slot).abs()).max(Vec3::ZERO);
-    depths.dot(chosen)
+    values.dot(chosen)
 }
 
 #[cfg(test)]

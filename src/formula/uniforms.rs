@@ -117,7 +117,8 @@ uniform! {
         cells_per_metre: f32,
         shadow_strength: f32,
         shadow_density: f32,
-        padding: [f32; 2],
+        density_reach: f32,
+        volume_blocks: f32,
     }
 }
 
@@ -127,6 +128,38 @@ uniform! {
         lights: [Vec4; 3],
         size: Vec3,
         padding: f32,
+    }
+}
+
+uniform! {
+    /// `ShadowMap` in `shaders/shadow_visibility.wgsl`.
+    ShadowMapUniform {
+        clip_from_grid: [Mat4; 6],
+        layers: u32,
+        reversed: u32,
+        bias: f32,
+        padding: f32,
+    }
+}
+
+uniform! {
+    /// `ShadowVisibility` in `shaders/shadow_visibility.wgsl`.
+    ShadowVisibilityUniform {
+        maps: [ShadowMapUniform; 3],
+        size: Vec3,
+        resolution: u32,
+    }
+}
+
+uniform! {
+    /// `SceneShadow` in `shaders/lib/haze_transmittance.wgsl`.
+    SceneShadowUniform {
+        origin: Vec3,
+        cells_per_metre: f32,
+        size: Vec3,
+        strength: f32,
+        lights: [Vec4; 3],
+        indices: [u32; 4],
     }
 }
 

@@ -7,6 +7,7 @@ use super::emitter_snapshot::EmitterSnapshot;
 use super::light::Light;
 use super::material::Material;
 use super::particle::Particle;
+use super::shadow_map::ShadowMap;
 use super::view::View;
 use crate::settings::{BlendOrder, DebugView, Settings};
 
@@ -22,6 +23,9 @@ pub struct FrameInput<'a> {
     pub target_size: Option<UVec2>,
     /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
+    /// Shadow maps of lights, at most one per light. They shade the smoke of systems with
+    /// [`shadow.by_depth`](crate::settings::Shadow::by_depth), for the lights that cast shadow.
+    pub shadow_maps: &'a [ShadowMap<'a>],
     /// Particle systems, in any order. They are drawn far to near.
     pub systems: &'a [ParticleSystem<'a>],
     /// Multiplies all light that the smoke sends to the viewer, for hosts whose target holds exposed light. 1 leaves it
@@ -45,6 +49,7 @@ impl<'a> FrameInput<'a> {
             scene_depth,
             target_size: None,
             lights: &[],
+            shadow_maps: &[],
             systems: &[],
             exposure: 1.0,
             time: 0.0,

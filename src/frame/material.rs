@@ -11,6 +11,7 @@ pub struct Material {
     pub(crate) bind_group: wgpu::BindGroup,
     /// The part of it that the passes that light accumulated smoke read.
     pub(crate) lighting: wgpu::BindGroup,
+    pub(crate) shadow_ramp: wgpu::TextureView,
     pub(crate) info: MaterialInfo,
     pub(crate) bytes: u64,
 }

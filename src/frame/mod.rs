@@ -6,6 +6,7 @@ mod frame_input;
 mod light;
 mod material;
 mod particle;
+mod shadow_map;
 #[doc(hidden)]
 pub mod validate_input;
 mod view;
@@ -16,4 +17,5 @@ pub use frame_input::{AliveCount, FrameInput, ParticleBuffer, ParticleSystem, Pa
 pub use light::{Light, LightKind, MAX_LIGHTS};
 pub use material::Material;
 pub use particle::{MAX_MAGNITUDE, Particle, particle_bounds};
+pub use shadow_map::{ShadowMap, ShadowProjection};
 pub use view::View;

@@ -4,7 +4,9 @@ use glam::{Mat4, UVec2, Vec3, Vec4};
 
 use super::bounds::Bounds;
 use super::light::{Light, LightKind, MAX_LIGHTS};
+use super::shadow_map::ShadowProjection;
 use crate::error::FieldError;
+use crate::formula::shadow_map::MAX_SHADOW_LAYERS;
 use crate::settings::{DepthSource, Settings, validate};
 
 /// Validates the settings of system `index` for a picture of this size.
@@ -59,6 +61,40 @@ pub fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
         if light.kind != LightKind::Point && light.direction.normalize_or_zero() == Vec3::ZERO {
             let field = format!("lights[{index}].direction");
             return Err(FieldError::new(field, light.direction, "a direction that is not zero"));
+        }
+    }
+    Ok(())
+}
+
+/// Validates the projections of shadow maps, of a frame with this number of lights.
+pub fn validate_shadow_projections<'a>(
+    lights: usize,
+    projections: impl Iterator<Item = ShadowProjection<'a>>,
+) -> Result<(), FieldError> {
+    let mut seen = [false; MAX_LIGHTS];
+    for (index, projection) in projections.enumerate() {
+        let field = |name| format!("shadow_maps[{index}].projection.{name}");
+        let ShadowProjection { light, clip_from_world, bias, .. } = projection;
+        let expected = format!("the index of one of the {lights} lights");
+        let Some(seen) = seen.get_mut(light).filter(|_| light < lights) else {
+            return Err(FieldError::new(field("light"), light, expected));
+        };
+        if std::mem::replace(seen, true) {
+            return Err(FieldError::from_problem(
+                field("light"),
+                format!("{light} has a map already"),
+                "one per light",
+            ));
+        }
+        if clip_from_world.is_empty() || clip_from_world.len() > MAX_SHADOW_LAYERS {
+            let problem = format!("has {} layers", clip_from_world.len());
+            return Err(FieldError::from_problem(field("clip_from_world"), problem, "1 to 6"));
+        }
+        if let Some(matrix) = clip_from_world.iter().find(|matrix| !matrix.is_finite()) {
+            return Err(FieldError::new(field("clip_from_world"), matrix, "finite numbers"));
+        }
+        if !bias.is_finite() || bias < 0.0 {
+            return Err(FieldError::new(field("bias"), bias, "a finite number, at least 0"));
         }
     }
     Ok(())

@@ -3,19 +3,22 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use glam::{UVec2, Vec3};
+
 use super::auto::PathModel;
 use super::gpu::Gpu;
 use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
 use super::gpu::pipeline::PipelineStore;
 use super::gpu::timing::Timing;
 use super::layouts::Layouts;
-use super::material_upload::{SharedTextures, create_material};
+use super::material_upload::{SharedTextures, create_material, upload_ramp};
 use super::pass::depth_resolve::DepthResolveKey;
 use super::pipelines::Pipelines;
 use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
 use super::tiled::{TiledPipelines, volume};
 use crate::assets::material_assets::MaterialAssets;
+use crate::assets::ramp::Ramp;
 use crate::error::Error;
 use crate::frame::Material;
 use crate::view_setup::Support;
@@ -38,9 +41,11 @@ pub(crate) struct Shared {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub layouts: Layouts,
-    textures: SharedTextures,
+    pub textures: SharedTextures,
     /// Bound in place of optical depths where no system receives shadow.
     pub no_shadow: wgpu::TextureView,
+    /// Bound in place of a shadow ramp where no smoke shades the scene.
+    pub no_ramp: wgpu::TextureView,
     pub pipelines: Pipelines,
     /// [`read_only_depth_is_supported`], queried once, because every query copies the adapter's information.
     pub read_only_depth: bool,
@@ -110,11 +115,13 @@ impl Context {
         static CONTEXTS: AtomicU64 = AtomicU64::new(0);
         let number = CONTEXTS.fetch_add(1, Ordering::Relaxed);
         let device = pipelines.store.device.clone();
+        let white = Ramp::from_linear(UVec2::ONE, [Vec3::ONE]);
         Self(Arc::new(Shared {
             number,
             device_number: device_number.unwrap_or(number),
             textures: SharedTextures::new(&Gpu { device: &device, queue }),
-            no_shadow: volume(&device, 1, wgpu::TextureUsages::empty()),
+            no_ramp: upload_ramp(&Gpu { device: &device, queue }, "haze no ramp", &white, &mut 0),
+            no_shadow: volume(&device, 1, 1, wgpu::TextureUsages::empty()),
             read_only_depth: read_only_depth_is_supported(&device),
             support: Support { six_way: six_way_is_supported(&device), shadow: pipelines.tiled.is_some() },
             path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
@@ -133,6 +140,11 @@ impl Context {
     /// Returns the queue.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.0.queue
+    }
+
+    /// Returns the layout of [`Renderer::scene_shadow`](crate::Renderer::scene_shadow), for a host's pipelines.
+    pub fn scene_shadow_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.0.layouts.scene_shadow
     }
 
     /// Uploads ramps and sprite images. Create each material once and keep it; all renderers of this context can use

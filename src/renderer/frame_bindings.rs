@@ -62,6 +62,11 @@ impl FrameBindings {
     pub fn get(&self, linear: bool) -> Option<&DepthBindings> {
         if linear { self.linear.bound.as_ref() } else { self.buffer.bound.as_ref() }
     }
+
+    /// Returns bindings of either kind, for passes that do not read depth.
+    pub fn any(&self) -> Option<&DepthBindings> {
+        self.get(false).or(self.get(true))
+    }
 }
 
 impl Source {

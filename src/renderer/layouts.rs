@@ -1,7 +1,7 @@
 //! Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. See `shaders/lib/bindings.wgsl`.
 
 use super::gpu::capabilities::tiles_are_supported;
-use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
+use crate::formula::uniforms::{LightUniform, SceneShadowUniform, SystemUniform, ViewUniform};
 use crate::frame::MAX_LIGHTS;
 use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 
@@ -29,6 +29,8 @@ pub(crate) struct Layouts {
     pub depth_resolve: wgpu::BindGroupLayout,
     pub accumulate: wgpu::BindGroupLayout,
     pub transfer: wgpu::BindGroupLayout,
+    /// Of a host's shaders: shadow of the smoke on the scene.
+    pub scene_shadow: wgpu::BindGroupLayout,
 }
 
 impl Layouts {
@@ -92,6 +94,15 @@ impl Layouts {
             depth_resolve: layout("haze depth samples", &[multisampled]),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),
             transfer: layout("haze transfer inputs", &transfer),
+            scene_shadow: layout(
+                "haze scene shadow",
+                &[
+                    uniform(size_of::<SceneShadowUniform>() as u64),
+                    texture(filterable, D3),
+                    texture(filterable, D2),
+                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                ],
+            ),
         }
     }
 }

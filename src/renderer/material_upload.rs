@@ -17,7 +17,7 @@ use crate::frame::Material;
 #[derive(Debug)]
 pub(crate) struct SharedTextures {
     /// For ramps and sprites: clamps at the border.
-    linear: wgpu::Sampler,
+    pub linear: wgpu::Sampler,
     /// For noise: repeats.
     repeat: wgpu::Sampler,
     /// Placeholder for a missing detail map. No shader reads it, but the binding must be filled.
@@ -101,6 +101,7 @@ pub(crate) fn create_material(
         context,
         bind_group: bind("haze material", &layouts.material, &entries),
         lighting: bind("haze material lighting", &layouts.lighting, &lighting),
+        shadow_ramp,
         info,
         bytes,
     })
@@ -147,7 +148,7 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
     check("noise", assets.noise.size(), side, limits.max_texture_dimension_3d)
 }
 
-fn upload_ramp(gpu: &Gpu<'_>, label: &str, ramp: &Ramp, bytes: &mut u64) -> wgpu::TextureView {
+pub(crate) fn upload_ramp(gpu: &Gpu<'_>, label: &str, ramp: &Ramp, bytes: &mut u64) -> wgpu::TextureView {
     let size = extent(ramp.size(), 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),

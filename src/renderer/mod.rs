@@ -18,6 +18,7 @@ mod path_probe;
 mod pipelines;
 mod plan;
 mod resolved_depth;
+mod scene_shadow;
 pub mod shader;
 mod sprite_instances;
 mod system_particles;
@@ -30,6 +31,7 @@ mod validate_frame;
 mod warm_up;
 
 use crate::error::{Error, FieldError};
+use crate::formula::shadow::SHADOWED_LIGHTS;
 use crate::frame::{FrameInput, SceneDepth};
 use crate::settings::DebugView;
 use crate::view_setup::{ResolvedSettings, SmokeShadow, ViewGeometry};
@@ -54,6 +56,7 @@ use gpu::submission::SubmissionTracker;
 use pass::depth_resolve::DepthResolveKey;
 use plan::{PipelineInputs, plan};
 use resolved_depth::ResolvedDepth;
+use scene_shadow::SceneShadow;
 use system_passes::SystemPasses;
 use system_state::SystemState;
 use tiled::ShadowVolume;
@@ -77,6 +80,11 @@ pub struct Renderer {
     resolved_depth: Option<ResolvedDepth>,
     bindings: FrameBindings,
     shadow_volume: ShadowVolume,
+    scene_shadow: SceneShadow,
+    /// Lights of the frame that cast shadow.
+    shadowed_lights: [Option<usize>; SHADOWED_LIGHTS],
+    /// True between `cast_shadow` and the `prepare` that completes the frame.
+    has_cast: bool,
     states: Vec<SystemState>,
     /// Visible systems, farthest first.
     order: Vec<VisibleSystem>,
@@ -110,6 +118,9 @@ impl Renderer {
             resolved_depth: None,
             bindings: FrameBindings::new(device),
             shadow_volume: ShadowVolume::default(),
+            scene_shadow: SceneShadow::new(context.shared()),
+            shadowed_lights: [None; SHADOWED_LIGHTS],
+            has_cast: false,
             states: Vec::new(),
             order: Vec::new(),
             view: None,
@@ -162,6 +173,62 @@ impl Renderer {
     /// of the previous call were neither submitted nor dropped. After an error, [`render`](Self::render) draws nothing
     /// until a `prepare` succeeds.
     pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
+        if std::mem::take(&mut self.has_cast) && self.submission.is_outstanding() {
+            self.submission.track(encoder);
+        } else {
+            self.prepare_systems(encoder, frame)?;
+        }
+        let context = self.context.clone();
+        let shared = context.shared();
+        let timing = self.timing.as_ref();
+        // Keeps the farthest sample of a multisampled scene depth.
+        let resolved = self.resolved_depth.iter().zip(&self.view);
+        resolved.for_each(|(resolved, view)| resolved.pass(shared, view).record(encoder, timing));
+        for visible in &self.order {
+            let Some(SystemPasses::Deferred(passes)) = self.states[visible.state].passes() else { continue };
+            // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
+            passes.depth_downsample.iter().chain(&passes.depth_copy).for_each(|pass| pass.record(encoder, timing));
+            // Bakes all lights by normal, for the diffuse modes cubemap and motif.
+            passes.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
+            // Accumulates sprites as premultiplied normal + amount.
+            passes.accumulate.record(encoder, timing);
+            // Counts layers, for the overdraw view.
+            passes.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
+            // Lights the target, if the lighting resolution is the target's.
+            passes.light_target.iter().for_each(|pass| pass.record(encoder, timing));
+        }
+        // Far to near; systems at equal distance keep the host's order.
+        self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        Ok(())
+    }
+
+    /// Records the shadow of the smoke ahead of [`prepare`](Self::prepare), so that a host's opaque pass can read it from
+    /// [`scene_shadow`](Self::scene_shadow). Call `prepare` with the same frame afterwards, before the commands are
+    /// submitted. The scene depth is not read yet. Without smoke that casts shadow, it records nothing of the shadow.
+    ///
+    /// # Errors
+    /// As [`prepare`](Self::prepare).
+    pub fn cast_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
+        self.prepare_systems(encoder, frame)?;
+        self.has_cast = true;
+        Ok(())
+    }
+
+    /// Returns the bind group that [`shader::scene_shadow_wgsl`] reads, for the frame of the last
+    /// [`cast_shadow`](Self::cast_shadow) or [`prepare`](Self::prepare). Its layout is
+    /// [`Context::scene_shadow_layout`]. It may be another one in the next frame. Without shadow, light is full.
+    pub fn scene_shadow(&self) -> &wgpu::BindGroup {
+        self.scene_shadow.group()
+    }
+
+    /// Returns the indices in [`FrameInput::lights`] of the lights that cast shadow, in the frame of the last
+    /// [`cast_shadow`](Self::cast_shadow) or [`prepare`](Self::prepare).
+    pub fn shadowed_lights(&self) -> impl Iterator<Item = usize> {
+        self.shadowed_lights.into_iter().flatten()
+    }
+
+    /// Prepares all systems, and records the passes that do not read the scene's depth.
+    fn prepare_systems(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
         self.order.clear();
         self.validate_submitted()?;
         let context = self.context.clone();
@@ -187,21 +254,22 @@ impl Renderer {
         let timing = self.timing.as_ref();
         self.timed_frame = timing.map(|timing| timing.register_prepare(self.timed_frame));
 
-        // Keeps the farthest sample of a multisampled scene depth.
-        self.resolved_depth.iter().for_each(|resolved| resolved.pass(shared, &view).record(encoder, timing));
         // Measures all systems: their smoke shades each other.
         let states = &mut self.states;
         let measured = frame.systems.iter().filter_map(|system| {
             let state = states.iter_mut().find(|state| state.key == system.key)?;
             Some(state.measure_box(shared, &view, system))
         });
-        let shadow = SmokeShadow::new(&view, frame.lights, measured);
+        let mapped = frame.shadow_maps.iter().map(|map| map.projection.light);
+        let shadow = SmokeShadow::new(&view, frame.lights, mapped, measured);
+        self.shadowed_lights = shadow.map_or([None; SHADOWED_LIGHTS], |shadow| shadow.lights);
         // Places and clears the density grid around all systems, if any system receives shadow.
         if let Some(tiled) = &shared.pipelines.tiled {
-            self.shadow_volume.write(&gpu, tiled, shadow.as_ref());
+            self.shadow_volume.write(&gpu, tiled, shadow.as_ref(), frame.shadow_maps);
         }
         let grid = shadow.as_ref().and_then(|shadow| self.shadow_volume.of_frame(shadow));
         grid.iter().for_each(|_| self.shadow_volume.clear(encoder));
+        self.scene_shadow.write(shared, frame, grid);
         let (host_size, bindings) = (host_size(frame), &self.bindings);
         let context =
             FrameContext { gpu, shared, frame, view: &view, host_size, inputs: &inputs, bindings, shadow: grid };
@@ -213,10 +281,10 @@ impl Renderer {
             if let (Some(timing), Some(choice)) = (timing, state.choice()) {
                 timing.add_choice(system.key, choice);
             }
-            if state.passes().is_none() {
-                continue;
+            // A system out of sight casts shadow, and no more.
+            if state.passes().is_some() {
+                self.order.push(VisibleSystem { state: index, distance: state.distance() });
             }
-            self.order.push(VisibleSystem { state: index, distance: state.distance() });
             // Copies the number of a host's particles, if only the GPU knows it.
             state.alive().iter().for_each(|copy| copy.record(encoder));
             // Measures a host's particles, which the CPU cannot read.
@@ -226,25 +294,11 @@ impl Renderer {
             // Adds the sprites to the density grid.
             state.splat().iter().for_each(|pass| pass.record(encoder, timing));
         }
-        // Marches from the cells of the density grid to the lights.
+        // Marches from the cells of the density grid to the lights; looks up the host's shadow maps.
         if let (Some(shadow), Some(tiled)) = (&shadow, &shared.pipelines.tiled) {
+            self.shadow_volume.look_up(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
             self.shadow_volume.march(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
         }
-        for visible in &self.order {
-            let Some(SystemPasses::Deferred(passes)) = self.states[visible.state].passes() else { continue };
-            // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
-            passes.depth_downsample.iter().chain(&passes.depth_copy).for_each(|pass| pass.record(encoder, timing));
-            // Bakes all lights by normal, for the diffuse modes cubemap and motif.
-            passes.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
-            // Accumulates sprites as premultiplied normal + amount.
-            passes.accumulate.record(encoder, timing);
-            // Counts layers, for the overdraw view.
-            passes.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
-            // Lights the target, if the lighting resolution is the target's.
-            passes.light_target.iter().for_each(|pass| pass.record(encoder, timing));
-        }
-        // Far to near; systems at equal distance keep the host's order.
-        self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         self.view = Some(view);
         Ok(())
     }
@@ -283,7 +337,8 @@ impl Renderer {
         systems: impl Iterator<Item = &'a VisibleSystem>,
         debug_view: DebugView,
     ) {
-        let Some(view) = self.view.as_ref().filter(|_| !self.order.is_empty()) else { return };
+        let is_prepared = !self.order.is_empty() && !self.has_cast;
+        let Some(view) = self.view.as_ref().filter(|_| is_prepared) else { return };
         self.submission.track_pass(pass);
         let timing = self.timing.as_ref();
         set_viewport_and_scissor(pass, view.origin, view.size);

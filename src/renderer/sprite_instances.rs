@@ -24,6 +24,7 @@ pub(crate) struct SpriteKey {
     linear_depth: bool,
     exact_filtering: bool,
     shadow: bool,
+    by_depth: bool,
 }
 
 impl SpriteKey {
@@ -39,11 +40,16 @@ impl SpriteKey {
             linear_depth,
             exact_filtering,
             shadow: settings.receives_shadow(),
+            by_depth: settings.lights_by_depth(),
         }
     }
 
     pub fn is_flat(&self) -> bool {
         self.technique.is_flat()
+    }
+
+    pub fn lights_by_depth(&self) -> bool {
+        self.by_depth
     }
 
     pub fn receives_shadow(&self) -> bool {

@@ -6,6 +6,7 @@ use super::alive_copy::AliveCopy;
 use super::auto::{PathChoice, PathChooser, PathWorkload, estimate_workload};
 use super::context::Shared;
 use super::counts::{FrameCounts, Overdraw};
+use super::frame_bindings::DepthBindings;
 use super::frame_context::FrameContext;
 use super::gpu::idle_counter::IdleCounter;
 use super::gpu::record::uniform_buffer;
@@ -26,7 +27,7 @@ use crate::frame::{Bounds, ParticleSystem};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
     ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, ViewGeometry,
-    light_uniforms, system_setup,
+    caster_uniform, light_uniforms, system_setup,
 };
 
 /// Buffers and targets of one system, and its passes of the current frame.
@@ -52,6 +53,8 @@ pub(crate) struct SystemState {
     frames_absent: IdleCounter,
     /// `None` if the system is out of sight.
     prepared: Option<PreparedSystem>,
+    /// Passes of a system out of sight that casts shadow.
+    hidden: Option<CasterPasses>,
 }
 
 /// Bind group 1, and the volume that it binds.
@@ -79,11 +82,17 @@ struct PreparedSystem {
     choice: Option<PathChoice>,
     /// Number of particles that each one of `sample` represents, if the GPU evaluates the emitter; otherwise `None`.
     sampled: Option<u32>,
+    caster: CasterPasses,
+    passes: SystemPasses,
+}
+
+/// Passes that prepare the particles and cast their shadow.
+#[derive(Debug)]
+struct CasterPasses {
     alive: Option<AliveCopy>,
     measure: Option<Measure>,
     particle_pass: Option<ParticlePass>,
     splat: Option<DensitySplat>,
-    passes: SystemPasses,
 }
 
 impl SystemState {
@@ -107,6 +116,7 @@ impl SystemState {
             frames_untiled: IdleCounter::default(),
             frames_absent: IdleCounter::default(),
             prepared: None,
+            hidden: None,
         }
     }
 
@@ -115,24 +125,28 @@ impl SystemState {
         self.prepared.as_ref().map(|prepared| &prepared.passes)
     }
 
+    fn caster(&self) -> Option<&CasterPasses> {
+        self.prepared.as_ref().map(|prepared| &prepared.caster).or(self.hidden.as_ref())
+    }
+
     /// Returns the copy of the number of a host's particles, if only the GPU knows it. It comes before all passes.
     pub fn alive(&self) -> Option<&AliveCopy> {
-        self.prepared.as_ref()?.alive.as_ref()
+        self.caster()?.alive.as_ref()
     }
 
     /// Returns the pass that measures a host's particles. It runs before all other passes.
     pub fn measure(&self) -> Option<&Measure> {
-        self.prepared.as_ref()?.measure.as_ref()
+        self.caster()?.measure.as_ref()
     }
 
     /// Returns the pass that produces the system's particles. It runs before all other passes.
     pub fn particle_pass(&self) -> Option<&ParticlePass> {
-        self.prepared.as_ref()?.particle_pass.as_ref()
+        self.caster()?.particle_pass.as_ref()
     }
 
     /// Returns the pass that adds the system to the density grid of the frame. It comes after the particles are produced.
     pub fn splat(&self) -> Option<&DensitySplat> {
-        self.prepared.as_ref()?.splat.as_ref()
+        self.caster()?.splat.as_ref()
     }
 
     /// Returns this frame's choice of the path `auto`.
@@ -214,7 +228,7 @@ impl SystemState {
     /// frames in a row.
     pub fn tick_absence(&mut self, is_missing: bool) -> bool {
         if is_missing {
-            self.prepared = None;
+            (self.prepared, self.hidden) = (None, None);
         }
         self.frames_absent.tick(is_missing)
     }
@@ -236,19 +250,25 @@ impl SystemState {
 
     /// Places the system in the view, uploads its data, and prepares targets and pipelines.
     pub fn write(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) {
+        self.hidden = None;
         self.prepared = self.prepare(context, system);
         let is_deferred = matches!(self.passes(), Some(SystemPasses::Deferred(_)));
         if self.frames_without_targets.tick(!is_deferred) {
             self.targets = SystemTargets::default();
         }
-        let is_tiled = matches!(self.passes(), Some(SystemPasses::Deferred(passes)) if passes.accumulate.is_tiled());
+        let is_tiled = match self.passes() {
+            Some(SystemPasses::Deferred(passes)) => passes.accumulate.is_tiled(),
+            Some(SystemPasses::Forward(_)) => false,
+            None => self.hidden.is_some(),
+        };
         let is_released = self.frames_untiled.tick(!is_tiled);
         if is_released {
             self.tiles = TiledSystem::default();
         }
-        let particle_pass = self.prepared.as_ref().and_then(|prepared| prepared.particle_pass.as_ref());
-        let is_measured = self.measure().is_some();
-        let is_splatted = self.splat().is_some();
+        let caster = self.prepared.as_ref().map(|prepared| &prepared.caster).or(self.hidden.as_ref());
+        let particle_pass = caster.and_then(|caster| caster.particle_pass.as_ref());
+        let is_measured = caster.is_some_and(|caster| caster.measure.is_some());
+        let is_splatted = caster.is_some_and(|caster| caster.splat.is_some());
         self.particles.release_unused(is_released, is_measured, is_splatted, particle_pass);
     }
 
@@ -275,7 +295,11 @@ impl SystemState {
             time: frame.time,
             shadow: smoke_shadow,
         };
-        let setup = system_setup(view, context.host_size, &in_world)?;
+        let Some(setup) = system_setup(view, context.host_size, &in_world) else {
+            let uniform = caster_uniform(&in_world);
+            self.hidden = self.prepare_hidden(context, system, (&space, &settings, &uniform));
+            return None;
+        };
         let trim = SpriteTrim::new(&settings, material);
         let workload = matches!(settings.path, RenderPath::Auto | RenderPath::Tiled).then(|| {
             let view = view.uniform(false);
@@ -290,16 +314,7 @@ impl SystemState {
 
         let plan = plan(context.inputs, &settings, setup.back_faces);
         let depth = context.bindings.get(plan.reads_linear_target())?;
-        let optical_depths = context.shadow.map_or(&shared.no_shadow, |grid| grid.optical_depths);
-        if self.bindings.optical_depths != *optical_depths {
-            self.bindings = SystemBindings::new(shared, &self.uniform, &self.lights, optical_depths);
-        }
-        let groups = Groups {
-            frame: depth.frame.clone(),
-            system: self.bindings.group.clone(),
-            material: system.material.bind_group.clone(),
-            lighting: system.material.lighting.clone(),
-        };
+        let groups = self.bind(context, system, depth);
         let (sprites, particle_pass) = self.particles.upload(context, &space, system.particles, &settings, &groups)?;
         let measure = self.particles.measure_pass(context, system, &settings, &groups, &self.uniform);
         let splat = self.particles.splat_pass(context, system.particles, &sprites, &groups);
@@ -321,12 +336,52 @@ impl SystemState {
             trim,
             choice,
             sampled,
-            alive: AliveCopy::new(&system.particles, &self.uniform),
-            measure,
-            particle_pass,
-            splat,
+            caster: CasterPasses {
+                alive: AliveCopy::new(&system.particles, &self.uniform),
+                measure,
+                particle_pass,
+                splat,
+            },
             passes,
         })
+    }
+
+    /// Prepares the shadow of a system out of sight: it may fall on what is in sight. `None` without shadow.
+    fn prepare_hidden(
+        &mut self,
+        context: &FrameContext<'_>,
+        system: &ParticleSystem<'_>,
+        (space, settings, uniform): (&ParticleSpace, &ResolvedSettings, &SystemUniform),
+    ) -> Option<CasterPasses> {
+        context.shadow?;
+        context.gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
+        let groups = self.bind(context, system, context.bindings.any()?);
+        // The GPU evaluates an emitter, as if it were in sight.
+        let on_gpu = matches!(settings.path, RenderPath::Auto | RenderPath::Tiled);
+        let settings = if on_gpu { settings.with_path(RenderPath::Tiled) } else { *settings };
+        let (sprites, particle_pass) = self.particles.upload(context, space, system.particles, &settings, &groups)?;
+        let splat = self.particles.splat_pass(context, system.particles, &sprites, &groups);
+        Some(CasterPasses {
+            alive: AliveCopy::new(&system.particles, &self.uniform),
+            measure: None,
+            particle_pass,
+            splat,
+        })
+    }
+
+    /// Returns the bind groups of the system.
+    fn bind(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>, depth: &DepthBindings) -> Groups {
+        let shared = context.shared;
+        let optical_depths = context.shadow.map_or(&shared.no_shadow, |grid| grid.optical_depths);
+        if self.bindings.optical_depths != *optical_depths {
+            self.bindings = SystemBindings::new(shared, &self.uniform, &self.lights, optical_depths);
+        }
+        Groups {
+            frame: depth.frame.clone(),
+            system: self.bindings.group.clone(),
+            material: system.material.bind_group.clone(),
+            lighting: system.material.lighting.clone(),
+        }
     }
 }
 

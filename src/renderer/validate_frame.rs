@@ -10,10 +10,12 @@ use super::targets::validate_attachments;
 use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::error::FieldError;
 use crate::frame::validate_input::{
-    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
+    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
     validate_world_from_particles,
 };
-use crate::frame::{AliveCount, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, View};
+use crate::frame::{
+    AliveCount, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, ShadowMap, View,
+};
 use crate::settings::{DepthSource, RenderPath, Technique};
 use crate::view_setup::AttachmentSet;
 
@@ -38,6 +40,10 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &FrameInput<'_>)
         return Err(FieldError::new("scene_depth", "SceneDepth::Buffer", expected));
     }
     validate_lights(frame.lights)?;
+    validate_shadow_projections(frame.lights.len(), frame.shadow_maps.iter().map(|map| map.projection))?;
+    for (index, map) in frame.shadow_maps.iter().enumerate() {
+        validate_shadow_map(index, map)?;
+    }
     for (index, system) in frame.systems.iter().enumerate() {
         if let Some(other) = frame.systems[..index].iter().position(|other| other.key == system.key) {
             let problem = format!("{} is also the key of systems[{other}]", system.key);
@@ -92,6 +98,27 @@ fn validate_scene_depth(shared: &Shared, frame: &FrameInput<'_>) -> Result<UVec2
         validate_depth_texture(size, linear, is_linear, "R32Float for the linear target")?;
     }
     Ok(host_size(frame))
+}
+
+fn validate_shadow_map(index: usize, map: &ShadowMap<'_>) -> Result<(), FieldError> {
+    let refuse =
+        |problem, expected| Err(FieldError::from_problem(format!("shadow_maps[{index}].depth"), problem, expected));
+    let texture = map.depth;
+    if !texture.format().has_depth_aspect() {
+        return refuse(format!("has the format {:?}", texture.format()), "a depth format");
+    }
+    if texture.dimension() != wgpu::TextureDimension::D2 || texture.sample_count() != 1 {
+        return refuse("is not a single-sampled 2D texture".into(), "one with a layer per matrix");
+    }
+    if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+        return refuse(format!("has the usage {:?}", texture.usage()), "TEXTURE_BINDING");
+    }
+    let (layers, needed) = (texture.depth_or_array_layers(), map.projection.clip_from_world.len() as u64);
+    if u64::from(map.first_layer) + needed > u64::from(layers) {
+        let problem = format!("has {layers} layers");
+        return refuse(problem, "a layer per matrix, from first_layer on");
+    }
+    Ok(())
 }
 
 fn validate_depth_texture(

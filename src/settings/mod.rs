@@ -185,6 +185,11 @@ impl Settings {
         self.shadow.strength > 0.0 && self.can_receive_shadow()
     }
 
+    /// True if the smoke is lit at its mean depth, in the shadow of the scene.
+    pub fn lights_by_depth(&self) -> bool {
+        self.shadow.by_depth && self.receives_shadow()
+    }
+
     /// Order in which sprites are drawn. Forward sprites hide each other and are always sorted.
     pub fn order(&self) -> BlendOrder {
         if self.is_forward() { BlendOrder::Sorted } else { self.accumulate.order }

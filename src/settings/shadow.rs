@@ -16,5 +16,13 @@ settings! {
         /// Cells along the longest side of the grid; the largest number among the systems of a frame counts. Higher: finer
         /// shadows, at a cost that grows with its third power.
         resolution: u32 = 24, integer(4..=96, "cells");
+        /// Lights the smoke at its mean depth at each pixel, in place of one plane for all pixels, and in the shadow of the
+        /// scene: beams stand in dust, a lamp inside the smoke lights what is near it. The scene's shadow comes from a host's
+        /// shadow maps, `FrameInput::shadow_maps`. One more texture is accumulated.
+        by_depth: bool = false, flag;
+        /// Mix of full light and the shadow that the smoke casts on the scene, tinted by the shadow ramp. The first system of
+        /// a frame with shadow decides it. The demo scene shows it; a host's renderer does if its shaders call
+        /// `haze_transmittance`.
+        scene: f32 = 1.0, number(0.0..=1.0, "");
     }
 }

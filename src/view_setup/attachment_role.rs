@@ -19,11 +19,13 @@ pub enum AttachmentRole {
     Weights,
     /// Weighted optical depths towards three lights in rgb, sum of weights in a.
     OpticalDepths,
+    /// Weighted depth, as a share of the system's range of depths, and its square, in rg; sum of weights in a.
+    Depth,
 }
 
 impl AttachmentRole {
     /// All roles, in order.
-    pub const ALL: [Self; 4] = [Self::NormalAndAmount, Self::SixWay, Self::Weights, Self::OpticalDepths];
+    pub const ALL: [Self; 5] = [Self::NormalAndAmount, Self::SixWay, Self::Weights, Self::OpticalDepths, Self::Depth];
 
     /// True if a system with these settings has the texture.
     pub fn is_used(self, settings: &Settings) -> bool {
@@ -33,6 +35,7 @@ impl AttachmentRole {
             // Six-way light has a sum of weights of its own.
             Self::Weights => settings.accumulate.sums_weights() && !settings.is_six_way(),
             Self::OpticalDepths => settings.receives_shadow(),
+            Self::Depth => settings.lights_by_depth(),
         }
     }
 
@@ -43,6 +46,7 @@ impl AttachmentRole {
             Self::SixWay => ("lighting", "six_way"),
             Self::Weights => ("accumulate.order", "weighted"),
             Self::OpticalDepths => ("shadow.strength", "1"),
+            Self::Depth => ("shadow.by_depth", "true"),
         }
     }
 }

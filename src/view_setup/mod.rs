@@ -24,6 +24,6 @@ pub use resolved_settings::{ResolvedSettings, Support};
 pub use smoke_extent::SmokeExtent;
 pub use smoke_shadow::{SmokeGrid, SmokeShadow};
 pub use sprite_projector::{ProjectedSprite, SpriteProjector, SpriteTrim, TexelGrid};
-pub use system_setup::{SystemInput, SystemSetup, system_setup};
+pub use system_setup::{SystemInput, SystemSetup, caster_uniform, system_setup};
 pub use view_geometry::ViewGeometry;
 pub use view_lights::light_uniforms;

@@ -7,8 +7,9 @@ use super::view_geometry::ViewGeometry;
 use crate::formula::color::luminance;
 use crate::formula::lighting::distance_attenuation;
 use crate::formula::shadow::SHADOWED_LIGHTS;
-use crate::formula::uniforms::ShadowMarchUniform;
-use crate::frame::{Bounds, Light, LightKind};
+use crate::formula::shadow_map::MAX_SHADOW_LAYERS;
+use crate::formula::uniforms::{SceneShadowUniform, ShadowMapUniform, ShadowMarchUniform, ShadowVisibilityUniform};
+use crate::frame::{Bounds, Light, LightKind, ShadowProjection};
 
 /// Smallest extent of a grid, metres.
 const MIN_EXTENT: f64 = 1.0e-3;
@@ -39,6 +40,11 @@ impl SmokeGrid {
         Self { origin: first * cell, cell, size: size.as_uvec3() }
     }
 
+    /// Returns the matrix from cells to world space.
+    fn world_from_grid(&self) -> DMat4 {
+        DMat4::from_translation(self.origin) * DMat4::from_scale(DVec3::splat(self.cell))
+    }
+
     /// Returns the matrix from view space to cells.
     fn grid_from_view(&self, view: &ViewGeometry) -> Mat4 {
         let world_from_view = view.view_from_world.as_dmat4().inverse();
@@ -64,25 +70,33 @@ pub struct SmokeShadow {
     /// Largest resolution of all systems: size of the texture along each axis.
     pub resolution: u32,
     /// Indices of the lights that cast shadows.
-    lights: [Option<usize>; SHADOWED_LIGHTS],
+    pub lights: [Option<usize>; SHADOWED_LIGHTS],
     pub march: ShadowMarchUniform,
+    /// System whose ramp tints the shadow on the scene, and the strength of that shadow; `None` if none falls on it.
+    pub on_scene: Option<(usize, f32)>,
+    /// True if the host's shadow maps shade smoke.
+    pub has_visibility: bool,
 }
 
 impl SmokeShadow {
-    /// `systems`: box and settings of each system. Returns `None` if no system receives shadow, or there is no smoke.
+    /// `systems`: box and settings of each system. `mapped`: indices of the lights that have shadow maps. Returns `None` if no
+    /// system receives shadow, or there is no smoke.
     pub fn new(
         view: &ViewGeometry,
         lights: &[Light],
+        mut mapped: impl Iterator<Item = usize>,
         systems: impl Iterator<Item = (Bounds, ResolvedSettings)>,
     ) -> Option<Self> {
         let mut around = Bounds::EMPTY;
-        let mut resolution = None;
-        for (bounds, settings) in systems {
+        let (mut resolution, mut on_scene, mut by_depth) = (None, None, false);
+        for (index, (bounds, settings)) in systems.enumerate() {
             if !bounds.is_empty() {
                 (around.min, around.max) = (around.min.min(bounds.min), around.max.max(bounds.max));
             }
             if settings.receives_shadow() {
                 resolution = resolution.max(Some(settings.shadow.resolution));
+                by_depth |= settings.lights_by_depth();
+                on_scene = on_scene.or(Some((index, settings.shadow.scene)));
             }
         }
         let resolution = resolution.filter(|_| !around.is_empty())?;
@@ -96,8 +110,56 @@ impl SmokeShadow {
             }
             Some(light) => grid.place(light.position).extend(0.0),
         });
+        let has_visibility = by_depth && mapped.any(|light| chosen.contains(&Some(light)));
         let march = ShadowMarchUniform { lights: placed, size: grid.size.as_vec3(), padding: 0.0 };
-        Some(Self { grid, grid_from_view: grid.grid_from_view(view), resolution, lights: chosen, march })
+        Some(Self {
+            grid,
+            grid_from_view: grid.grid_from_view(view),
+            resolution,
+            lights: chosen,
+            march,
+            on_scene,
+            has_visibility,
+        })
+    }
+
+    /// Number of blocks of the volume.
+    pub fn blocks(&self) -> u32 {
+        if self.has_visibility { 2 } else { 1 }
+    }
+
+    /// Returns the lookups of shadow maps, by the lights' slots. `projection` returns that of a light's map, by its index.
+    pub fn visibility<'a>(
+        &self,
+        projection: impl Fn(usize) -> Option<ShadowProjection<'a>>,
+    ) -> ShadowVisibilityUniform {
+        let world_from_grid = self.grid.world_from_grid();
+        let maps = self.lights.map(|light| {
+            let Some(ShadowProjection { clip_from_world, reversed, bias, .. }) = light.and_then(&projection) else {
+                return ShadowMapUniform::default();
+            };
+            let mut clip_from_grid = [Mat4::ZERO; MAX_SHADOW_LAYERS];
+            for (of_grid, of_world) in clip_from_grid.iter_mut().zip(clip_from_world) {
+                *of_grid = (of_world.as_dmat4() * world_from_grid).as_mat4();
+            }
+            let layers = clip_from_world.len().min(MAX_SHADOW_LAYERS) as u32;
+            ShadowMapUniform { clip_from_grid, layers, reversed: u32::from(reversed), bias, padding: 0.0 }
+        });
+        ShadowVisibilityUniform { maps, size: self.march.size, resolution: self.resolution }
+    }
+
+    /// Returns the shadow on the scene as shaders read it.
+    pub fn scene_uniform(&self) -> SceneShadowUniform {
+        let index = |light: Option<usize>| light.map_or(u32::MAX, |index| index as u32);
+        let [first, second, third] = self.lights.map(index);
+        SceneShadowUniform {
+            origin: self.grid.origin.as_vec3(),
+            cells_per_metre: self.grid.cells_per_metre(),
+            size: self.march.size,
+            strength: self.on_scene.map_or(0.0, |(_, strength)| strength),
+            lights: self.march.lights,
+            indices: [first, second, third, u32::MAX],
+        }
     }
 
     /// Returns the channel of a light's optical depths, 1 to 3; 0 for a light without shadow.

@@ -87,14 +87,12 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
     };
 
     let uniform = SystemUniform {
-        view_from_particles: space.view_from_particles,
         bounds_min: bounds.min,
         bounds_near: projected.near,
         bounds_max: bounds.max,
         smoke_near: extent.near,
         centre: extent.centre,
         smoke_far: extent.far,
-        opacity: accumulate.opacity,
         scatter_color: settings.soft_scatter.scatter_color * exposure,
         scatter_amount: settings.soft_scatter.scatter_amount,
         ambient_color: settings.soft_scatter.ambient_color * exposure,
@@ -105,9 +103,6 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         scale,
         depth_limit: (projected.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         smoke_depth_limit: (farthest.min(projected.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
-        alive_count: u32::MAX,
-        mean_alpha: material.density.mean_alpha,
-        peak_alpha: material.density.peak_alpha,
         six_way_color: settings.diffuse.six_way_color,
         six_way_anisotropy: settings.diffuse.six_way_anisotropy,
         sprite_size: material.sprite_size,
@@ -123,7 +118,6 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         specular_scatter_size: settings.specular_scatter.size_in_pixels(view.size.y),
         specular_scatter_intensity: settings.specular_scatter.intensity,
         light_count: lights.len() as u32,
-        size: settings.sprite.size,
         motion: settings.sprite.motion,
         age_color: settings.sprite.age_color,
         detail_lod: material.detail.map_or(0.0, |detail| detail.lod),
@@ -142,18 +136,34 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
             BlendOrder::Weighted => optical_depths((view, space), particles, particles_per_sample, settings, &extent),
         },
         spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
-        grid_from_view: shadow.map_or(Mat4::IDENTITY, |shadow| shadow.grid_from_view),
-        grid_size: shadow.map_or(Vec3::ONE, |shadow| shadow.grid.size.as_vec3()),
-        cells_per_metre: shadow.map_or(1.0, |shadow| shadow.grid.cells_per_metre()),
         shadow_strength: if shadow.is_some() && settings.receives_shadow() { settings.shadow.strength } else { 0.0 },
-        shadow_density: settings.shadow.density,
-        padding: [0.0; 2],
+        volume_blocks: shadow.map_or(1.0, |shadow| shadow.blocks() as f32),
+        ..caster_uniform(system)
     };
     // If sprites show through the scene, the scene may hide the front of the box.
     let back_faces = projected.near <= view.depth.near || uniform.show_through_distance > 0.0;
     let distance = -uniform.centre.z;
     let pixels = projected.max - projected.min;
     Some(SystemSetup { rect, pixels, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
+}
+
+/// Uniforms of a system that only casts shadow: what density_splat reads.
+pub fn caster_uniform(system: &SystemInput<'_>) -> SystemUniform {
+    let SystemInput { space, settings, material, shadow, .. } = *system;
+    SystemUniform {
+        view_from_particles: space.view_from_particles,
+        opacity: settings.accumulate.opacity,
+        size: settings.sprite.size,
+        alive_count: u32::MAX,
+        mean_alpha: material.density.mean_alpha,
+        peak_alpha: material.density.peak_alpha,
+        density_reach: material.density.reach,
+        grid_from_view: shadow.map_or(Mat4::IDENTITY, |shadow| shadow.grid_from_view),
+        grid_size: shadow.map_or(Vec3::ONE, |shadow| shadow.grid.size.as_vec3()),
+        cells_per_metre: shadow.map_or(1.0, |shadow| shadow.grid.cells_per_metre()),
+        shadow_density: settings.shadow.density,
+        ..SystemUniform::default()
+    }
 }
 
 /// Projects the diffuse ramp's response to all lights, as seen at `centre`, to spherical harmonics; zeros in other

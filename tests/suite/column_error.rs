@@ -4,7 +4,7 @@
 use std::convert::Infallible;
 use std::path::Path;
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3, vec3};
 use haze::builtin;
 use haze::image::Image;
 use haze::ramp::Ramp;
@@ -174,6 +174,39 @@ fn shadow_ramps_bring_clouds_close_to_the_path_trace() {
             assert!(shaded.error < 0.8 * plain.error, "{by}: {}, without shadow {}", shaded.error, plain.error);
             assert!(shaded.pixel_error < plain.pixel_error, "{by}: {} {}", shaded.pixel_error, plain.pixel_error);
         }
+    }
+}
+
+/// Mean error of the light that falls through clouds of a medium onto the ground, and its mean shadow: shares of full
+/// light, for suns from above and from the side.
+fn ground_errors(kind: &PuffKind, medium: &str) -> Vec<(f32, f32)> {
+    let neutral = builtin::find(builtin::RAMPS, "shadow_neutral").unwrap().ramp().unwrap();
+    let material = materials(kind, medium)[0].with_shadow(&neutral);
+    let places: Vec<_> = (0..48 * 48_u32)
+        .map(|index| vec3((index % 48) as f32 / 16.0 - 1.5, -1.1, (index / 48) as f32 / 16.0 - 1.5))
+        .collect();
+    let under = |(shape, seed)| {
+        let cloud = kind.cloud(shape, seed);
+        let suns = [Vec3::Y, vec3(0.5, 1.0, 0.3).normalize()];
+        suns.map(|sun| {
+            let drawn = cloud.drawn_transmittance(&places, sun, &material).unwrap();
+            let (mut error, mut shadow) = (0.0, 0.0);
+            for (place, drawn) in places.iter().zip(drawn) {
+                let truth = cloud.transmittance(*place, sun);
+                (error, shadow) = (error + (drawn.y - truth).abs(), shadow + 1.0 - truth);
+            }
+            (error / places.len() as f32, shadow / places.len() as f32)
+        })
+    };
+    CLOUDS.into_iter().flat_map(under).collect()
+}
+
+#[test]
+fn shadow_on_the_ground_is_close_to_that_of_all_densities() {
+    let (_, kind) = kind_of("dust", PathTrace { size: 48, samples: 4, seed: 1 });
+    for (error, shadow) in ground_errors(&kind, "dust") {
+        println!("{:.1} % of full light, mean shadow {:.1} %", 100.0 * error, 100.0 * shadow);
+        assert!(error < 0.05 && shadow > 0.05, "{error}, {shadow}");
     }
 }
 

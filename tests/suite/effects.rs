@@ -155,7 +155,9 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
 const PARTICLES: &str = "particles_##.csv";
 
 /// Fields whose alternatives give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 4] = [
+const SAME: [&str; 5] = [
+    // Shades the scene, which these pictures do not have.
+    "systems[0].settings.shadow.scene",
     // At scale 1 the reduced depth equals the host's.
     "systems[0].settings.accumulate.depth_source",
     // The layers that are skipped are invisible.
@@ -167,7 +169,9 @@ const SAME: [&str; 4] = [
 
 /// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
-const NOT_ALWAYS: [&str; 17] = [
+const NOT_ALWAYS: [&str; 18] = [
+    // As in `SAME`.
+    "systems[0].settings.shadow.scene",
     // The layers that are skipped are invisible.
     "systems[0].settings.accumulate.layers",
     // The light is hidden, or lights nothing.

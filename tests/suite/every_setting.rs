@@ -160,7 +160,9 @@ fn stages() -> Vec<TestScene> {
 }
 
 /// Values that give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 5] = [
+const SAME: [&str; 6] = [
+    // Shades the scene, which this test does not draw.
+    "shadow.scene",
     // Chooses one of two paths, which are compared elsewhere.
     "path auto",
     // The same image, computed differently; tiled.rs compares the two.

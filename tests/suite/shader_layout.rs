@@ -1,8 +1,8 @@
 //! Compares definitions that exist in both Rust and WGSL: struct layouts, constants, and the numbers of setting enums.
 
 use haze::formula::uniforms::{
-    EmitterUniform, LightUniform, MeasureUniform, ShadowMarchUniform, SplatUniform, SystemUniform, TilesUniform,
-    UniformField, ViewUniform,
+    EmitterUniform, LightUniform, MeasureUniform, SceneShadowUniform, ShadowMapUniform, ShadowMarchUniform,
+    ShadowVisibilityUniform, SplatUniform, SystemUniform, TilesUniform, UniformField, ViewUniform,
 };
 use haze::{Particle, formula, frame, settings, shader, view_setup};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -113,6 +113,11 @@ fn wgsl_structs_match_rust() {
     assert_layout(&composed("lib/emitter.wgsl"), "Emitter", EmitterUniform::FIELDS, size_of::<EmitterUniform>());
     assert_layout(&composed("measure.wgsl"), "Measure", MeasureUniform::FIELDS, size_of::<MeasureUniform>());
     assert_layout(&composed("density_splat.wgsl"), "Splat", SplatUniform::FIELDS, size_of::<SplatUniform>());
+    let scene = composed("lib/haze_transmittance.wgsl");
+    assert_layout(&scene, "SceneShadow", SceneShadowUniform::FIELDS, size_of::<SceneShadowUniform>());
+    let maps = composed("shadow_visibility.wgsl");
+    assert_layout(&maps, "ShadowMap", ShadowMapUniform::FIELDS, size_of::<ShadowMapUniform>());
+    assert_layout(&maps, "ShadowVisibility", ShadowVisibilityUniform::FIELDS, size_of::<ShadowVisibilityUniform>());
     let march = composed("shadow_march.wgsl");
     assert_layout(&march, "ShadowMarch", ShadowMarchUniform::FIELDS, size_of::<ShadowMarchUniform>());
 }
@@ -196,6 +201,9 @@ fn wgsl_constants_match_rust() {
     assert_eq!(constant(&accumulate, "NO_LIST"), f64::from(formula::tiles::NO_LIST));
     assert_eq!(constant(&accumulate, "HIDDEN_KEY"), f64::from(formula::tiles::HIDDEN_KEY));
     assert_eq!(constant(&accumulate, "OPAQUE"), f64::from(formula::tiles::OPAQUE));
+    let maps = composed("shadow_visibility.wgsl");
+    assert_eq!(constant(&maps, "MAX_SHADOW_LAYERS"), formula::shadow_map::MAX_SHADOW_LAYERS as f64);
+    assert_eq!(constant(&transfer, "DEPTH_SAMPLES"), f64::from(formula::depth_moments::DEPTH_SAMPLES));
     let march = composed("shadow_march.wgsl");
     assert_eq!(constant(&march, "SHADOWED_LIGHTS"), formula::shadow::SHADOWED_LIGHTS as f64);
     assert_eq!(constant(&march, "SHADOW_STEPS"), f64::from(formula::shadow::SHADOW_STEPS));

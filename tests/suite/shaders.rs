@@ -158,6 +158,7 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
             "measure.wgsl" => "sum_particles",
             "density_splat.wgsl" => "add_sprite",
             "shadow_march.wgsl" => "march_cells",
+            "shadow_visibility.wgsl" => "look_up_cells",
             "sort.wgsl" => "count_digits",
             "depth_sort.wgsl" => "depth_keys",
             "tile_project.wgsl" => "project",
@@ -272,7 +273,7 @@ fn byte_order_marks_and_crlf_line_endings_are_accepted() {
 #[test]
 fn folders_without_readable_shaders_are_rejected_with_a_reason() {
     let expected = "expected accumulate.wgsl, density_splat.wgsl, depth_downsample.wgsl, depth_resolve.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \
-                    forward.wgsl, light_target.wgsl, measure.wgsl, shadow_march.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
+                    forward.wgsl, light_target.wgsl, measure.wgsl, shadow_march.wgsl, shadow_visibility.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
                     tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl or a file of lib/ in it";
     let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
     let folder = ShaderFolder::new();

@@ -1,6 +1,7 @@
 //! Shadow of smoke on smoke: whole frames on the GPU and on the CPU, and what must not change.
 
-use glam::{UVec2, Vec3, Vec4, vec3};
+use glam::camera::rh;
+use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
 use haze::image::Image;
 use haze::settings::*;
 use haze::{Bounds, Light, LightKind, Particle};
@@ -9,7 +10,7 @@ use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
 use crate::resource_counter;
 use crate::test_host::Host;
-use crate::test_scene::{BACKDROP, TestScene};
+use crate::test_scene::{BACKDROP, DepthKind, TestScene, TestShadowMap};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -59,7 +60,7 @@ fn gpu_and_cpu_draw_the_same_shadow() {
         ("coarse", |s| s.settings.shadow.resolution = 4),
         ("dense", |s| s.settings.shadow.density = 16.0),
         ("own space", |s| {
-            s.world_from_particles = glam::Mat4::from_rotation_y(0.7) * glam::Mat4::from_scale(Vec3::splat(0.8));
+            s.world_from_particles = Mat4::from_rotation_y(0.7) * Mat4::from_scale(Vec3::splat(0.8));
         }),
         ("steps", |s| s.settings.ramp_filter = RampFilter::Nearest),
         ("many lights", |s| {
@@ -217,5 +218,192 @@ fn shadow_is_the_same_from_run_to_run_and_steady_frames_create_nothing() {
         scene.settings.shadow.strength = 0.0;
         (0..125).for_each(|_| host.draw(gpu(), &scene).unwrap());
         assert_eq!(host.renderer.memory_use().shadow, 0);
+    }
+}
+
+/// A scene whose first light, a sun from above, has a shadow map: half of the smoke is in the shadow of something above it.
+fn under_a_roof() -> TestScene {
+    let mut scene = shaded();
+    scene.lights = vec![Light { kind: LightKind::Directional, direction: Vec3::NEG_Y, ..Light::default() }];
+    scene.settings.shadow.by_depth = true;
+    let mut layer = Image::new(UVec2::new(64, 32), 1.0);
+    // In the map's upper left: a surface above the smoke.
+    layer.for_each(|at, depth| *depth = if at.x < 32 { 0.2 } else { 1.0 });
+    let view = rh::view::look_at_mat4(vec3(0.0, 10.0, -6.0), vec3(0.0, 0.0, -6.0), Vec3::NEG_Z);
+    let clip_from_world = rh::proj::directx::orthographic(-4.0, 4.0, -4.0, 4.0, 0.0, 20.0) * view;
+    let map = TestShadowMap { light: 0, layers: vec![layer], clip_from_world: vec![clip_from_world], reversed: false };
+    scene.shadow_maps.push(map);
+    scene
+}
+
+#[test]
+fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
+    if !is_tiled_available() {
+        return;
+    }
+    type Change = fn(&mut TestScene);
+    let changes: &[(&str, Change)] = &[
+        ("raster", |_| {}),
+        ("forward", |s| s.settings.path = RenderPath::Forward),
+        ("forward, spheres", |s| {
+            (s.settings.path, s.settings.technique) = (RenderPath::Forward, Technique::SphericalBillboard);
+        }),
+        ("tiled", |s| s.settings.path = RenderPath::Tiled),
+        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
+        ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
+        ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
+        ("weighted, tiled", |s| {
+            (s.settings.accumulate.order, s.settings.path) = (BlendOrder::Weighted, RenderPath::Tiled);
+        }),
+        ("lit per texel", |s| {
+            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+        }),
+        ("guided", |s| (s.settings.accumulate.scale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
+        ("reversed", |s| {
+            let map = &mut s.shadow_maps[0];
+            map.reversed = true;
+            map.layers[0].texels.iter_mut().for_each(|depth| *depth = 1.0 - *depth);
+            let flip = Mat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., -1., 0., 0., 0., 1., 1.]);
+            map.clip_from_world[0] = flip * map.clip_from_world[0];
+        }),
+        ("cascades", |s| {
+            // The first covers the right half of the smoke, and is dark there.
+            let map = &mut s.shadow_maps[0];
+            let near = Mat4::from_translation(vec3(-1.0, 0.0, 0.0)) * map.clip_from_world[0];
+            map.layers.insert(0, Image::new(UVec2::new(64, 32), 0.1));
+            map.clip_from_world.insert(0, near);
+        }),
+        ("a lamp inside the smoke", |s| {
+            s.lights.push(Light { position: vec3(0.3, 0.2, -6.0), intensity: 2.0, ..Light::default() });
+        }),
+    ];
+    for (name, change) in changes {
+        let mut scene = under_a_roof();
+        change(&mut scene);
+        let (seen, reference) = (drawn(&scene), scene.on_cpu());
+        let same = psnr(&seen, &reference);
+        let mut open = scene.clone();
+        open.shadow_maps.clear();
+        let effect = psnr(&drawn(&open), &seen);
+        println!("{name}: {same:.1} dB, without map {effect:.1} dB");
+        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+        assert!(effect < 45.0, "{name}: without map {effect:.1} dB");
+    }
+}
+
+#[test]
+fn smoke_under_a_roof_is_dark() {
+    if !is_tiled_available() {
+        return;
+    }
+    let mut scene = under_a_roof();
+    (scene.settings.soft_scatter.intensity, scene.wall_everywhere) = (0.0, false);
+    let light = |picture: &Image<Vec4>, left: bool| {
+        let half = |index: usize| ((index as u32 % SIZE.x) < SIZE.x / 2) == left;
+        let seen = picture.texels.iter().enumerate().filter(|(index, _)| half(*index));
+        seen.map(|(_, texel)| f64::from(texel.x)).sum::<f64>()
+    };
+    let roofed = drawn(&scene);
+    scene.shadow_maps.clear();
+    let open = drawn(&scene);
+    let [left, right] = [true, false].map(|left| light(&roofed, left) / light(&open, left));
+    // The backdrop, which shows through, is as bright in both.
+    assert!(left < 0.7 && right > 0.95, "{left}, {right}");
+}
+
+#[test]
+fn shadow_maps_that_do_not_fit_are_refused_by_name() {
+    if !is_tiled_available() {
+        return;
+    }
+    type Change = fn(&mut TestScene);
+    let changes: &[(&str, Change)] = &[
+        ("shadow_maps[0].projection.light: 3", |s| s.shadow_maps[0].light = 3),
+        ("shadow_maps[1].projection.light: 0 has a map already", |s| s.shadow_maps.push(s.shadow_maps[0].clone())),
+        ("shadow_maps[0].projection.clip_from_world: has 0 layers", |s| s.shadow_maps[0].clip_from_world.clear()),
+        ("shadow_maps[0].projection.clip_from_world", |s| s.shadow_maps[0].clip_from_world[0].x_axis.x = f32::NAN),
+    ];
+    for (expected, change) in changes {
+        let mut scene = under_a_roof();
+        change(&mut scene);
+        let refused =
+            [scene.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string(), scene.try_on_cpu().unwrap_err().to_string()];
+        for error in refused {
+            assert!(error.starts_with(expected), "{error}");
+        }
+    }
+    let mut scene = under_a_roof();
+    let matrix = scene.shadow_maps[0].clip_from_world[0];
+    scene.shadow_maps[0].clip_from_world.push(matrix);
+    let error = scene.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
+    assert!(error.starts_with("shadow_maps[0].depth: has 1 layers"), "{error}");
+}
+
+#[test]
+fn casting_shadow_first_draws_the_same_frame() {
+    for depth in [DepthKind::Buffer, DepthKind::Linear] {
+        let mut scene = if is_tiled_available() { under_a_roof() } else { shaded() };
+        scene.depth = depth;
+        let alone = drawn(&scene);
+        let mut host = Host::new(gpu(), &scene).unwrap();
+        host.casts_first = true;
+        for frame in 0..3 {
+            host.draw(gpu(), &scene).unwrap();
+            assert!(host.picture(gpu()).unwrap() == alone, "frame {frame}");
+        }
+        assert_eq!(host.renderer.shadowed_lights().count(), if is_tiled_available() { 1 } else { 0 });
+        // Commands that were dropped are recorded again.
+        let mut dropped = gpu().device.create_command_encoder(&Default::default());
+        host.prepare(&mut dropped, &scene, haze::Particles::Slice(&scene.particles)).unwrap();
+        drop(dropped);
+        host.casts_first = false;
+        host.draw(gpu(), &scene).unwrap();
+        assert!(host.picture(gpu()).unwrap() == alone);
+    }
+}
+
+#[test]
+fn steady_frames_with_shadow_maps_create_nothing() {
+    if !is_tiled_available() {
+        return;
+    }
+    let scene = under_a_roof();
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    host.casts_first = true;
+    (0..3).for_each(|_| host.draw(gpu(), &scene).unwrap());
+    assert_eq!(resource_counter::count(|| host.draw(gpu(), &scene).unwrap()), 0);
+    let cells = u64::from(scene.settings.shadow.resolution).pow(3);
+    let held = host.renderer.memory_use().shadow;
+    assert!((24 * cells..24 * cells + 2048).contains(&held), "{held}");
+}
+
+/// Smoke to the right of the view, before a sun that shines to the left.
+fn beside_hidden_smoke(path: RenderPath) -> TestScene {
+    let mut scene = shaded();
+    scene.settings.path = path;
+    scene.lights = vec![Light { kind: LightKind::Directional, direction: Vec3::NEG_X, ..Light::default() }];
+    let mut hidden = scene.particles.clone();
+    hidden.iter_mut().for_each(|particle| particle.position.x += 14.0);
+    scene.others.push((hidden, scene.settings));
+    scene
+}
+
+#[test]
+fn smoke_out_of_sight_casts_shadow() {
+    if !is_tiled_available() {
+        return;
+    }
+    for path in [RenderPath::Raster, RenderPath::Tiled, RenderPath::Forward] {
+        let mut scene = beside_hidden_smoke(path);
+        let (seen, reference) = (drawn(&scene), scene.on_cpu());
+        let same = psnr(&seen, &reference);
+        let mut host = Host::new(gpu(), &scene).unwrap();
+        (0..3).for_each(|_| host.draw(gpu(), &scene).unwrap());
+        assert_eq!(host.renderer.counts().systems, 1, "only one system is in sight");
+        assert_eq!(resource_counter::count(|| host.draw(gpu(), &scene).unwrap()), 0, "{}", path.name());
+        scene.others.clear();
+        let effect = psnr(&drawn(&scene), &seen);
+        println!("{}: {same:.1} dB, without {effect:.1} dB", path.name());
+        assert!(same >= MIN_PSNR && effect < 45.0, "{}: {same:.1} dB, without {effect:.1} dB", path.name());
     }
 }

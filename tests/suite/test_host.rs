@@ -6,12 +6,12 @@ use glam::{UVec2, Vec4};
 use haze::image::Image;
 use haze::{
     Context, Descriptor, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, Renderer, SceneDepth,
-    Timing, wgpu,
+    ShadowMap, Timing, wgpu,
 };
 use haze_demo::headless::Headless;
 
 pub use self::textures::convert_to_rgba16float;
-use self::textures::{depth_buffer, pad_to_target, target, target_with_view_format, upload};
+use self::textures::{depth_buffer, depth_layers, pad_to_target, target, target_with_view_format, upload};
 use crate::gpu::shared_context;
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
@@ -65,6 +65,9 @@ pub struct Host {
     /// Linear view depth passed to haze, metres.
     pub linear: wgpu::TextureView,
     attached_depth: wgpu::TextureView,
+    shadow_maps: Vec<wgpu::Texture>,
+    /// Records the shadow ahead of `prepare`.
+    pub casts_first: bool,
     /// Measures the host's pass; resolved at the end of each frame.
     pub timing: Option<Timing>,
 }
@@ -151,6 +154,8 @@ impl Host {
             depth: depth.create_view(&depth_aspect),
             linear: whole(&linear),
             attached_depth: whole(&attached_depth),
+            shadow_maps: scene.shadow_maps.iter().map(|map| depth_layers(gpu, &map.layers)).collect(),
+            casts_first: false,
             timing: None,
         })
     }
@@ -202,7 +207,14 @@ impl Host {
             DepthKind::Linear => SceneDepth::Linear(&self.linear),
             DepthKind::Both => SceneDepth::Both { buffer: &self.depth, linear: &self.linear },
         };
+        let shadow_maps: Vec<_> = self
+            .shadow_maps
+            .iter()
+            .zip(&scene.shadow_maps)
+            .map(|(depth, map)| ShadowMap { depth, first_layer: 0, projection: map.projection() })
+            .collect();
         let frame = FrameInput {
+            shadow_maps: &shadow_maps,
             lights: &scene.lights,
             systems: &systems,
             target_size: scene.host.target_size,
@@ -211,6 +223,9 @@ impl Host {
             debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
             ..FrameInput::new(scene.view, scene_depth)
         };
+        if self.casts_first {
+            self.renderer.cast_shadow(encoder, &frame)?;
+        }
         self.renderer.prepare(encoder, &frame)
     }
 

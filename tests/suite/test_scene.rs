@@ -11,7 +11,7 @@ use haze::noise::{pcg3d, unit};
 use haze::ramp::Ramp;
 use haze::settings::{DebugView, RenderPath, Settings};
 use haze::sprite::{Sprite, SpriteLayout};
-use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
+use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, ShadowProjection, View};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::sprite::six_way::six_way_layout;
 
@@ -25,6 +25,7 @@ pub struct TestScene {
     /// Viewing direction along z of view space: -1 or 1.
     pub view_direction_z: f32,
     pub lights: Vec<Light>,
+    pub shadow_maps: Vec<TestShadowMap>,
     pub particles: Vec<Particle>,
     /// Particles and settings of further systems.
     pub others: Vec<(Vec<Particle>, Settings)>,
@@ -49,6 +50,22 @@ pub struct TestScene {
     pub attach_depth: bool,
     /// Formats and layout of the host's pass and targets on the GPU.
     pub host: HostKind,
+}
+
+/// Shadow map of a light, in memory.
+#[derive(Clone)]
+pub struct TestShadowMap {
+    pub light: usize,
+    pub layers: Vec<Image<f32>>,
+    pub clip_from_world: Vec<Mat4>,
+    pub reversed: bool,
+}
+
+impl TestShadowMap {
+    pub fn projection(&self) -> ShadowProjection<'_> {
+        let Self { light, clip_from_world, reversed, .. } = self;
+        ShadowProjection { light: *light, clip_from_world, reversed: *reversed, bias: 0.0 }
+    }
 }
 
 /// Kinds of scene depth that a host can pass to the renderer.
@@ -167,6 +184,7 @@ impl TestScene {
                 },
                 Light { position: vec3(0.5, 0.3, -8.5), intensity: 3.0, ..Light::default() },
             ],
+            shadow_maps: Vec::new(),
             particles: (0..60).map(particle).collect(),
             others: Vec::new(),
             bounds: None,
@@ -241,7 +259,13 @@ impl TestScene {
             ..system(&self.particles, &self.settings)
         }];
         systems.extend(self.others.iter().map(|(particles, settings)| system(particles, settings)));
+        let shadow_maps: Vec<_> = self
+            .shadow_maps
+            .iter()
+            .map(|map| haze_reference::ShadowMap { layers: &map.layers, projection: map.projection() })
+            .collect();
         let frame = haze_reference::FrameInput {
+            shadow_maps: &shadow_maps,
             view: self.view,
             scene_depth: &self.ndc_depth(),
             lights: &self.lights,

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 
+use super::cpu_render::ShadowLayers;
 use super::shot::Shot;
 use super::texture_readback::TextureReadback;
 use haze::assets::image::Image;
@@ -135,7 +136,9 @@ impl ProbeInputs {
     pub fn probe(&self, pixels: &[UVec2]) -> Result<Vec<Probe>, Error> {
         let CapturedFrame { scene_depth, behind, systems: texels } = &self.captured;
         let systems = self.shot.reference_systems(&self.systems);
-        let frame = self.shot.reference_frame(scene_depth, &systems);
+        let maps = ShadowLayers::new(&self.shot.scene(), self.shot.shadow_views());
+        let shadow_maps = maps.maps();
+        let frame = self.shot.reference_frame(scene_depth, &systems, &shadow_maps);
         Ok(probe(&frame, texels, behind, pixels)?)
     }
 }

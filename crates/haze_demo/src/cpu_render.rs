@@ -3,11 +3,14 @@
 use glam::{Vec3, Vec4};
 
 use super::ray_caster;
+use super::scene::Scene;
+use super::shadow_views::{ShadowView, casters};
 use super::shot::Shot;
 use haze::assets::image::Image;
 use haze::error::Error;
 use haze::frame::Particle;
 use haze::settings::Settings;
+use haze_reference::PreparedFrame;
 
 impl Shot {
     /// Renders the shot on the CPU. Returns linear HDR.
@@ -16,14 +19,21 @@ impl Shot {
     /// [`Error::Field`] if the preset was changed to invalid values.
     pub fn render_on_cpu(&self) -> Result<Image<Vec4>, Error> {
         let view = self.preset.camera.view(self.size);
-        let (mut color, depth) = ray_caster::render(&self.scene(), &view);
-        if !self.shows_scene() {
-            color.texels.fill(Vec4::W);
-        }
+        let scene = self.scene();
+        let depth = ray_caster::render_depth(&scene, &view);
         let particles = self.systems();
         let systems = self.reference_systems(&particles);
-        let frame = self.reference_frame(&depth, &systems);
-        haze_reference::render(&frame, &mut color)?;
+        let maps = ShadowLayers::new(&scene, self.shadow_views());
+        let shadow_maps = maps.maps();
+        let frame = PreparedFrame::new(&self.reference_frame(&depth, &systems, &shadow_maps), self.size)?;
+        let through = |world, light: u32| {
+            frame.scene_shadow().map_or(Vec3::ONE, |shadow| shadow.haze_transmittance(world, light as usize))
+        };
+        let mut color = match self.shows_scene() {
+            true => ray_caster::render_color(&scene, &view, &depth, through),
+            false => Image::new(self.size, Vec4::W),
+        };
+        frame.render(&mut color);
         Ok(color)
     }
 
@@ -41,8 +51,10 @@ impl Shot {
         &'a self,
         scene_depth: &'a Image<f32>,
         systems: &'a [haze_reference::ParticleSystem<'a>],
+        shadow_maps: &'a [haze_reference::ShadowMap<'a>],
     ) -> haze_reference::FrameInput<'a> {
         haze_reference::FrameInput {
+            shadow_maps,
             lights: &self.preset.lights,
             systems,
             time: self.preset.time,
@@ -50,5 +62,26 @@ impl Shot {
             debug_view: self.debug_view,
             ..haze_reference::FrameInput::new(self.preset.camera.view(self.size), scene_depth)
         }
+    }
+}
+
+/// Shadow maps of a scene, in memory.
+pub(super) struct ShadowLayers(Vec<(ShadowView, Vec<Image<f32>>)>);
+
+impl ShadowLayers {
+    pub fn new(scene: &Scene, views: Vec<ShadowView>) -> Self {
+        let boxes: Vec<_> = casters(&scene.boxes).collect();
+        let drawn = |view: ShadowView| {
+            let layers = view.clip_from_world.iter().map(|matrix| view.layer(&boxes, matrix)).collect();
+            (view, layers)
+        };
+        Self(views.into_iter().map(drawn).collect())
+    }
+
+    pub fn maps(&self) -> Vec<haze_reference::ShadowMap<'_>> {
+        self.0
+            .iter()
+            .map(|(view, layers)| haze_reference::ShadowMap { layers, projection: view.projection() })
+            .collect()
     }
 }

@@ -18,6 +18,7 @@ mod ray_caster;
 mod scene;
 mod scene_renderer;
 mod shading;
+mod shadow_views;
 pub mod shot;
 mod texture_readback;
 pub mod tonemap_pass;

@@ -31,11 +31,12 @@ impl OffscreenContext {
         let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
         let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
         let flags = adapter.get_downlevel_capabilities().flags;
+        let haze = Context::new(device, queue, None);
         Self {
             copies_depth: flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES),
             device: device.clone(),
-            haze: Context::new(device, queue, None),
-            scene: Arc::new(SceneRenderer::new(device, queue, draws_linear)),
+            scene: Arc::new(SceneRenderer::new(device, queue, draws_linear, haze.scene_shadow_layout())),
+            haze,
             materials: Arc::default(),
             attaches_depth: draws_linear || read_only_depth_is_supported(device),
         }

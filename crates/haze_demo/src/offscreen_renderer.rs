@@ -9,12 +9,13 @@ use super::capture::Capture;
 pub use super::offscreen_context::OffscreenContext;
 use super::offscreen_context::UploadedMaterial;
 use super::scene_renderer::{COLOR_FORMAT, DEPTH_FORMAT, SceneTargets, default_view, texture};
+use super::shadow_views::ShadowView;
 use super::shot::{ParticleSource, Shot};
 use crate::headless::Headless;
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
-use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, View};
+use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, ShadowMap, View};
 use haze::preset::Environment;
 use haze::settings::DebugView;
 use haze::{Descriptor, MemoryUse, PathChoice, Renderer, SceneDepthKind, Timing, WarmUp};
@@ -26,6 +27,14 @@ pub struct OffscreenRenderer {
     renderer: Renderer,
     materials: Vec<Arc<UploadedMaterial>>,
     sized: Option<SizedTargets>,
+    shadow_maps: ShadowMaps,
+}
+
+/// Shadow maps of the scene, and what they were drawn of.
+#[derive(Debug, Default)]
+struct ShadowMaps {
+    environment: Option<Environment>,
+    maps: Vec<(ShadowView, wgpu::Texture)>,
 }
 
 /// GPU memory of an off-screen renderer, bytes.
@@ -61,6 +70,8 @@ struct SceneInputs {
     environment: Environment,
     lights: Vec<Light>,
     view: View,
+    /// Indices of the lights that smoke shades.
+    shadowed: Vec<usize>,
 }
 
 impl OffscreenRenderer {
@@ -76,7 +87,13 @@ impl OffscreenRenderer {
             ..Descriptor::default()
         };
         let renderer = Renderer::new(&context.haze, &descriptor)?;
-        Ok(Self { context: context.clone(), renderer, materials: Vec::new(), sized: None })
+        Ok(Self {
+            context: context.clone(),
+            renderer,
+            materials: Vec::new(),
+            sized: None,
+            shadow_maps: ShadowMaps::default(),
+        })
     }
 
     /// Returns haze's renderer.
@@ -131,11 +148,16 @@ impl OffscreenRenderer {
             }),
         };
         let view = shot.preset.camera.view(size);
-        let scene_inputs =
-            SceneInputs { environment: shot.preset.environment, lights: shot.preset.lights.clone(), view };
-        if sized.scene_inputs.as_ref() != Some(&scene_inputs) {
-            scene.record(encoder, &sized.targets, &shot.scene(), &view);
-            sized.scene_inputs = Some(scene_inputs);
+        let views = shot.shadow_views();
+        let held = &mut self.shadow_maps;
+        if held.environment != Some(shot.preset.environment) || !held.maps.iter().map(|(view, _)| view).eq(&views) {
+            let of_scene = shot.scene();
+            let draw = |view: ShadowView| {
+                let map = scene.shadow_map(encoder, &of_scene, &view);
+                (view, map)
+            };
+            held.maps = views.into_iter().map(draw).collect();
+            held.environment = Some(shot.preset.environment);
         }
         let sources = shot.sources();
         let systems: Vec<_> = (0..)
@@ -148,15 +170,35 @@ impl OffscreenRenderer {
                 ParticleSystem::new(key, particles, settings, &uploaded.material)
             })
             .collect();
-        let depth = &sized.targets.depth;
+        let (depth, linear) = (sized.targets.depth.clone(), sized.targets.linear.clone());
+        let scene_depth = match &linear {
+            Some(linear) => SceneDepth::Both { buffer: &depth, linear },
+            None => SceneDepth::Buffer(&depth),
+        };
+        let shadow_maps: Vec<_> = self
+            .shadow_maps
+            .maps
+            .iter()
+            .map(|(view, depth)| ShadowMap { depth, first_layer: 0, projection: view.projection() })
+            .collect();
         let frame = FrameInput {
+            shadow_maps: &shadow_maps,
             lights: &shot.preset.lights,
             systems: &systems,
             time: shot.preset.time,
             up: Vec3::Y,
             debug_views: stages,
-            ..FrameInput::new(view, sized.scene_depth())
+            ..FrameInput::new(view, scene_depth)
         };
+        self.renderer.cast_shadow(encoder, &frame)?;
+        let (environment, lights) = (shot.preset.environment, shot.preset.lights.clone());
+        let scene_inputs =
+            SceneInputs { environment, lights, view, shadowed: self.renderer.shadowed_lights().collect() };
+        if sized.scene_inputs.as_ref() != Some(&scene_inputs) {
+            scene.record(encoder, &mut sized.targets, &shot.scene(), &view, &scene_inputs.shadowed);
+            sized.scene_inputs = Some(scene_inputs);
+        }
+        scene.shade(encoder, &sized.targets, self.renderer.scene_shadow());
         self.renderer.prepare(encoder, &frame)?;
         for &stage in stages {
             let picture = sized.pictures[stage as usize]
@@ -177,7 +219,7 @@ impl OffscreenRenderer {
                     ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
                 })],
                 depth_stencil_attachment: attaches_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
-                    view: depth,
+                    view: &depth,
                     depth_ops: None,
                     stencil_ops: None,
                 }),
@@ -192,6 +234,7 @@ impl OffscreenRenderer {
     /// submitted.
     pub fn invalidate_scene(&mut self) {
         self.sized.iter_mut().for_each(|sized| sized.scene_inputs = None);
+        self.shadow_maps = ShadowMaps::default();
     }
 
     /// Compiles the pipelines that a shot needs.
@@ -268,14 +311,6 @@ impl OffscreenRenderer {
 }
 
 impl SizedTargets {
-    fn scene_depth(&self) -> SceneDepth<'_> {
-        let buffer = &self.targets.depth;
-        match &self.targets.linear {
-            Some(linear) => SceneDepth::Both { buffer, linear },
-            None => SceneDepth::Buffer(buffer),
-        }
-    }
-
     fn size(&self) -> UVec2 {
         UVec2::new(self.targets.color.width(), self.targets.color.height())
     }

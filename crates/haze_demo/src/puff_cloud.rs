@@ -17,7 +17,7 @@ use haze_author::path_trace::{DensityVolume, Medium, PathTrace};
 use haze_author::ramp::response::{Response, ShadedLight};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::six_way_layout;
-use haze_reference::{FrameInput, ParticleSystem};
+use haze_reference::{FrameInput, ParticleSystem, PreparedFrame};
 
 /// Number of lights in the ring around a cloud.
 pub const LIGHTS: usize = 8;
@@ -182,6 +182,26 @@ impl PuffMaterial {
 }
 
 impl PuffCloud<'_> {
+    /// Density at a place: extinction per metre, in units of the medium's.
+    fn density(&self, place: Vec3) -> f32 {
+        let of_puff = |puff: &Particle| {
+            let local = (place - puff.position) / puff.radius;
+            let is_inside = local.abs().max_element() < 1.0;
+            // Divided by the radius, so that the optical depth through a puff does not depend on its size.
+            if is_inside { self.kind.puff(puff.frame as u32).density(local) / puff.radius } else { 0.0 }
+        };
+        self.particles.iter().map(of_puff).sum()
+    }
+
+    /// Share of a light that passes straight through the cloud to a place, marched through all densities.
+    pub fn transmittance(&self, place: Vec3, to_light: Vec3) -> f32 {
+        // The cloud is in a cube with sides of 2 m.
+        const STEP: f32 = 0.01;
+        let steps = 0..(6.0 / STEP) as u32;
+        let depth: f32 = steps.map(|step| self.density(place + to_light * ((step as f32 + 0.5) * STEP))).sum();
+        (-depth * STEP * self.kind.medium.density).exp()
+    }
+
     /// Path trace of the summed densities of all puffs.
     pub fn truth(&self, lights: &[Vec3]) -> LightImages {
         let PuffKind { medium, path_trace, .. } = self.kind;
@@ -189,14 +209,7 @@ impl PuffCloud<'_> {
         let mut all = DensityVolume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
         for index in 0..all.densities.len() as u32 {
             let voxel = UVec3::new(index % side, index / side % side, index / (side * side));
-            let place = all.voxel_centre(voxel);
-            let density = |puff: &Particle| {
-                let local = (place - puff.position) / puff.radius;
-                let is_inside = local.abs().max_element() < 1.0;
-                // Divided by the radius, so that the optical depth through a puff does not depend on its size.
-                if is_inside { self.kind.puff(puff.frame as u32).density(local) / puff.radius } else { 0.0 }
-            };
-            all.densities[index as usize] = self.particles.iter().map(density).sum();
+            all.densities[index as usize] = self.density(all.voxel_centre(voxel));
         }
         let Ok(traced) = path_trace.run(&all, medium, lights, |_| Ok::<_, std::convert::Infallible>(()));
         traced.light
@@ -208,23 +221,50 @@ impl PuffCloud<'_> {
     /// If a setting of the material is not valid.
     pub fn drawn(&self, lights: &[Vec3], material: &PuffMaterial) -> Result<LightImages, Error> {
         let size = UVec2::splat(self.kind.path_trace.size);
-        let view = Mat4::from_translation(vec3(0.0, 0.0, -3.0));
-        let view = View::new(view, orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), size);
-        let systems = [ParticleSystem::new(&self.particles, &material.settings, &material.assets)];
         let of_light = |to_light: &Vec3| {
-            let light = Light { kind: LightKind::Directional, direction: -*to_light, ..Light::default() };
             let mut picture = Image::new(size, Vec4::ZERO);
-            let scene_depth = Image::new(size, 1.0);
-            let frame = FrameInput {
-                lights: &[light],
-                systems: &systems,
-                debug_view: DebugView::Final,
-                ..FrameInput::new(view, &scene_depth)
-            };
-            haze_reference::render(&frame, &mut picture)?;
+            self.prepared(*to_light, material, |frame| frame.render(&mut picture))?;
             Ok(Image { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() })
         };
         lights.iter().map(of_light).collect()
+    }
+
+    /// Shares of a light that fall through the cloud onto places of a scene, by the CPU renderer.
+    ///
+    /// # Errors
+    /// If a setting of the material is not valid.
+    pub fn drawn_transmittance(
+        &self,
+        places: &[Vec3],
+        to_light: Vec3,
+        material: &PuffMaterial,
+    ) -> Result<Vec<Vec3>, Error> {
+        self.prepared(to_light, material, |frame| {
+            let through = |place| frame.scene_shadow().map_or(Vec3::ONE, |shadow| shadow.haze_transmittance(place, 0));
+            places.iter().map(|place| through(*place)).collect()
+        })
+    }
+
+    /// Calls `f` with the cloud, prepared by the CPU renderer under one light.
+    fn prepared<T>(
+        &self,
+        to_light: Vec3,
+        material: &PuffMaterial,
+        f: impl FnOnce(&PreparedFrame<'_>) -> T,
+    ) -> Result<T, Error> {
+        let size = UVec2::splat(self.kind.path_trace.size);
+        let view = Mat4::from_translation(vec3(0.0, 0.0, -3.0));
+        let view = View::new(view, orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), size);
+        let systems = [ParticleSystem::new(&self.particles, &material.settings, &material.assets)];
+        let light = Light { kind: LightKind::Directional, direction: -to_light, ..Light::default() };
+        let scene_depth = Image::new(size, 1.0);
+        let frame = FrameInput {
+            lights: &[light],
+            systems: &systems,
+            debug_view: DebugView::Final,
+            ..FrameInput::new(view, &scene_depth)
+        };
+        Ok(f(&PreparedFrame::new(&frame, size)?))
     }
 
     /// Equations of a shadow ramp: what it multiplies, where it is looked up, and the path trace.

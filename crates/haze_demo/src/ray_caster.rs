@@ -7,28 +7,39 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::boxes::{SceneBox, Surface, box_interval};
 use super::camera_rays::CameraRays;
 use super::occluders::{BoxMask, indices};
-use super::scene::Scene;
-use super::shading::albedo;
+use super::scene::{Scene, coefficients};
+use super::shading::{Lit, albedo};
 use haze::assets::image::Image;
-use haze::formula::depth::DepthConvention;
+use haze::formula::depth::{DepthConvention, SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
 use haze::frame::View;
 
-/// Renders linear color with four samples per pixel, and depth 0..1 at pixel centres.
-pub(crate) fn render(scene: &Scene, view: &View) -> (Image<Vec4>, Image<f32>) {
-    let caster = RayCaster {
-        scene,
-        size: view.size.as_vec2(),
-        clip_from_world: view.clip_from_view * view.view_from_world,
-        rays: CameraRays::new(view),
-        visible_depth: DepthConvention::from_clip_from_view(&view.clip_from_view)
-            .map_or(0.0..=f32::INFINITY, |depth| depth.near..=depth.far),
-        tiles: boxes_by_tile(&scene.boxes, &(view.clip_from_view * view.view_from_world), view.size),
-    };
-    let mut color = Image::new(view.size, Vec4::ZERO);
-    color.for_each(|at, texel| *texel = caster.color(at).extend(1.0));
+/// Renders depth 0..1 at pixel centres.
+pub(crate) fn render_depth(scene: &Scene, view: &View) -> Image<f32> {
+    let caster = RayCaster::new(scene, view);
     let mut depth = Image::new(view.size, 1.0);
     depth.for_each(|at, texel| *texel = caster.depth(at));
-    (color, depth)
+    depth
+}
+
+/// Renders linear color with four samples per pixel. `depth`: that of [`render_depth`]. `through`: share of a light, by its
+/// index, that reaches a point of the world through the smoke.
+pub(crate) fn render_color(
+    scene: &Scene,
+    view: &View,
+    depth: &Image<f32>,
+    through: impl Fn(Vec3, u32) -> Vec3 + Sync,
+) -> Image<Vec4> {
+    let caster = RayCaster::new(scene, view);
+    let coefficients = coefficients(view);
+    let mut color = Image::new(view.size, Vec4::ZERO);
+    color.for_each(|at, texel| {
+        let view_depth = view_depth_from_ndc_depth(depth.load(at.as_ivec2()), coefficients);
+        let world = caster.rays.eye + caster.rays.at_unit_depth((at.as_vec2() + 0.5) / caster.size) * view_depth;
+        let is_sky = view_depth >= SKY_VIEW_DEPTH;
+        let through = |light| if is_sky { Vec3::ONE } else { through(world, light) };
+        *texel = caster.color(at, &through).extend(1.0);
+    });
+    color
 }
 
 struct RayCaster<'a> {
@@ -88,7 +99,20 @@ impl Hit<'_> {
     }
 }
 
-impl RayCaster<'_> {
+impl<'a> RayCaster<'a> {
+    fn new(scene: &'a Scene, view: &View) -> Self {
+        let clip_from_world = view.clip_from_view * view.view_from_world;
+        Self {
+            scene,
+            size: view.size.as_vec2(),
+            clip_from_world,
+            rays: CameraRays::new(view),
+            visible_depth: DepthConvention::from_clip_from_view(&view.clip_from_view)
+                .map_or(0.0..=f32::INFINITY, |depth| depth.near..=depth.far),
+            tiles: boxes_by_tile(&scene.boxes, &clip_from_world, view.size),
+        }
+    }
+
     fn direction(&self, pixel: Vec2) -> Vec3 {
         self.rays.at_unit_depth(pixel / self.size).normalize()
     }
@@ -130,8 +154,8 @@ impl RayCaster<'_> {
     }
 
     /// Averages four samples, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
-    /// sample if they lie on different faces, otherwise once at the pixel's centre.
-    fn color(&self, at: UVec2) -> Vec3 {
+    /// sample if they lie on different faces, otherwise once at the pixel's centre. `through` as in [`Scene::irradiance`].
+    fn color(&self, at: UVec2, through: &impl Fn(u32) -> Vec3) -> Vec3 {
         const OFFSETS: [Vec2; 4] =
             [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
         let directions = OFFSETS.map(|offset| self.direction(at.as_vec2() + offset));
@@ -143,14 +167,14 @@ impl RayCaster<'_> {
         });
         let centre = self.direction(at.as_vec2() + 0.5);
         let pixel_angle = (self.direction(at.as_vec2() + Vec2::new(0.5, 1.5)) - centre).length();
-        let shared_light = is_one_face.then(|| self.light(&hits[0], centre, pixel_angle));
+        let shared_light = is_one_face.then(|| self.light(&hits[0], centre, pixel_angle, through));
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
         for (hit, direction) in hits.iter().zip(directions) {
             let reflectance =
                 hit.as_ref().map_or(Vec3::ONE, |hit| albedo(hit.surface, hit.local, hit.local_normal, hit.world));
-            let color = reflectance * shared_light.unwrap_or_else(|| self.light(hit, direction, pixel_angle));
-            let weight = 1.0 / (1.0 + color.max_element());
-            sum += color * weight;
+            let lit = shared_light.unwrap_or_else(|| self.light(hit, direction, pixel_angle, through));
+            let weight = 1.0 / (1.0 + (reflectance * lit.full).max_element());
+            sum += reflectance * lit.shaded * weight;
             weights += weight;
         }
         sum / weights
@@ -158,16 +182,18 @@ impl RayCaster<'_> {
 
     /// Returns the light at the point where the ray meets the plane of the face that was hit; the sky's radiance
     /// without a hit.
-    fn light(&self, hit: &Option<Hit<'_>>, direction: Vec3, pixel_angle: f32) -> Vec3 {
-        let Some(Hit { surface: b, local_normal: normal, .. }) = hit else { return self.scene.sky(direction) };
+    fn light(&self, hit: &Option<Hit<'_>>, direction: Vec3, pixel_angle: f32, through: &impl Fn(u32) -> Vec3) -> Lit {
+        let Some(Hit { surface: b, local_normal: normal, .. }) = hit else {
+            return Lit::even(self.scene.sky(direction));
+        };
         if b.surface == Surface::Glow as u32 {
-            return Vec3::ONE;
+            return Lit::even(Vec3::ONE);
         }
         let origin = b.to_local(self.rays.eye - b.centre);
         let distance = (normal.abs().dot(b.half_size) - normal.dot(origin)) / normal.dot(b.to_local(direction));
         let normal = b.to_world(*normal);
         let pixel = pixel_angle * distance / (-direction.dot(normal)).max(1.0e-3);
-        self.scene.irradiance(self.rays.eye + direction * distance, normal, pixel)
+        self.scene.irradiance(self.rays.eye + direction * distance, normal, pixel, through)
     }
 
     fn depth(&self, at: UVec2) -> f32 {

@@ -1,11 +1,12 @@
 //! Scene data: boxes, sky, lights and occluders.
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec3, Vec4};
 
 use super::boxes::{MAX_BOXES, SceneBox};
 use super::camera_rays::CameraRays;
 use super::layout;
 use super::occluders::Occluders;
+use haze::formula::depth::{DepthConvention, depth_coefficients};
 use haze::formula::uniforms::LightUniform;
 use haze::frame::{Light, View};
 use haze::preset::Environment;
@@ -29,6 +30,8 @@ pub(crate) struct SceneUniform {
     pub padding3: f32,
     pub ray_up: Vec3,
     pub padding4: f32,
+    pub depth_coefficients: Vec4,
+    pub apart: [u32; 4],
 }
 
 /// A scene prepared for drawing on the GPU or the CPU.
@@ -49,8 +52,10 @@ impl Scene {
         Self { environment: *environment, occluders: Occluders::new(&boxes, &lights), boxes, lights }
     }
 
-    pub fn uniform(&self, view: &View) -> SceneUniform {
+    /// `apart`: indices of the lights whose light is kept apart.
+    pub fn uniform(&self, view: &View, apart: &[usize]) -> SceneUniform {
         let rays = CameraRays::new(view);
+        let index = |slot: usize| apart.get(slot).map_or(u32::MAX, |&index| index as u32);
         SceneUniform {
             clip_from_world: view.clip_from_view * view.view_from_world,
             eye: rays.eye,
@@ -67,6 +72,13 @@ impl Scene {
             padding3: 0.0,
             ray_up: rays.up,
             padding4: 0.0,
+            depth_coefficients: coefficients(view),
+            apart: [index(0), index(1), index(2), u32::MAX],
         }
     }
+}
+
+/// Coefficients of a view's depth buffer. Those of a projection that has none make every pixel sky.
+pub(crate) fn coefficients(view: &View) -> Vec4 {
+    DepthConvention::from_clip_from_view(&view.clip_from_view).map_or(Vec4::X, |depth| depth_coefficients(&depth))
 }

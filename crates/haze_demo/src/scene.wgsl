@@ -1,6 +1,8 @@
 // demo scene
 // What    Draws boxes with procedural materials: paint (reflectance and face, 2x2 samples per pixel), depth, then light.
-//         scene_materials.wgsl is composed before this file.
+//         scene_materials.wgsl is composed before this file, and the shadow of the smoke after it.
+//         With shadow of smoke, the light of each light with shadow is kept apart, and a last pass adds what comes through
+//         the smoke: only this pass is drawn while only the smoke moves.
 // Reads   scene, boxes and lights (uniforms), occluder masks; the light pass also reads paint.
 // Writes  paint, depth buffer and linear view depth, scene color (linear HDR).
 // Blend   none.
@@ -8,6 +10,7 @@
 // Space   world space, metres, y up. shading.rs implements the same functions on the CPU.
 
 #import "lib/lighting.wgsl"
+#import "lib/depth.wgsl"
 
 struct Scene {
     clip_from_world: mat4x4f,
@@ -26,6 +29,10 @@ struct Scene {
     padding3: f32,
     ray_up: vec3f,
     padding4: f32,
+    // Of the host's depth buffer, as in lib/depth.wgsl.
+    depth_coefficients: vec4f,
+    // Indices of the lights whose light is kept apart; 4294967295 for none.
+    apart: vec4u,
 }
 
 @group(0) @binding(0) var<uniform> scene: Scene;
@@ -130,10 +137,24 @@ fn sky(direction: vec3f) -> vec3f {
     return mix(scene.horizon, scene.zenith, 1.0 - pow(1.0 - up, 3.0));
 }
 
+// Light, with that of up to three lights apart.
+struct Lit {
+    rest: vec3f,
+    apart: array<vec3f, 3>,
+}
+
+fn lit_by(light: vec3f) -> Lit {
+    return Lit(light, array<vec3f, 3>());
+}
+
+fn total(lit: Lit) -> vec3f {
+    return lit.rest + lit.apart[0] + lit.apart[1] + lit.apart[2];
+}
+
 // Returns the light at a point of a box. `pixel` is the width of a pixel there, metres.
-fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
+fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> Lit {
     let ambient = mix(scene.ground, mix(scene.horizon, scene.zenith, 0.5), normal.y * 0.5 + 0.5);
-    var light = ambient * ambient_visibility(world, normal);
+    var lit = lit_by(ambient * ambient_visibility(world, normal));
     let origin = world + normal * 2.0e-3;
     for (var i = 0u; i < scene.light_count; i++) {
         let sample = sample_light(lights[i], world);
@@ -150,9 +171,14 @@ fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
         // is active.
         let boxes = select(vec4u(0u), boxes_at(i + 1u, world), is_lit);
         let visible = light_visibility(boxes, origin, sample.direction, distance, spread, min(pixel, WIDEST_PIXEL));
-        light += lights[i].color * (max(facing, 0.0) * sample.attenuation * visible);
+        let light = lights[i].color * (max(facing, 0.0) * sample.attenuation * visible);
+        let is_apart = scene.apart == vec4u(i);
+        lit.rest += select(light, vec3f(0.0), any(is_apart));
+        lit.apart[0] += select(vec3f(0.0), light, is_apart.x);
+        lit.apart[1] += select(vec3f(0.0), light, is_apart.y);
+        lit.apart[2] += select(vec3f(0.0), light, is_apart.z);
     }
-    return light;
+    return lit;
 }
 
 // A face's normal is along axis face / 2, negative if face is even.
@@ -235,25 +261,24 @@ fn point_on_face(b: Box, normal: vec3f, direction: vec3f) -> vec3f {
 
 // Averages four samples per pixel, weighted so that a single bright sample does not dominate an edge (Karis, "Tone
 // mapping", 2013). Light is evaluated per sample if they lie on different faces, otherwise once at the pixel's centre.
-@fragment
-fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let first = vec2i(position.xy) * 2;
+fn light_at(position: vec2f) -> Lit {
+    let first = vec2i(position) * 2;
     var paints = array<vec4f, 4>();
     for (var i = 0; i < 4; i++) {
         paints[i] = textureLoad(paint, first + vec2i(i & 1, i >> 1u), 0);
     }
-    let pixel_angle = length(ray_direction(position.xy + vec2f(0.0, 1.0)) - ray_direction(position.xy));
+    let pixel_angle = length(ray_direction(position + vec2f(0.0, 1.0)) - ray_direction(position));
     let is_one_face = paints[0].a == paints[1].a && paints[0].a == paints[2].a && paints[0].a == paints[3].a;
-    var lit = array<vec3f, 4>();
+    var lit = array<Lit, 4>();
     for (var i = 0; i < select(4, 1, is_one_face); i++) {
         let offset = vec2f(vec2i(i & 1, i >> 1u)) * 0.5 - 0.25;
-        let direction = ray_direction(position.xy + select(offset, vec2f(0.0), is_one_face));
+        let direction = ray_direction(position + select(offset, vec2f(0.0), is_one_face));
         let face = u32(max(paints[i].a, 0.0));
         let b = boxes[face / 6u];
         let normal = face_normal(face % 6u);
-        lit[i] = vec3f(1.0);
+        lit[i] = lit_by(vec3f(1.0));
         if paints[i].a < 0.0 {
-            lit[i] = sky(direction);
+            lit[i] = lit_by(sky(direction));
         } else if b.surface != SURFACE_GLOW {
             let point = point_on_face(b, normal, direction);
             let world_normal = to_world(b, normal);
@@ -261,14 +286,72 @@ fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
             lit[i] = irradiance(point, world_normal, pixel);
         }
     }
-    var sum = vec3f(0.0);
+    var sum: Lit;
     var weights = 0.0;
     for (var i = 0; i < 4; i++) {
         let reflectance = select(paints[i].rgb, vec3f(1.0), paints[i].a < 0.0);
-        let color = reflectance * lit[select(i, 0, is_one_face)];
+        let light = lit[select(i, 0, is_one_face)];
+        let color = reflectance * total(light);
         let weight = 1.0 / (1.0 + max(color.r, max(color.g, color.b)));
-        sum += color * weight;
+        sum.rest += reflectance * light.rest * weight;
+        for (var slot = 0; slot < 3; slot++) {
+            sum.apart[slot] += reflectance * light.apart[slot] * weight;
+        }
         weights += weight;
     }
-    return vec4f(sum / weights, 1.0);
+    sum.rest /= weights;
+    for (var slot = 0; slot < 3; slot++) {
+        sum.apart[slot] /= weights;
+    }
+    return sum;
+}
+
+@fragment
+fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    return vec4f(total(light_at(position.xy)), 1.0);
+}
+
+struct LightParts {
+    @location(0) rest: vec4f,
+    @location(1) first: vec4f,
+    @location(2) second: vec4f,
+    @location(3) third: vec4f,
+}
+
+@fragment
+fn light_parts_fragment(@builtin(position) position: vec4f) -> LightParts {
+    let lit = light_at(position.xy);
+    return LightParts(
+        vec4f(lit.rest, 1.0),
+        vec4f(lit.apart[0], 1.0),
+        vec4f(lit.apart[1], 1.0),
+        vec4f(lit.apart[2], 1.0),
+    );
+}
+
+@group(1) @binding(1) var rest: texture_2d<f32>;
+@group(1) @binding(2) var first: texture_2d<f32>;
+@group(1) @binding(3) var second: texture_2d<f32>;
+@group(1) @binding(4) var third: texture_2d<f32>;
+@group(1) @binding(5) var depth: texture_2d<f32>;
+
+// Adds the light that comes through the smoke.
+@fragment
+fn shade_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let at = vec2i(position.xy);
+    var color = textureLoad(rest, at, 0).rgb;
+    let view_depth = view_depth_from_ndc_depth(textureLoad(depth, at, 0).r, scene.depth_coefficients);
+    let uv = position.xy / vec2f(textureDimensions(rest));
+    let ray = scene.ray_forward + scene.ray_right * (uv.x * 2.0 - 1.0) + scene.ray_up * (1.0 - uv.y * 2.0);
+    let world = scene.eye + ray * view_depth;
+    var through = array<vec3f, 3>(vec3f(1.0), vec3f(1.0), vec3f(1.0));
+    if view_depth < SKY_VIEW_DEPTH {
+        for (var slot = 0; slot < 3; slot++) {
+            through[slot] = haze_transmittance(world, scene.apart[slot]);
+        }
+    }
+    color += textureLoad(first, at, 0).rgb * through[0];
+    color += textureLoad(second, at, 0).rgb * through[1];
+    color += textureLoad(third, at, 0).rgb * through[2];
+    return vec4f(color, 1.0);
 }

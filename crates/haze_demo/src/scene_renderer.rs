@@ -1,15 +1,19 @@
 //! GPU renderer of the demo scene. Three passes: paint (reflectance at 2x2 samples per pixel), depth (depth buffer and
-//! linear view depth at pixel centres), and light.
+//! linear view depth at pixel centres), and light. With shadow of smoke, light keeps that of up to three lights apart, and
+//! a fourth pass, shade, adds what of it comes through the smoke.
 
+use bytemuck::Zeroable as _;
 use glam::UVec2;
 
 use super::boxes::{MAX_BOXES, SceneBox};
 use super::occluders::Occluders;
 use super::scene::{Scene, SceneUniform};
+use super::shadow_views::{ShadowView, casters};
 use haze::formula::depth::SKY_VIEW_DEPTH;
 use haze::formula::uniforms::LightUniform;
 use haze::frame::{MAX_LIGHTS, View};
 use haze::shader;
+use wgpu::util::DeviceExt as _;
 
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -28,8 +32,15 @@ pub(crate) struct SceneRenderer {
     paint: wgpu::RenderPipeline,
     /// Writes the depth buffer, and linear depth if `R32Float` is renderable.
     depth: wgpu::RenderPipeline,
+    parts_layout: wgpu::BindGroupLayout,
     /// Lights the paint.
     light: wgpu::RenderPipeline,
+    /// Lights the paint, with up to three lights apart.
+    light_parts: wgpu::RenderPipeline,
+    /// Adds up the parts.
+    shade: wgpu::RenderPipeline,
+    /// Writes depth alone, as a light sees it.
+    shadow: wgpu::RenderPipeline,
     pub draws_linear: bool,
 }
 
@@ -44,22 +55,40 @@ pub(crate) struct SceneTargets {
     paint: wgpu::TextureView,
     paint_depth: wgpu::TextureView,
     paint_group: wgpu::BindGroup,
+    /// With shadow of smoke: light of all other lights, and of those with shadow.
+    parts: Option<LightParts>,
+    /// Of the scene that was recorded last.
+    scene_group: Option<wgpu::BindGroup>,
     /// Uniform buffers of scene, boxes and lights.
     buffers: [wgpu::Buffer; 3],
 }
 
+#[derive(Debug)]
+struct LightParts {
+    views: [wgpu::TextureView; 4],
+    group: wgpu::BindGroup,
+}
+
 impl SceneTargets {
     pub fn textures(&self) -> impl Iterator<Item = &wgpu::Texture> {
-        let views = [&self.depth, &self.paint, &self.paint_depth].into_iter().chain(&self.linear);
+        let parts = self.parts.iter().flat_map(|parts| &parts.views);
+        let views = [&self.depth, &self.paint, &self.paint_depth].into_iter().chain(&self.linear).chain(parts);
         std::iter::once(&self.color).chain(views.map(wgpu::TextureView::texture))
     }
 }
 
 impl SceneRenderer {
     /// Compiles the pipelines. `draws_linear`: the adapter can render to `R32Float`.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, draws_linear: bool) -> Self {
+    /// `shadow_layout`: that of the smoke's shadow.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        draws_linear: bool,
+        shadow_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
         let source = shader::compose(concat!(include_str!("scene_materials.wgsl"), include_str!("scene.wgsl")))
             .unwrap_or_default();
+        let source = source + &shader::scene_shadow_wgsl(2);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("demo scene"),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -86,19 +115,25 @@ impl SceneRenderer {
         let masks = texture(wgpu::TextureSampleType::Uint);
         let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform), entry(3, masks)]);
         let paint_layout = layout(&[entry(0, texture(wgpu::TextureSampleType::Float { filterable: false }))]);
-        let pipeline =
-            |vertex, fragment, groups: &[_], depth| scene_pipeline(&module, device, groups, vertex, fragment, depth);
-        let linear = draws_linear.then_some(("linear_fragment", LINEAR_FORMAT));
+        let unfilterable = texture(wgpu::TextureSampleType::Float { filterable: false });
+        let parts_layout = layout(&[1, 2, 3, 4, 5].map(|binding| entry(binding, unfilterable)));
+        let pipeline = |vertex, fragment, groups: &[_], depth| {
+            let fragment: Option<(&str, &[_])> = fragment;
+            scene_pipeline(&module, device, groups, vertex, fragment, depth)
+        };
+        let color = [COLOR_FORMAT; 4];
+        let linear = draws_linear.then_some(("linear_fragment", &[LINEAR_FORMAT][..]));
         let scene_group = [Some(&scene_layout)];
+        let paint_groups = [Some(&scene_layout), Some(&paint_layout)];
+        let shade_groups = [Some(&scene_layout), Some(&parts_layout), Some(shadow_layout)];
         Self {
-            paint: pipeline("box_vertex", Some(("paint_fragment", COLOR_FORMAT)), &scene_group, true),
+            paint: pipeline("box_vertex", Some(("paint_fragment", &color[..1])), &scene_group, true),
             depth: pipeline("box_vertex", linear, &scene_group, true),
-            light: pipeline(
-                "fullscreen_vertex",
-                Some(("light_fragment", COLOR_FORMAT)),
-                &[Some(&scene_layout), Some(&paint_layout)],
-                false,
-            ),
+            light: pipeline("fullscreen_vertex", Some(("light_fragment", &color[..1])), &paint_groups, false),
+            light_parts: pipeline("fullscreen_vertex", Some(("light_parts_fragment", &color)), &paint_groups, false),
+            shade: pipeline("fullscreen_vertex", Some(("shade_fragment", &color[..1])), &shade_groups, false),
+            shadow: pipeline("box_vertex", None, &scene_group, true),
+            parts_layout,
             scene_layout,
             paint_layout,
             draws_linear,
@@ -132,14 +167,24 @@ impl SceneRenderer {
                 entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&paint) }],
             }),
             paint,
+            parts: None,
+            scene_group: None,
             buffers: [size_of::<SceneUniform>(), boxes, lights].map(buffer),
         }
     }
 
-    /// Records all passes of a scene. At most once per targets and submission, since the uniforms are written by the
-    /// queue.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &SceneTargets, scene: &Scene, view: &View) {
-        let uniform = scene.uniform(view);
+    /// Records all passes of a scene but shade. At most once per targets and submission, since the uniforms are written by
+    /// the queue. `apart`: indices of at most three lights that smoke shades; with any, [`shade`](Self::shade) completes
+    /// the scene.
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &mut SceneTargets,
+        scene: &Scene,
+        view: &View,
+        apart: &[usize],
+    ) {
+        let uniform = scene.uniform(view, apart);
         let mut boxes = [SceneBox::default(); MAX_BOXES];
         boxes[..scene.boxes.len()].copy_from_slice(&scene.boxes);
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
@@ -162,24 +207,113 @@ impl SceneRenderer {
         });
         let count = scene.boxes.len() as u32;
         {
-            let mut pass = begin_pass(encoder, Some((&targets.paint, NO_BOX)), Some(&targets.paint_depth));
+            let mut pass = begin_pass(encoder, &[&targets.paint], NO_BOX, Some(&targets.paint_depth));
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(&self.paint);
             pass.draw(0..36, 0..count);
         }
         {
-            let mut pass = begin_pass(encoder, targets.linear.as_ref().zip(Some(NO_SURFACE)), Some(&targets.depth));
+            let mut pass = begin_pass(encoder, targets.linear.as_ref().as_slice(), NO_SURFACE, Some(&targets.depth));
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(&self.depth);
             pass.draw(0..36, 0..count);
         }
+        targets.parts = match targets.parts.take() {
+            _ if apart.is_empty() => None,
+            held => Some(held.unwrap_or_else(|| self.light_parts(targets))),
+        };
         {
-            let mut pass = begin_pass(encoder, Some((&default_view(&targets.color), wgpu::Color::BLACK)), None);
+            let color = default_view(&targets.color);
+            let (views, pipeline) = match &targets.parts {
+                Some(parts) => (parts.views.each_ref().to_vec(), &self.light_parts),
+                None => (vec![&color], &self.light),
+            };
+            let mut pass = begin_pass(encoder, &views, wgpu::Color::BLACK, None);
             pass.set_bind_group(0, &group, &[]);
             pass.set_bind_group(1, &targets.paint_group, &[]);
-            pass.set_pipeline(&self.light);
+            pass.set_pipeline(pipeline);
             pass.draw(0..3, 0..1);
         }
+        targets.scene_group = Some(group);
+    }
+
+    /// Adds the light that comes through the smoke to the scene that was recorded last. Does nothing if no light was kept
+    /// apart.
+    pub fn shade(&self, encoder: &mut wgpu::CommandEncoder, targets: &SceneTargets, shadow: &wgpu::BindGroup) {
+        let Some((parts, group)) = targets.parts.as_ref().zip(targets.scene_group.as_ref()) else { return };
+        let mut pass = begin_pass(encoder, &[&default_view(&targets.color)], wgpu::Color::BLACK, None);
+        pass.set_bind_group(0, group, &[]);
+        pass.set_bind_group(1, &parts.group, &[]);
+        pass.set_bind_group(2, shadow, &[]);
+        pass.set_pipeline(&self.shade);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// Draws the scene as a light sees it, a layer per matrix.
+    pub fn shadow_map(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene, view: &ShadowView) -> wgpu::Texture {
+        let mut boxes = [SceneBox::default(); MAX_BOXES];
+        let mut count = 0;
+        for (slot, caster) in boxes.iter_mut().zip(casters(&scene.boxes)) {
+            (*slot, count) = (caster, count + 1);
+        }
+        let buffer = |contents: &[u8]| {
+            let usage = wgpu::BufferUsages::UNIFORM;
+            let descriptor = wgpu::util::BufferInitDescriptor { label: Some("demo shadow map"), contents, usage };
+            self.device.create_buffer_init(&descriptor)
+        };
+        let boxes = buffer(bytemuck::cast_slice(&boxes));
+        let lights = buffer(bytemuck::cast_slice(&[LightUniform::default(); MAX_LIGHTS]));
+        let masks = default_view(&self.occluder_texture(&scene.occluders));
+        let layers = view.clip_from_world.len() as u32;
+        let map = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("demo shadow map"),
+            size: wgpu::Extent3d { width: view.size, height: view.size, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: DEPTH_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        for (layer, matrix) in (0..).zip(&view.clip_from_world) {
+            let uniform = SceneUniform { clip_from_world: *matrix, box_count: count, ..SceneUniform::zeroed() };
+            let uniform = buffer(bytemuck::bytes_of(&uniform));
+            let bound = [&uniform, &boxes, &lights].map(wgpu::Buffer::as_entire_binding).into_iter();
+            let resources = bound.chain([wgpu::BindingResource::TextureView(&masks)]);
+            let entries: Vec<_> =
+                (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("demo shadow map"),
+                layout: &self.scene_layout,
+                entries: &entries,
+            });
+            let of_layer = map.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..Default::default()
+            });
+            let mut pass = begin_pass(encoder, &[], wgpu::Color::BLACK, Some(&of_layer));
+            pass.set_bind_group(0, &group, &[]);
+            pass.set_pipeline(&self.shadow);
+            pass.draw(0..36, 0..count);
+        }
+        map
+    }
+
+    fn light_parts(&self, targets: &SceneTargets) -> LightParts {
+        let size = UVec2::new(targets.color.width(), targets.color.height());
+        let view = |()| default_view(&texture(&self.device, "demo scene light", size, COLOR_FORMAT));
+        let views = [(); 4].map(view);
+        let bound = (1..).zip(views.iter().chain([&targets.depth]));
+        let entry =
+            |(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("demo scene light"),
+            layout: &self.parts_layout,
+            entries: &bound.map(entry).collect::<Vec<_>>(),
+        });
+        LightParts { views, group }
     }
 
     fn occluder_texture(&self, occluders: &Occluders) -> wgpu::Texture {
@@ -202,14 +336,14 @@ impl SceneRenderer {
     }
 }
 
-/// Creates a pipeline from entry points of the scene's shader. `fragment` is an entry point with the format it writes;
+/// Creates a pipeline from entry points of the scene's shader. `fragment` is an entry point with the formats it writes;
 /// `depth`: tests and writes the depth buffer.
 fn scene_pipeline(
     module: &wgpu::ShaderModule,
     device: &wgpu::Device,
     groups: &[Option<&wgpu::BindGroupLayout>],
     vertex: &str,
-    fragment: Option<(&str, wgpu::TextureFormat)>,
+    fragment: Option<(&str, &[wgpu::TextureFormat])>,
     depth: bool,
 ) -> wgpu::RenderPipeline {
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -217,7 +351,8 @@ fn scene_pipeline(
         bind_group_layouts: groups,
         immediate_size: 0,
     });
-    let targets = [fragment.map(|(_, format)| format.into())];
+    let targets: Vec<_> =
+        fragment.iter().flat_map(|(_, formats)| *formats).map(|&format| Some(format.into())).collect();
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("demo scene"),
         layout: Some(&layout),
@@ -275,18 +410,22 @@ const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::
 
 fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    color: Option<(&wgpu::TextureView, wgpu::Color)>,
+    colors: &[&wgpu::TextureView],
+    clear: wgpu::Color,
     depth: Option<&wgpu::TextureView>,
 ) -> wgpu::RenderPass<'a> {
-    let attachment = color.map(|(view, clear)| wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
-    });
+    let attachment = |view| {
+        Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+        })
+    };
+    let attachments: Vec<_> = colors.iter().copied().map(attachment).collect();
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("demo scene"),
-        color_attachments: if attachment.is_some() { std::slice::from_ref(&attachment) } else { &[] },
+        color_attachments: &attachments,
         depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
             view,
             depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),

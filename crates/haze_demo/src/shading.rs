@@ -96,6 +96,20 @@ pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     b.color * (0.8 + 0.4 * dirt)
 }
 
+/// Light at a point, without and with the shadow of the smoke.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Lit {
+    pub full: Vec3,
+    pub shaded: Vec3,
+}
+
+impl Lit {
+    /// Light that no smoke shades.
+    pub fn even(light: Vec3) -> Self {
+        Self { full: light, shaded: light }
+    }
+}
+
 /// Ray from a point to a light.
 struct ShadowRay {
     origin: Vec3,
@@ -147,12 +161,16 @@ impl Scene {
         self.environment.horizon.lerp(self.environment.zenith, 1.0 - (1.0 - up).powi(3))
     }
 
-    /// Returns the light at a point of a box. `pixel` is the width of a pixel there, metres.
-    pub fn irradiance(&self, world: Vec3, normal: Vec3, pixel: f32) -> Vec3 {
+    /// Returns the light at a point of a box. `pixel` is the width of a pixel there, metres. `through`: share of each light
+    /// that comes through the smoke.
+    pub fn irradiance(&self, world: Vec3, normal: Vec3, pixel: f32, through: &impl Fn(u32) -> Vec3) -> Lit {
         let sky = self.environment.horizon.lerp(self.environment.zenith, 0.5);
         let ambient = self.environment.ground.lerp(sky, normal.y * 0.5 + 0.5);
-        let direct = (0..).zip(&self.lights).map(|(index, light)| self.direct(index, light, world, normal, pixel));
-        ambient * self.ambient_visibility(world, normal) + direct.sum::<Vec3>()
+        let unshaded = Lit::even(ambient * self.ambient_visibility(world, normal));
+        (0..).zip(&self.lights).fold(unshaded, |lit, (index, light)| {
+            let direct = self.direct(index, light, world, normal, pixel);
+            Lit { full: lit.full + direct, shaded: lit.shaded + direct * through(index) }
+        })
     }
 
     fn direct(&self, index: u32, light: &LightUniform, world: Vec3, normal: Vec3, pixel: f32) -> Vec3 {

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::UVec2;
 
 use super::scene::Scene;
+use super::shadow_views::{ShadowView, shadow_views};
 use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
 use haze::frame::{EmitterSnapshot, Particle};
@@ -88,6 +89,12 @@ impl Shot {
     /// True if the scene is visible. Debug views other than the final image are shown on black.
     pub(super) fn shows_scene(&self) -> bool {
         self.debug_view == DebugView::Final
+    }
+
+    /// Shadow maps of the lights, if the scene shades smoke.
+    pub(super) fn shadow_views(&self) -> Vec<ShadowView> {
+        let by_depth = self.preset.systems.iter().any(|system| system.settings.lights_by_depth());
+        if by_depth { shadow_views(&self.preset.lights) } else { Vec::new() }
     }
 
     pub(super) fn scene(&self) -> Scene {

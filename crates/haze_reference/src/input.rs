@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3};
 
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
-use haze::frame::{Bounds, Light, Particle, View};
+use haze::frame::{Bounds, Light, Particle, ShadowProjection, View};
 use haze::settings::{DebugView, Settings};
 
 /// One frame, like [`haze::FrameInput`], in memory.
@@ -16,6 +16,8 @@ pub struct FrameInput<'a> {
     pub scene_depth: &'a Image<f32>,
     /// At most [`MAX_LIGHTS`](haze::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
+    /// Shadow maps of lights, at most one per light.
+    pub shadow_maps: &'a [ShadowMap<'a>],
     /// Particle systems, drawn far to near.
     pub systems: &'a [ParticleSystem<'a>],
     /// Multiplies all light that the smoke sends to the viewer.
@@ -32,8 +34,27 @@ impl<'a> FrameInput<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: &'a Image<f32>) -> Self {
         let debug_view = DebugView::Final;
-        Self { view, scene_depth, lights: &[], systems: &[], exposure: 1.0, time: 0.0, up: Vec3::Y, debug_view }
+        Self {
+            view,
+            scene_depth,
+            lights: &[],
+            shadow_maps: &[],
+            systems: &[],
+            exposure: 1.0,
+            time: 0.0,
+            up: Vec3::Y,
+            debug_view,
+        }
     }
+}
+
+/// Shadow map of a light, like [`haze::ShadowMap`], in memory.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowMap<'a> {
+    /// Depth of each layer.
+    pub layers: &'a [Image<f32>],
+    /// Projection of the map.
+    pub projection: ShadowProjection<'a>,
 }
 
 /// One particle system, like [`haze::ParticleSystem`], in memory.

@@ -7,12 +7,14 @@ mod input;
 pub mod optical_depths;
 pub mod pass;
 mod probe;
+mod scene_shadow;
+pub mod shade;
 pub mod sprite;
 pub mod visible_system;
 
 use std::sync::Arc;
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 
 use haze::assets::image::Image;
 use haze::error::FieldError;
@@ -20,49 +22,84 @@ use haze::settings::DebugView;
 
 use accumulated::AccumulatedTarget;
 pub use accumulated::AccumulatedTextures;
-pub use input::{FrameInput, ParticleSystem};
-use pass::density_splat::density_from_steps;
+pub use input::{FrameInput, ParticleSystem, ShadowMap};
+use pass::density_splat::{density_from_steps, density_splat};
 use pass::shadow_march::shadow_march;
+use pass::shadow_visibility::shadow_visibility;
 pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
-use visible_system::visible_systems;
+pub use scene_shadow::SceneShadow;
+use visible_system::{PlacedSystems, VisibleSystem, place_systems};
+
+/// Frame whose shadow is computed, before its smoke is drawn.
+pub struct PreparedFrame<'a> {
+    systems: Vec<(usize, VisibleSystem<'a>)>,
+    debug_view: DebugView,
+    scene_shadow: Option<SceneShadow>,
+}
+
+impl<'a> PreparedFrame<'a> {
+    /// Places all systems, and computes the shadow of their smoke. `picture`: size of the picture, pixels.
+    ///
+    /// # Errors
+    /// The first view, light or setting that is invalid.
+    pub fn new(frame: &FrameInput<'a>, picture: UVec2) -> Result<Self, FieldError> {
+        let PlacedSystems { visible: mut systems, hidden, shadow } = place_systems(frame, picture)?;
+        let mut scene_shadow = None;
+        if let Some(shadow) = shadow {
+            let size = shadow.grid.size;
+            let mut steps = vec![0; size.element_product() as usize];
+            let visible = systems.iter().map(|(_, visible)| (&visible.system, visible.particles.as_slice()));
+            let hidden = hidden.iter().map(|(uniform, particles)| (uniform, *particles));
+            visible.chain(hidden).for_each(|(system, particles)| density_splat(system, particles, size, &mut steps));
+            let mut depths = shadow_march(&density_from_steps(&steps), &shadow);
+            depths.visible = shadow.has_visibility.then(|| shadow_visibility(frame.shadow_maps, &shadow));
+            let depths = Arc::new(depths);
+            systems.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(depths.clone()));
+            scene_shadow = SceneShadow::new(frame, &shadow, &depths);
+        }
+        Ok(Self { systems, debug_view: frame.debug_view, scene_shadow })
+    }
+
+    /// Shadow of the smoke on the scene, if it casts any.
+    pub fn scene_shadow(&self) -> Option<&SceneShadow> {
+        self.scene_shadow.as_ref()
+    }
+
+    /// Blends the smoke over `picture`, linear HDR.
+    pub fn render(&self, picture: &mut Image<Vec4>) {
+        for (_, visible) in &self.systems {
+            if visible.settings.is_forward() {
+                if self.debug_view.shows_lit_smoke() {
+                    visible.forward(picture);
+                }
+                continue;
+            }
+            let reduced_depth = visible.depth_downsample();
+            let textures = match self.debug_view {
+                DebugView::Overdraw => visible.overdraw(&reduced_depth),
+                _ => visible.accumulate(&reduced_depth),
+            };
+            let baked = visible.diffuse_bake();
+            let (reduced_depth, textures) = (&reduced_depth, &textures);
+            let mut smoke = AccumulatedTarget { visible, baked: &baked, reduced_depth, textures, lit: None };
+            if visible.lights_per_texel(self.debug_view) {
+                smoke.lit = Some(smoke.light_target());
+            }
+            if self.debug_view != DebugView::SpecularScatter {
+                smoke.transfer(self.debug_view, picture);
+            }
+            if self.debug_view.shows_glow() {
+                smoke.specular_scatter(picture);
+            }
+        }
+    }
+}
 
 /// Blends the frame's smoke over `picture`, linear HDR.
 ///
 /// # Errors
 /// The first view, light or setting that is invalid; `picture` is untouched then.
 pub fn render(frame: &FrameInput<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldError> {
-    let mut systems = visible_systems(frame, picture.size)?;
-    if let Some(shadow) = systems.first().and_then(|(_, visible)| visible.shadow) {
-        let size = shadow.grid.size;
-        let mut steps = vec![0; size.element_product() as usize];
-        systems.iter().for_each(|(_, visible)| visible.density_splat(size, &mut steps));
-        let depths = Arc::new(shadow_march(&density_from_steps(&steps), &shadow));
-        systems.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(depths.clone()));
-    }
-    for (_, visible) in &systems {
-        if visible.settings.is_forward() {
-            if frame.debug_view.shows_lit_smoke() {
-                visible.forward(picture);
-            }
-            continue;
-        }
-        let reduced_depth = visible.depth_downsample();
-        let textures = match frame.debug_view {
-            DebugView::Overdraw => visible.overdraw(&reduced_depth),
-            _ => visible.accumulate(&reduced_depth),
-        };
-        let baked = visible.diffuse_bake();
-        let (reduced_depth, textures) = (&reduced_depth, &textures);
-        let mut smoke = AccumulatedTarget { visible, baked: &baked, reduced_depth, textures, lit: None };
-        if visible.lights_per_texel(frame.debug_view) {
-            smoke.lit = Some(smoke.light_target());
-        }
-        if frame.debug_view != DebugView::SpecularScatter {
-            smoke.transfer(frame.debug_view, picture);
-        }
-        if frame.debug_view.shows_glow() {
-            smoke.specular_scatter(picture);
-        }
-    }
+    PreparedFrame::new(frame, picture.size)?.render(picture);
     Ok(())
 }

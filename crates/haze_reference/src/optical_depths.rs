@@ -1,4 +1,5 @@
-//! Optical depths from the cells of a frame's density grid to its lights.
+//! Volume of a frame's shadow: optical depths from the cells of its density grid to its lights, and the lights' visibility
+//! past the scene.
 
 use glam::{IVec3, UVec3, Vec3};
 
@@ -8,14 +9,25 @@ pub struct OpticalDepths {
     pub size: UVec3,
     /// Cells, x first; a channel per light.
     pub cells: Vec<Vec3>,
+    /// Visibility of the lights, if shadow maps shade smoke.
+    pub visible: Option<Vec<Vec3>>,
 }
 
 impl OpticalDepths {
     /// Optical depths at a place, in cells, clamped to the centres of the outermost cells.
     pub fn sample(&self, place: Vec3) -> Vec3 {
+        self.sample_cells(&self.cells, place)
+    }
+
+    /// Visibility of the lights at a place, in cells; 1 without shadow maps.
+    pub fn sample_visible(&self, place: Vec3) -> Vec3 {
+        self.visible.as_ref().map_or(Vec3::ONE, |cells| self.sample_cells(cells, place))
+    }
+
+    fn sample_cells(&self, cells: &[Vec3], place: Vec3) -> Vec3 {
         let inside = place.clamp(Vec3::splat(0.5), self.size.as_vec3() - 0.5);
         let load = |cell: IVec3, channel: usize| {
-            cell_index(self.size, cell).and_then(|index| self.cells.get(index)).map_or(0.0, |depths| depths[channel])
+            cell_index(self.size, cell).and_then(|index| cells.get(index)).map_or(0.0, |depths| depths[channel])
         };
         Vec3::from([0, 1, 2].map(|channel| trilinear(inside, |cell| load(cell, channel))))
     }

@@ -1,11 +1,15 @@
 //! Values of the passes at single pixels, computed from texels that the GPU wrote.
 
+use std::sync::Arc;
+
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use super::blend_unit::premultiplied_over;
 use super::input::FrameInput;
-use super::visible_system::{VisibleSystem, visible_systems};
+use super::optical_depths::OpticalDepths;
+use super::pass::shadow_visibility::shadow_visibility;
+use super::visible_system::{PlacedSystems, VisibleSystem, place_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
@@ -100,7 +104,13 @@ pub fn probe(
     behind: &Image<Vec4>,
     pixels: &[UVec2],
 ) -> Result<Vec<Probe>, FieldError> {
-    let visible = visible_systems(frame, behind.size)?;
+    let PlacedSystems { mut visible, shadow, .. } = place_systems(frame, behind.size)?;
+    if let Some(shadow) = shadow.filter(|shadow| shadow.has_visibility) {
+        // The optical depths themselves are in the texels.
+        let seen = Some(shadow_visibility(frame.shadow_maps, &shadow));
+        let volume = Arc::new(OpticalDepths { size: shadow.grid.size, cells: Vec::new(), visible: seen });
+        visible.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(volume.clone()));
+    }
     let mut deferred = Vec::new();
     for (index, visible) in visible.iter().filter(|(_, visible)| !visible.settings.is_forward()) {
         let Some(Some(texels)) = texels.get(*index) else { continue };
@@ -177,7 +187,7 @@ impl<'a> ProbedSystem<'a> {
         if amount <= 0.0 {
             return None;
         }
-        let position = visible.view_position(pixel, -visible.system.centre.z);
+        let position = smoke.lit_position(&surface, pixel);
         let covered = coverage(amount, visible.system.boost);
         let light = |((light, glow), &index): ((_, &Option<(Vec2, Vec3)>), &usize)| {
             let sample = sample_light(light, position);

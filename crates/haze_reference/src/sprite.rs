@@ -4,6 +4,7 @@ use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::visible_system::VisibleSystem;
 use haze::formula::density_grid::mean_optical_depth;
+use haze::formula::depth_moments::depth_moments;
 use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use haze::formula::normal::rotate_normal;
 use haze::formula::order::{optical_depth_in_front, order_weight};
@@ -130,9 +131,14 @@ impl VisibleSystem<'_> {
         let Some(depths) = self.optical_depths.as_ref().filter(|_| system.shadow_strength > 0.0) else {
             return Vec3::ZERO;
         };
-        let radius = particle.radius * system.size * system.cells_per_metre;
-        let own = own_optical_depth(radius, sprite_optical_depth(system, particle));
+        let own = own_optical_depth(density_radius(system, particle), sprite_optical_depth(system, particle));
         foreign_optical_depths(depths.sample(system.grid_from_view.transform_point3(centre)), own)
+    }
+
+    /// `depth_moments()` of a sprite.
+    pub fn moments_of_sprite(&self, view_depth: f32, radius: f32) -> Vec2 {
+        let system = &self.system;
+        depth_moments(view_depth, radius * system.density_reach, system.smoke_near, system.smoke_far)
     }
 
     fn order_weight(&self, view_depth: f32) -> f32 {
@@ -296,8 +302,14 @@ impl VisibleSystem<'_> {
     }
 }
 
-/// Mean optical depth over the square of a particle's sprite, as it casts shadow.
+/// Half the side of the square that the density of a particle's sprite fills, in cells.
+pub fn density_radius(system: &SystemUniform, particle: &Particle) -> f32 {
+    particle.radius * system.size * system.density_reach * system.cells_per_metre
+}
+
+/// Mean optical depth over that square, as it casts shadow.
 pub fn sprite_optical_depth(system: &SystemUniform, particle: &Particle) -> f32 {
     let amount = particle.shown_amount() * system.opacity;
-    system.shadow_density * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha)
+    let depth = mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
+    system.shadow_density * depth / (system.density_reach * system.density_reach)
 }

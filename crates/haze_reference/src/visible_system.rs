@@ -13,14 +13,14 @@ use haze::formula::depth::view_depth_from_ndc_depth;
 use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use haze::frame::validate_input::{
-    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings,
+    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
     validate_world_from_particles,
 };
 use haze::frame::{Bounds, Particle, View};
 use haze::settings::{BlendOrder, DebugView};
 use haze::view_setup::{
     ParticleMeasures, ParticleSpace, ResolvedSettings, SmokeShadow, SpriteTrim, Support, SystemInput, SystemSetup,
-    ViewGeometry, light_uniforms, system_setup,
+    ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
 
 /// Visible system, with the input of its passes.
@@ -47,21 +47,19 @@ pub struct VisibleSystem<'a> {
     pub settings: ResolvedSettings,
     /// Images of the system.
     pub material: &'a MaterialAssets,
-    /// Shadow of the frame's smoke, if any system receives it.
-    pub shadow: Option<SmokeShadow>,
-    /// Optical depths of that smoke, once they are computed.
+    /// Optical depths of the frame's smoke, once they are computed.
     pub optical_depths: Option<Arc<OpticalDepths>>,
 }
 
 impl<'a> VisibleSystem<'a> {
-    /// Returns `None` if the system is not visible.
+    /// Returns the uniforms of its shadow alone if the system is not visible.
     fn new(
         view: &ViewGeometry,
         frame: &FrameInput<'a>,
         system: &ParticleSystem<'a>,
         measured: MeasuredSystem,
         shadow: Option<&SmokeShadow>,
-    ) -> Option<Self> {
+    ) -> Result<Self, Box<SystemUniform>> {
         let MeasuredSystem { material, space, settings, mut measures, bounds } = measured;
         let material = &material;
         let mut lights = Vec::new();
@@ -81,10 +79,11 @@ impl<'a> VisibleSystem<'a> {
             time: frame.time,
             shadow,
         };
-        let setup = system_setup(view, frame.view.size, &in_world)?;
+        let setup = system_setup(view, frame.view.size, &in_world);
+        let setup = setup.ok_or_else(|| Box::new(caster_uniform(&in_world)))?;
         let mut particles = Vec::new();
         measures.order.write(system.particles, settings.order() == BlendOrder::Sorted, &mut particles);
-        Some(Self {
+        Ok(Self {
             view: view.uniform(false),
             world_from_view: view.view_from_world.inverse(),
             system: setup.uniform,
@@ -96,7 +95,6 @@ impl<'a> VisibleSystem<'a> {
             scene_depth: frame.scene_depth,
             settings,
             material: system.material,
-            shadow: shadow.copied(),
             optical_depths: None,
         })
     }
@@ -146,14 +144,22 @@ impl MeasuredSystem {
     }
 }
 
-/// Visible systems with their indices in the frame, far to near, for a picture of this size.
-pub fn visible_systems<'a>(
-    frame: &FrameInput<'a>,
-    picture: UVec2,
-) -> Result<Vec<(usize, VisibleSystem<'a>)>, FieldError> {
+/// Placed systems of a frame.
+pub struct PlacedSystems<'a> {
+    /// Visible systems with their indices in the frame, far to near.
+    pub visible: Vec<(usize, VisibleSystem<'a>)>,
+    /// Uniforms and particles of systems out of sight, which cast shadow.
+    pub hidden: Vec<(SystemUniform, &'a [Particle])>,
+    /// Shadow of the smoke of all systems, if any receives it.
+    pub shadow: Option<SmokeShadow>,
+}
+
+/// Places the systems of a frame, for a picture of this size.
+pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<PlacedSystems<'a>, FieldError> {
     // The picture is the view, whatever its origin in a host's targets.
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
+    validate_shadow_projections(frame.lights.len(), frame.shadow_maps.iter().map(|map| map.projection))?;
     validate_frame_numbers(frame.exposure, frame.time, frame.up)?;
     for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture)] {
         if size != frame.view.size {
@@ -171,11 +177,15 @@ pub fn visible_systems<'a>(
         measured.push(MeasuredSystem::new(&view, system, info));
     }
     let boxes = measured.iter().map(|measured| (measured.bounds, measured.settings));
-    let shadow = SmokeShadow::new(&view, frame.lights, boxes);
-    let visible = |(index, (system, measured))| {
-        Some((index, VisibleSystem::new(&view, frame, system, measured, shadow.as_ref())?))
-    };
-    let mut systems: Vec<_> = frame.systems.iter().zip(measured).enumerate().filter_map(visible).collect();
-    systems.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
-    Ok(systems)
+    let mapped = frame.shadow_maps.iter().map(|map| map.projection.light);
+    let shadow = SmokeShadow::new(&view, frame.lights, mapped, boxes);
+    let (mut visible, mut hidden) = (Vec::new(), Vec::new());
+    for (index, (system, measured)) in frame.systems.iter().zip(measured).enumerate() {
+        match VisibleSystem::new(&view, frame, system, measured, shadow.as_ref()) {
+            Ok(system) => visible.push((index, system)),
+            Err(uniform) => hidden.push((*uniform, system.particles)),
+        }
+    }
+    visible.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
+    Ok(PlacedSystems { visible, hidden, shadow })
 }

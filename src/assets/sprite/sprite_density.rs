@@ -6,11 +6,16 @@ use crate::formula::density_grid::mean_optical_depth;
 /// Largest alpha whose optical depth is counted: that of an alpha of 1 is infinite. 0.98 is 3.9.
 const MAX_ALPHA: f32 = 0.98;
 
-/// Parameters of [`mean_optical_depth`], over all frames of a sprite.
+/// Smallest extent of a sprite's density, as a share of the sprite's.
+const MIN_REACH: f32 = 0.25;
+
+/// Density of a sprite, over all its frames: the parameters of [`mean_optical_depth`], and its extent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SpriteDensity {
     pub mean_alpha: f32,
     pub peak_alpha: f32,
+    /// Radius of the bump that spreads as far as the sprite's optical depth does, as a share of half the sprite's side.
+    pub reach: f32,
 }
 
 impl SpriteDensity {
@@ -38,8 +43,24 @@ impl SpriteDensity {
                 high = middle;
             }
         }
-        Self { mean_alpha, peak_alpha: 0.5 * (low + high) }
+        Self { mean_alpha, peak_alpha: 0.5 * (low + high), reach: reach(sprite) }
     }
+}
+
+/// Standard deviation of the optical depth from the sprites' centres, along an axis, over that of a bump of radius 1.
+fn reach(sprite: &Sprite) -> f32 {
+    let side = sprite.size();
+    let (mut total, mut squares) = (0.0_f64, 0.0_f64);
+    for (texel, alpha) in (0..).zip(sprite.level_bytes(0).iter().skip(3).step_by(4)) {
+        let depth = -(1.0 - (f32::from(*alpha) / 255.0).min(MAX_ALPHA)).ln();
+        let place = [texel % side, texel / side % side].map(|at| (at as f32 + 0.5) / side as f32 * 2.0 - 1.0);
+        total += f64::from(depth);
+        squares += f64::from(depth * (place[0] * place[0] + place[1] * place[1]) * 0.5);
+    }
+    // Variance of the bump 15/16·(1 - q²)².
+    const BUMP: f64 = 1.0 / 7.0;
+    let reach = (squares / total.max(1.0e-6) / BUMP).sqrt() as f32;
+    reach.clamp(MIN_REACH, 1.0)
 }
 
 #[cfg(test)]
@@ -47,10 +68,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn reach_is_that_of_a_bump_with_the_same_spread() {
+        const SIDE: u32 = 32;
+        for radius in [0.4_f32, 0.7, 1.0] {
+            let texel = |index: u32| {
+                let at = [index % SIDE, index / SIDE].map(|at| (at as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0);
+                let bump = at.map(|x| (1.0 - (x / radius).powi(2)).max(0.0).powi(2));
+                [128, 128, 255, (40.0 * bump[0] * bump[1]).round() as u8]
+            };
+            let sprite = Sprite::with_levels(SIDE, 1, (0..SIDE * SIDE).map(texel).collect());
+            let reach = SpriteDensity::new(&sprite).reach;
+            assert!((reach / radius - 1.0).abs() < 0.03, "{radius}: {reach}");
+        }
+    }
+
+    #[test]
     fn depth_of_a_sprite_is_exact_for_faint_and_for_opaque_smoke() {
         let alphas = [0, 40, 128, 200, 255, 90, 10, 0, 0];
         let sprite = Sprite::with_levels(3, 1, alphas.map(|alpha| [128, 128, 255, alpha]).to_vec());
-        let SpriteDensity { mean_alpha, peak_alpha } = SpriteDensity::new(&sprite);
+        let SpriteDensity { mean_alpha, peak_alpha, .. } = SpriteDensity::new(&sprite);
         let exact = |amount: f32| {
             let depth = |code: u8| -(1.0 - amount * (f32::from(code) / 255.0).min(0.98)).ln();
             alphas.into_iter().map(depth).sum::<f32>() / 9.0

@@ -100,6 +100,6 @@ fn extreme_sprites_and_lights_give_finite_depths() {
     let across = [0.0, 1.0, 1e30, f32::INFINITY, f32::NAN].map(|depth| shadow_position(depth, Vec3::X, Vec3::Z).x);
     assert!(across.iter().zip([0.0, 0.5, 1.0, 1.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6), "{across:?}");
     for (slot, expected) in [(0.0, 0.0), (1.0, 5.0), (2.0, 6.0), (3.0, 7.0)] {
-        assert!((depth_of_slot(slot, vec3(5.0, 6.0, 7.0)) - expected).abs() < 1e-6, "{slot}");
+        assert!((of_slot(slot, vec3(5.0, 6.0, 7.0)) - expected).abs() < 1e-6, "{slot}");
     }
 }

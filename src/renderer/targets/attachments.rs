@@ -70,6 +70,15 @@ const ATTACHMENTS: [Attachment; AttachmentRole::ALL.len()] = [
         sorted: PREMULTIPLIED_OVER,
         weighted: ADD_ALL,
     },
+    Attachment {
+        role: AttachmentRole::Depth,
+        label: "haze accumulation: depth",
+        slot_constant: Some("DEPTH_SLOT"),
+        raster: Format::Fixed(wgpu::TextureFormat::Rgba16Float),
+        tiled: Format::Fixed(wgpu::TextureFormat::Rgba16Float),
+        sorted: PREMULTIPLIED_OVER,
+        weighted: ADD_ALL,
+    },
 ];
 
 /// WebGPU's default limit on the color attachments of a pass, bytes per sample.
@@ -218,13 +227,14 @@ mod tests {
     fn slots_and_formats_follow_the_set() {
         let set = [NormalAndAmount, Weights].into_iter().collect();
         let constants: Vec<_> = attachment_constants(set).collect();
-        let slots = [("SIX_WAY_SLOT", 0.0), ("WEIGHTS_SLOT", 1.0), ("OPTICAL_DEPTHS_SLOT", 0.0)];
+        let slots = [("SIX_WAY_SLOT", 0.0), ("WEIGHTS_SLOT", 1.0), ("OPTICAL_DEPTHS_SLOT", 0.0), ("DEPTH_SLOT", 0.0)];
         assert_eq!(constants, [&[("ATTACHMENT_COUNT", 2.0)], slots.as_slice()].concat());
         let formats = tiled_formats(set, AccumulationFormat::Rgba8Unorm);
         assert_eq!(formats, [Rgba8Unorm, R32Float, PLACEHOLDER_FORMAT, PLACEHOLDER_FORMAT]);
-        let all = AttachmentRole::ALL.into_iter().collect();
+        // Six-way light has weights of its own: no system has both.
+        let all = AttachmentRole::ALL.into_iter().filter(|role| *role != SixWay).collect();
         let formats = tiled_formats(all, AccumulationFormat::Rgba16Float);
-        assert_eq!(formats, [Rgba16Float, Rgba16Float, R32Float, Rgba16Float]);
+        assert_eq!(formats, [Rgba16Float, R32Float, Rgba16Float, Rgba16Float]);
         for format in [AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm] {
             validate_attachments(0, all, format).unwrap();
         }

@@ -5,7 +5,9 @@ use glam::UVec2;
 use super::storage_buffers::{bind, storage};
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
-use crate::formula::uniforms::{ShadowMarchUniform, SplatUniform};
+use crate::formula::shadow::SHADOWED_LIGHTS;
+use crate::formula::uniforms::{ShadowMarchUniform, ShadowVisibilityUniform, SplatUniform};
+use crate::frame::ShadowMap;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
@@ -13,6 +15,7 @@ use crate::renderer::layouts::SHADOW_FORMAT;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::density_splat::DensitySplat;
 use crate::renderer::pass::shadow_march::ShadowMarch;
+use crate::renderer::pass::shadow_visibility::ShadowVisibility;
 use crate::renderer::sprite_instances::Sprites;
 use crate::view_setup::SmokeShadow;
 
@@ -38,6 +41,19 @@ struct VolumeBuffers {
     density: wgpu::Buffer,
     optical_depths: wgpu::TextureView,
     march: wgpu::BindGroup,
+    /// Present if the volume has a second block.
+    maps: Option<MapBuffers>,
+}
+
+/// Lookups of a host's shadow maps.
+#[derive(Debug)]
+struct MapBuffers {
+    uniform: wgpu::Buffer,
+    /// In place of a light without map.
+    no_map: wgpu::Texture,
+    /// Textures and first layers of the lights' maps, by slot.
+    bound: [(wgpu::Texture, u32); SHADOWED_LIGHTS],
+    group: wgpu::BindGroup,
 }
 
 /// Density grid of a frame.
@@ -50,16 +66,27 @@ pub(crate) struct FrameShadow<'a> {
 
 impl ShadowVolume {
     /// Prepares the grid for a frame; releases it after 120 frames without shadow.
-    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, shadow: Option<&SmokeShadow>) {
+    pub fn write(
+        &mut self,
+        gpu: &Gpu<'_>,
+        tiled: &TiledPipelines,
+        shadow: Option<&SmokeShadow>,
+        maps: &[ShadowMap<'_>],
+    ) {
         if self.idle.tick(shadow.is_none()) {
             self.buffers = None;
         }
         let Some(shadow) = shadow else { return };
-        if self.buffers.as_ref().is_some_and(|held| held.resolution != shadow.resolution) {
+        let fits =
+            |held: &VolumeBuffers| held.resolution == shadow.resolution && held.maps.is_some() == shadow.has_visibility;
+        if !self.buffers.as_ref().is_some_and(fits) {
             self.buffers = None;
         }
-        let buffers = self.buffers.get_or_insert_with(|| VolumeBuffers::new(gpu.device, tiled, shadow.resolution));
+        let buffers = self.buffers.get_or_insert_with(|| VolumeBuffers::new(gpu.device, tiled, shadow));
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&shadow.march));
+        if let Some(held) = &mut buffers.maps {
+            held.write(gpu, tiled, shadow, maps, &buffers.optical_depths);
+        }
     }
 
     /// Returns the grid with the frame's shadow.
@@ -79,34 +106,112 @@ impl ShadowVolume {
         Some(ShadowMarch { pipeline: tiled.shadow_march.get(()), inputs, size: shadow.grid.size })
     }
 
+    /// Returns the pass that looks up the host's shadow maps, if they shade smoke.
+    pub fn look_up(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowVisibility> {
+        let inputs = self.buffers.as_ref()?.maps.as_ref()?.group.clone();
+        Some(ShadowVisibility { pipeline: tiled.shadow_visibility.get(()), inputs, size: shadow.grid.size })
+    }
+
     /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.buffers.as_ref().map_or(0, |held| {
-            held.uniform.size() + held.density.size() + TEXEL_BYTES * u64::from(held.resolution).pow(3)
+            let (maps, blocks) = held.maps.as_ref().map_or((0, 1), |maps| (maps.uniform.size(), 2));
+            let volume = blocks * TEXEL_BYTES * u64::from(held.resolution).pow(3);
+            held.uniform.size() + held.density.size() + volume + maps
         })
     }
 }
 
 impl VolumeBuffers {
-    fn new(device: &wgpu::Device, tiled: &TiledPipelines, resolution: u32) -> Self {
+    fn new(device: &wgpu::Device, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Self {
+        let (resolution, blocks) = (shadow.resolution, shadow.blocks());
         let uniform = uniform_buffer(device, "haze shadow_march", size_of::<ShadowMarchUniform>() as u64);
         let density = storage(device, "haze density", resolution.pow(3), CELL_BYTES);
-        let optical_depths = volume(device, resolution, wgpu::TextureUsages::STORAGE_BINDING);
+        let optical_depths = volume(device, resolution, blocks, wgpu::TextureUsages::STORAGE_BINDING);
         let resources = [
             uniform.as_entire_binding(),
             density.as_entire_binding(),
             wgpu::BindingResource::TextureView(&optical_depths),
         ];
         let march = bind(device, &tiled.layouts.shadow_march, resources);
-        Self { resolution, uniform, density, optical_depths, march }
+        let maps = shadow.has_visibility.then(|| MapBuffers::new(device, tiled, &optical_depths));
+        Self { resolution, uniform, density, optical_depths, march, maps }
     }
 }
 
-/// Creates a volume of optical depths.
-pub(crate) fn volume(device: &wgpu::Device, resolution: u32, usage: wgpu::TextureUsages) -> wgpu::TextureView {
+impl MapBuffers {
+    fn new(device: &wgpu::Device, tiled: &TiledPipelines, volume: &wgpu::TextureView) -> Self {
+        let uniform = uniform_buffer(device, "haze shadow_visibility", size_of::<ShadowVisibilityUniform>() as u64);
+        let no_map = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("haze no shadow map"),
+            size: wgpu::Extent3d::default(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Depth32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let bound = std::array::from_fn(|_| (no_map.clone(), 0));
+        let group = bind_maps(device, tiled, &uniform, &bound, volume);
+        Self { uniform, no_map, bound, group }
+    }
+
+    fn write(
+        &mut self,
+        gpu: &Gpu<'_>,
+        tiled: &TiledPipelines,
+        shadow: &SmokeShadow,
+        maps: &[ShadowMap<'_>],
+        volume: &wgpu::TextureView,
+    ) {
+        let of_light = |light: usize| maps.iter().find(|map| map.projection.light == light);
+        let uniform = shadow.visibility(|light| of_light(light).map(|map| map.projection));
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        let used = shadow.lights.map(|light| match light.and_then(of_light) {
+            Some(map) => (map.depth, map.first_layer),
+            None => (&self.no_map, 0),
+        });
+        if used.iter().zip(&self.bound).any(|((map, layer), bound)| (*map, *layer) != (&bound.0, bound.1)) {
+            self.bound = used.map(|(map, layer)| (map.clone(), layer));
+            self.group = bind_maps(gpu.device, tiled, &self.uniform, &self.bound, volume);
+        }
+    }
+}
+
+fn bind_maps(
+    device: &wgpu::Device,
+    tiled: &TiledPipelines,
+    uniform: &wgpu::Buffer,
+    maps: &[(wgpu::Texture, u32); SHADOWED_LIGHTS],
+    volume: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    let views = maps.each_ref().map(|(map, first_layer)| {
+        map.create_view(&wgpu::TextureViewDescriptor {
+            label: Some("haze shadow map"),
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            aspect: wgpu::TextureAspect::DepthOnly,
+            mip_level_count: Some(1),
+            base_array_layer: *first_layer,
+            ..Default::default()
+        })
+    });
+    let maps = views.iter().map(wgpu::BindingResource::TextureView);
+    let resources = [uniform.as_entire_binding()].into_iter().chain(maps);
+    let resources = resources.chain([wgpu::BindingResource::TextureView(volume)]);
+    bind(device, &tiled.layouts.shadow_visibility, resources)
+}
+
+/// Creates a volume of `blocks` cubes along z.
+pub(crate) fn volume(
+    device: &wgpu::Device,
+    resolution: u32,
+    blocks: u32,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("haze optical depths"),
-        size: wgpu::Extent3d { width: resolution, height: resolution, depth_or_array_layers: resolution },
+        size: wgpu::Extent3d { width: resolution, height: resolution, depth_or_array_layers: resolution * blocks },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D3,

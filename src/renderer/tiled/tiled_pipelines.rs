@@ -4,7 +4,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::accumulate_variants::AccumulateVariants;
 use crate::error::Error;
-use crate::formula::uniforms::{EmitterUniform, MeasureUniform, ShadowMarchUniform, SplatUniform, TilesUniform};
+use crate::formula::uniforms::{
+    EmitterUniform, MeasureUniform, ShadowMarchUniform, ShadowVisibilityUniform, SplatUniform, TilesUniform,
+};
 use crate::renderer::gpu::pipeline::{
     ComputePipelineDescription, PipelineStore, PipelineVariants, Shader, pipeline_variants,
 };
@@ -14,6 +16,7 @@ use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
 use crate::renderer::pass::measure::{self, MeasureKey};
 use crate::renderer::pass::shadow_march;
+use crate::renderer::pass::shadow_visibility;
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::TileAccumulateKey;
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
@@ -35,6 +38,7 @@ pub(crate) struct TiledPipelines {
     pub depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
     pub density_splat: PipelineVariants<(), ComputePipelineDescription>,
     pub shadow_march: PipelineVariants<(), ComputePipelineDescription>,
+    pub shadow_visibility: PipelineVariants<(), ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
     gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
@@ -51,6 +55,7 @@ pub(crate) struct TiledLayouts {
     pub depth_sort: wgpu::BindGroupLayout,
     pub density_splat: wgpu::BindGroupLayout,
     pub shadow_march: wgpu::BindGroupLayout,
+    pub shadow_visibility: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
     pub gather: wgpu::BindGroupLayout,
@@ -106,6 +111,7 @@ impl TiledPipelines {
             depth_sort: pipeline_variants!(store, shader, depth_sort, &with(&own.depth_sort)),
             density_splat: pipeline_variants!(store, shader, density_splat, &with(&own.density_splat)),
             shadow_march: pipeline_variants!(store, shader, shadow_march, &[Some(&own.shadow_march)]),
+            shadow_visibility: pipeline_variants!(store, shader, shadow_visibility, &[Some(&own.shadow_visibility)]),
             project: pipeline_variants!(store, shader, tile_project, &with(&own.project)),
             sort: pipeline_variants!(store, shader, sort, &[Some(&own.sort)]),
             gather: pipeline_variants!(store, shader, tile_gather, &[Some(&own.gather)]),
@@ -146,7 +152,8 @@ impl TiledPipelines {
     /// Compiles the pipelines of shadow.
     pub fn compile_shadow(&self) -> Result<(), Error> {
         self.density_splat.check(())?;
-        self.shadow_march.check(())
+        self.shadow_march.check(())?;
+        self.shadow_visibility.check(())
     }
 
     /// Compiles the pipelines that sort a host's particles back to front.
@@ -200,6 +207,11 @@ impl TiledLayouts {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let map = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        };
         let volume = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: SHADOW_FORMAT,
@@ -223,6 +235,10 @@ impl TiledLayouts {
             shadow_march: layout(
                 "haze shadow_march inputs",
                 &[uniform_of(size_of::<ShadowMarchUniform>()), read, volume],
+            ),
+            shadow_visibility: layout(
+                "haze shadow_visibility inputs",
+                &[uniform_of(size_of::<ShadowVisibilityUniform>()), map, map, map, volume],
             ),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),

@@ -13,7 +13,7 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::view_setup::{AttachmentRole, ResolvedSettings, SpriteTrim, Support};
 use haze::{Light, LightKind, MaterialAssets};
 use haze_reference::accumulated::{AccumulatedTarget, AccumulatedTextures};
-use haze_reference::visible_system::{VisibleSystem, visible_systems};
+use haze_reference::visible_system::{VisibleSystem, place_systems};
 use haze_reference::{FrameInput, ParticleSystem};
 
 use super::inputs::{test_noise, test_ramp, test_sprite, test_sprite_sheet};
@@ -73,7 +73,7 @@ static SYSTEM: LazyLock<VisibleSystem<'static>> = LazyLock::new(|| {
     let scene: &'static TestScene = Box::leak(Box::new(scene));
     let systems = Box::leak(Box::new([ParticleSystem::new(&scene.particles, &scene.settings, &WITHOUT_SIX_WAY)]));
     let frame = FrameInput { lights: &scene.lights, systems, ..FrameInput::new(scene.view, &DEPTHS) };
-    let (_, mut visible) = visible_systems(&frame, SIZE).unwrap().swap_remove(0);
+    let (_, mut visible) = place_systems(&frame, SIZE).unwrap().visible.swap_remove(0);
     let system = &mut visible.system;
     (system.target_origin, system.target_size) = (Vec2::ZERO, SIZE.as_vec2());
     (system.frame_count, system.sprite_size, system.detail_lod) = (3.0, 8.0, 0.0);
@@ -104,7 +104,6 @@ pub fn visible_system(settings: &Settings) -> VisibleSystem<'_> {
         scene_depth: &DEPTHS,
         settings: ResolvedSettings::new(settings, 1.0, SIZE, system.frame_count, Support::ALL),
         material: &MATERIAL,
-        shadow: None,
         optical_depths: None,
     }
 }

@@ -8,6 +8,7 @@ use haze::image::Image;
 use haze::settings::*;
 use haze_reference::accumulated::AccumulatedTarget;
 use haze_reference::pass::transfer::Surface;
+use haze_reference::shade::Shade;
 use haze_reference::visible_system::VisibleSystem;
 
 use super::Formula;
@@ -135,11 +136,11 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "BACKLIGHT = u32(x(0)); \
                    SHADOW = x(8) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), vec3f(0.3, 0.8, x(8))));",
+                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), Shade(vec3f(0.3, 0.8, x(8)), vec3f(1.0, 0.5, 0.9))));",
             reference: |x| {
                 let settings = changed(|s| s.diffuse.backlight = Backlight::ALL[x[0] as usize]);
-                let (visible, depths) = (shaded_system(&settings, x[8] > 0.5), Vec3::new(0.3, 0.8, x[8]));
-                visible.diffuse_from_lights(v3(&x[1..]), x[4], v3(&x[5..]), depths).to_array().to_vec()
+                let (visible, shade) = (shaded_system(&settings, x[8] > 0.5), shade(Vec3::new(0.3, 0.8, x[8])));
+                visible.diffuse_from_lights(v3(&x[1..]), x[4], v3(&x[5..]), &shade).to_array().to_vec()
             },
             cases: unit_vectors(
                 with_choices(
@@ -168,13 +169,13 @@ fn diffuse() -> Vec<Formula> {
             wgsl: "let s = SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
                    system.six_way_color = vec3f(0.9, 0.7, 0.5); \
                    SHADOW = x(0) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), vec3f(0.3, 0.8, x(1))));",
+                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), Shade(vec3f(0.3, 0.8, x(1)), vec3f(1.0, 0.5, 0.9))));",
             reference: |x| {
                 let mut visible = shaded_system(&DEFAULTS, x[0] > 0.5);
                 visible.system.six_way_color = Vec3::new(0.9, 0.7, 0.5);
                 let six_way = SixWay { positive: v3(x), negative: v3(&x[3..]) };
-                let depths = Vec3::new(0.3, 0.8, x[1]);
-                visible.diffuse_from_six_way(&six_way, v3(&x[6..]), depths).to_array().to_vec()
+                let shade = shade(Vec3::new(0.3, 0.8, x[1]));
+                visible.diffuse_from_six_way(&six_way, v3(&x[6..]), &shade).to_array().to_vec()
             },
             cases: random(
                 100,
@@ -192,11 +193,12 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "SHADOW = true; system.shadow_strength = 0.8; let position = vec3f(x(7), x(8), x(9)); \
                    let to_viewer = direction_to_viewer(position, view.orthographic); \
-                   y3(0, shadow_on_light(x(0), vec3f(x(1), x(2), x(3)), vec3f(x(4), x(5), x(6)), to_viewer));",
+                   y3(0, shadow_on_light(x(0), Shade(vec3f(x(1), x(2), x(3)), vec3f(0.9, 0.5, 0.7)), vec3f(x(4), x(5), x(6)), to_viewer));",
             reference: |x| {
                 let visible = shaded_system(&DEFAULTS, true);
                 let light = LightUniform { shadow_slot: x[0], ..visible.lights[0] };
-                visible.shadow_on_light(&light, v3(&x[4..]), v3(&x[7..]), v3(&x[1..])).to_array().to_vec()
+                let shade = Shade { optical_depths: v3(&x[1..]), visible: Vec3::new(0.9, 0.5, 0.7) };
+                visible.shadow_on_light(&light, v3(&x[4..]), v3(&x[7..]), &shade).to_array().to_vec()
             },
             cases: unit_vectors(
                 with_choices(4, &[(0.0, 3.0), (0.0, 3.0), (0.0, 3.0), SIDE, SIDE, SIDE, PLACE[0], PLACE[1], PLACE[2]]),
@@ -205,11 +207,12 @@ fn diffuse() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 (
-                    "shadow_position(depth_of_slot(slot, depths), to_light",
-                    "shadow_position(depth_of_slot(slot, depths), -to_light",
+                    "shadow_position(of_slot(slot, shade.optical_depths), to_light",
+                    "shadow_position(of_slot(slot, shade.optical_depths), -to_light",
                 ),
                 ("|| slot < 0.5", ""),
                 (", system.shadow_strength);", ", 1.0);"),
+                ("through * of_slot(slot, shade.visible)", "through"),
             ],
         },
         Formula {
@@ -235,6 +238,10 @@ fn diffuse() -> Vec<Formula> {
     ]
 }
 
+fn shade(optical_depths: Vec3) -> Shade {
+    Shade { optical_depths, visible: Vec3::new(1.0, 0.5, 0.9) }
+}
+
 fn surfaces() -> Vec<Formula> {
     vec![
         Formula {
@@ -255,11 +262,11 @@ fn surfaces() -> Vec<Formula> {
         Formula {
             name: "surface_from_accumulation",
             file: "lib/lit_smoke.wgsl",
-            wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY_SLOT = u32(x(9) > 0.7); WEIGHTS_SLOT = u32(x(9) < 0.3); OPTICAL_DEPTHS_SLOT = 1u; \
+            wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY_SLOT = u32(x(9) > 0.7); WEIGHTS_SLOT = u32(x(9) < 0.3); OPTICAL_DEPTHS_SLOT = 1u; DEPTH_SLOT = 1u; \
                    NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, x(9) < 0.3); \
                    let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), \
-                   Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5), vec4f(x(1), x(2), x(3), x(4)))); \
-                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.optical_depths);",
+                   Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5), vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8)))); \
+                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.shade.optical_depths); y(12, s.depth.x); y(13, s.depth.y);",
             reference: |x| {
                 let settings = changed(|s| {
                     s.accumulate.decode = NormalDecode::ALL[x[0] as usize];
@@ -271,10 +278,14 @@ fn surfaces() -> Vec<Formula> {
                         (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
                     }
                 });
-                let attachments = [v4(&x[1..]), v4(&x[5..]), v4(&x[5..]), v4(&x[1..])];
+                let attachments = [v4(&x[1..]), v4(&x[5..]), v4(&x[5..]), v4(&x[1..]), v4(&x[5..])];
                 let surface = with_target(&settings, |_| {}, |target| target.surface(&attachments));
                 let SixWay { positive, negative } = surface.six_way;
-                [surface.normal, positive, negative, surface.optical_depths].map(|v| v.to_array()).concat()
+                let depth = [surface.depth.x, surface.depth.y, 0.0];
+                let optical_depths = surface.shade.optical_depths.to_array();
+                [surface.normal.to_array(), positive.to_array(), negative.to_array(), optical_depths, depth].concat()
+                    [..14]
+                    .to_vec()
             },
             cases: with_choices(
                 count(NormalDecode::ALL),
@@ -306,7 +317,7 @@ fn lit_surfaces() -> Vec<Formula> {
         file: "lib/lit_smoke.wgsl",
         wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
                    for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
-                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), vec3f(0.0)); \
+                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), Shade(vec3f(0.0), vec3f(1.0)), vec2f(0.0)); \
                    y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",
         reference: |x| {
             let settings = changed(|s| {
@@ -320,7 +331,7 @@ fn lit_surfaces() -> Vec<Formula> {
                 visible.system.spherical_harmonics = std::array::from_fn(|i| Vec4::new(0.3, 0.2, 0.1, 0.0) * i as f32);
             };
             let six_way = SixWay { positive: Vec3::new(0.2, 0.4, 0.6), negative: Vec3::new(0.1, 0.3, 0.5) };
-            let surface = Surface { normal: v3(&x[1..]), six_way, optical_depths: Vec3::ZERO };
+            let surface = Surface { normal: v3(&x[1..]), six_way, shade: Shade::NONE, depth: glam::Vec2::ZERO };
             with_target(&settings, change, |target| target.diffuse(&surface, x[4], v3(&x[5..])).to_array().to_vec())
         },
         cases: unit_vectors(
@@ -335,8 +346,8 @@ fn lit_surfaces() -> Vec<Formula> {
             ("return light * system.diffuse_intensity;", "return light;"),
             ("motif_position(normal) * 0.5 + 0.5", "motif_position(normal)"),
             (
-                "diffuse_from_six_way(surface.six_way, position, surface.optical_depths) * system.diffuse_intensity",
-                "diffuse_from_six_way(surface.six_way, position, surface.optical_depths)",
+                "diffuse_from_six_way(surface.six_way, position, surface.shade) * system.diffuse_intensity",
+                "diffuse_from_six_way(surface.six_way, position, surface.shade)",
             ),
             ("coverage(amount, system.boost), position,", "amount, position,"),
         ],

@@ -1,6 +1,6 @@
-//! Formula tests of `shaders/lib/density_grid.wgsl` and `shaders/lib/shadow.wgsl`.
+//! Formula tests of `shaders/lib/density_grid.wgsl`, `shaders/lib/shadow.wgsl` and `shaders/lib/scene_shadow.wgsl`.
 
-use haze::formula::{density_grid, shadow};
+use haze::formula::{density_grid, depth_moments, scene_shadow, shadow, shadow_map};
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v3, with_choices};
@@ -10,7 +10,7 @@ const SIDE: (f32, f32) = (-1.0, 1.0);
 const PLACE: [(f32, f32); 3] = [(0.0, 9.0), (0.0, 12.0), (0.0, 7.0)];
 
 pub fn formulas() -> Vec<Formula> {
-    [density(), lookups()].into_iter().flatten().collect()
+    [density(), lookups(), on_scene(), by_depth()].into_iter().flatten().collect()
 }
 
 fn density() -> Vec<Formula> {
@@ -135,13 +135,114 @@ fn lookups() -> Vec<Formula> {
             mutants: &[("exp2(-optical_depth)", "exp2(optical_depth)"), ("0.5 - 0.5 * dot", "0.5 + 0.5 * dot")],
         },
         Formula {
-            name: "depth_of_slot",
+            name: "of_slot",
             file: "lib/shadow.wgsl",
-            wgsl: "y(0, depth_of_slot(x(0), vec3f(x(1), x(2), x(3))));",
-            reference: |x| vec![shadow::depth_of_slot(x[0], v3(&x[1..]))],
+            wgsl: "y(0, of_slot(x(0), vec3f(x(1), x(2), x(3))));",
+            reference: |x| vec![shadow::of_slot(x[0], v3(&x[1..]))],
             cases: with_choices(4, &[(0.0, 3.0), (0.0, 3.0), (0.0, 3.0)]),
             tolerance: ARITHMETIC,
             mutants: &[("vec3f(1.0, 2.0, 3.0)", "vec3f(3.0, 2.0, 1.0)")],
+        },
+    ]
+}
+
+fn on_scene() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "grid_entry",
+            file: "lib/scene_shadow.wgsl",
+            wgsl: "let e = grid_entry(vec4f(x(1), x(2), x(3), x(0)), vec3f(x(4), x(5), x(6)), vec3f(9.0, 12.0, 7.0)); \
+                   y3(0, e.xyz * e.w); y(3, e.w);",
+            reference: |x| {
+                let light = glam::Vec4::new(x[1], x[2], x[3], x[0]);
+                let entry = scene_shadow::grid_entry(light, v3(&x[4..]), glam::vec3(9.0, 12.0, 7.0));
+                (entry.truncate() * entry.w).extend(entry.w).to_array().to_vec()
+            },
+            // Lamps and suns, and points in the grid and around it.
+            cases: unit_vectors(
+                with_choices(2, &[SIDE, SIDE, SIDE, (-9.0, 18.0), (-12.0, 24.0), (-7.0, 14.0), (2.0, 30.0)])
+                    .into_iter()
+                    .map(|mut case| {
+                        let length = if case[0] > 0.5 { 1.0 } else { case[7] };
+                        case[1..4].iter_mut().for_each(|axis| *axis *= length);
+                        case
+                    })
+                    .collect(),
+                1,
+            ),
+            tolerance: TRANSCENDENTAL * 10.0,
+            // The fourth: the light on the wrong side.
+            mutants: &[
+                ("origin * (1.0 - light.w)", "origin"),
+                ("max(max(first.x, max(first.y, first.z)), 0.0)", "max(first.x, max(first.y, first.z))"),
+                ("select(min(leave, distance), leave,", "select(leave, leave,"),
+                ("let direction = to_light / distance", "let direction = -to_light / distance"),
+            ],
+        },
+        Formula {
+            name: "transmitted_light",
+            file: "lib/scene_shadow.wgsl",
+            wgsl: "y3(0, transmitted_light(x(0), vec3f(x(1), x(2), x(3))));",
+            reference: |x| scene_shadow::transmitted_light(x[0], v3(&x[1..])).to_array().to_vec(),
+            cases: random(60, &[(0.0, 8.0), (0.0, 2.0), (0.0, 2.0), (0.0, 2.0)]),
+            tolerance: TRANSCENDENTAL,
+            // The first: the sign of the shadow.
+            mutants: &[("exp(-optical_depth)", "exp(optical_depth)"), ("exp2(-optical_depth)", "exp(-optical_depth)")],
+        },
+    ]
+}
+
+fn by_depth() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "depth_moments",
+            file: "lib/depth_moments.wgsl",
+            wgsl: "let m = depth_moments(x(0), x(1), x(2), x(2) + x(3)); y(0, m.x); y(1, m.y);",
+            reference: |x| depth_moments::depth_moments(x[0], x[1], x[2], x[2] + x[3]).to_array().to_vec(),
+            cases: random(60, &[(0.0, 12.0), (0.1, 2.0), (0.5, 4.0), (0.5, 6.0)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[("(view_depth - near) / range", "view_depth / range"), ("reach * reach / 7.0", "reach / 7.0")],
+        },
+        Formula {
+            name: "depth_of_sample",
+            file: "lib/depth_moments.wgsl",
+            wgsl: "y(0, depth_of_sample(u32(x(0)), vec2f(x(1), x(1) * x(1) + x(2)), 2.0, 7.0));",
+            reference: |x| {
+                let moments = glam::vec2(x[1], x[1] * x[1] + x[2]);
+                vec![depth_moments::depth_of_sample(x[0] as u32, moments, 2.0, 7.0)]
+            },
+            cases: with_choices(4, &[(0.0, 1.0), (-0.01, 0.1)]),
+            tolerance: 1e-4,
+            mutants: &[("moments.y - moments.x * moments.x", "moments.y"), ("* 1.7320508", "")],
+        },
+        Formula {
+            name: "shadow_map_place",
+            file: "lib/shadow_map.wgsl",
+            wgsl: "let p = shadow_map_place(vec4f(x(0), x(1), x(2), x(3))); y3(0, p.xyz * p.w); y(3, p.w);",
+            reference: |x| {
+                let place = shadow_map::shadow_map_place(glam::Vec4::new(x[0], x[1], x[2], x[3]));
+                (place.truncate() * place.w).extend(place.w).to_array().to_vec()
+            },
+            cases: random(120, &[(-1.5, 1.5), (-1.5, 1.5), (-0.5, 1.5), (-0.5, 1.5)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[
+                ("0.5 - ndc.y * 0.5", "0.5 + ndc.y * 0.5"),
+                ("ndc.z >= 0.0", "true"),
+                ("<= vec3f(1.0)", "<= vec3f(2.0)"),
+            ],
+        },
+        Formula {
+            name: "shadow_map_visibility",
+            file: "lib/shadow_map.wgsl",
+            wgsl: "y(0, shadow_map_visibility(x(1), x(2), 0.1, x(0) > 0.5));",
+            reference: |x| vec![shadow_map::shadow_map_visibility(x[1], x[2], 0.1, x[0] > 0.5)],
+            cases: with_choices(2, &[(0.0, 1.0), (0.0, 1.0)]),
+            tolerance: ARITHMETIC,
+            // The first: light and shadow exchanged for maps of the other convention.
+            mutants: &[
+                ("depth >= stored - bias, reversed", "depth <= stored + bias, reversed"),
+                ("stored + bias", "stored"),
+            ],
         },
     ]
 }

@@ -8,6 +8,11 @@ use haze_demo::headless::Headless;
 
 use crate::test_scene::TestScene;
 
+/// Writes values as depth.
+const STORED_DEPTH: &str = "@fragment fn fragment(@builtin(position) p: vec4f) -> @builtin(frag_depth) f32 {
+    return textureLoad(values, vec2i(p.xy), 0).r;
+}";
+
 pub(super) fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, sample_count: u32) -> wgpu::Texture {
     // OpenGL cannot sample multisampled depth.
     let reads_samples = format.has_depth_aspect() && haze::read_only_depth_is_supported(&gpu.device);
@@ -78,9 +83,6 @@ pub(super) fn upload(gpu: &Headless, values: &Image<f32>) -> wgpu::Texture {
 pub(super) fn depth_buffer(gpu: &Headless, scene: &TestScene, size: UVec2, samples: u32) -> wgpu::Texture {
     let values = upload(gpu, &pad_to_target(&scene.ndc_depth(), scene.view.origin, size));
     let depth = target(gpu, size, scene.host.depth_format, samples);
-    let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @builtin(frag_depth) f32 {
-        return textureLoad(values, vec2i(p.xy), 0).r;
-    }";
     let nearest = f32::from(u8::from(scene.is_reversed()));
     let with_near_sample = format!(
         "@fragment fn fragment(@builtin(position) p: vec4f, @builtin(sample_index) i: u32) -> @builtin(frag_depth) f32 {{
@@ -88,7 +90,32 @@ pub(super) fn depth_buffer(gpu: &Headless, scene: &TestScene, size: UVec2, sampl
         }}"
     );
     let has_near_sample = samples > 1 && scene.host.has_near_sample;
-    fill(gpu, &values, &depth, if has_near_sample { &with_near_sample } else { fragment });
+    fill(gpu, &values, &depth, if has_near_sample { &with_near_sample } else { STORED_DEPTH });
+    depth
+}
+
+/// Creates a depth texture with these values in its layers.
+pub(super) fn depth_layers(gpu: &Headless, layers: &[Image<f32>]) -> wgpu::Texture {
+    let size = layers[0].size;
+    let depth = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("host shadow map"),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers.len() as u32 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth32Float,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    for (layer, values) in (0..).zip(layers) {
+        let view = depth.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: layer,
+            array_layer_count: Some(1),
+            ..Default::default()
+        });
+        fill_view(gpu, &upload(gpu, values), &depth, &view, STORED_DEPTH);
+    }
     depth
 }
 
@@ -108,11 +135,15 @@ pub fn convert_to_rgba16float(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::
 
 /// Draws a fragment shader, which reads `values`, over the whole target `into`.
 fn fill(gpu: &Headless, values: &wgpu::Texture, into: &wgpu::Texture, fragment: &str) {
+    fill_view(gpu, values, into, &into.create_view(&wgpu::TextureViewDescriptor::default()), fragment);
+}
+
+/// Draws a fragment shader, which reads `values`, over a view of the target `into`.
+fn fill_view(gpu: &Headless, values: &wgpu::Texture, into: &wgpu::Texture, view: &wgpu::TextureView, fragment: &str) {
     let device = &gpu.device;
     let pipeline = fill_pipeline(device, into, fragment);
     let is_depth = into.format().is_depth_stencil_format();
-    let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let (values, view) = (whole(values), whole(into));
+    let values = values.create_view(&wgpu::TextureViewDescriptor::default());
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("host fill"),
         layout: &pipeline.get_bind_group_layout(0),
@@ -121,7 +152,7 @@ fn fill(gpu: &Headless, values: &wgpu::Texture, into: &wgpu::Texture, fragment: 
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let attachment = Some(wgpu::RenderPassColorAttachment {
-            view: &view,
+            view,
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations::default(),
@@ -131,7 +162,7 @@ fn fill(gpu: &Headless, values: &wgpu::Texture, into: &wgpu::Texture, fragment: 
             label: Some("host fill"),
             color_attachments: if is_depth { &[] } else { std::slice::from_ref(&attachment) },
             depth_stencil_attachment: is_depth.then(|| wgpu::RenderPassDepthStencilAttachment {
-                view: &view,
+                view,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: has_stencil
                     .then_some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),

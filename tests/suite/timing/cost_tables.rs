@@ -1,6 +1,7 @@
 //! Figures of GPU time for the docs.
 
-use glam::{UVec2, UVec3, Vec3, vec3};
+use glam::{Mat4, UVec2, UVec3, Vec3, vec3};
+use haze::image::Image;
 use haze::noise::{pcg3d, unit};
 use haze::settings::{Backlight, Lighting, RenderPath};
 use haze::{Light, LightKind, Particle, Settings, wgpu};
@@ -8,7 +9,7 @@ use haze_demo::headless::Headless;
 
 use super::{draw_and_measure, timed_gpu, timed_host};
 use crate::gpu::is_tiled_available;
-use crate::test_scene::TestScene;
+use crate::test_scene::{TestScene, TestShadowMap};
 
 /// Median GPU time of the sum of `passes` for every scene, milliseconds. The scenes are drawn in turn.
 fn medians(gpu: &Headless, stages: &[TestScene], passes: &[&str]) -> Vec<f32> {
@@ -118,6 +119,17 @@ fn prints_cost_of_shadow() {
             let times = medians(gpu, &pair, &[pass]);
             println!("{pass}: {:.3} ms, {:.3} ms", times[0], times[1]);
         }
+        let mut by_depth = stages[2].clone();
+        by_depth.settings.shadow.by_depth = true;
+        by_depth.shadow_maps.push(TestShadowMap {
+            light: 2,
+            layers: vec![Image::new(UVec2::splat(512), 1.0)],
+            clip_from_world: vec![Mat4::from_scale(Vec3::splat(0.1))],
+            reversed: false,
+        });
+        let times = medians(gpu, &[stages[2].clone(), by_depth.clone()], ALL_PASSES);
+        let maps = medians(gpu, &[by_depth], &["shadow_visibility"]);
+        println!("by depth: {:.3} ms, {:.3} ms; shadow_visibility {:.3} ms", times[0], times[1], maps[0]);
         for (index, stage) in stages[1..].iter().enumerate() {
             println!(
                 "{} cells: {:.3} ms, {:.2}; density_splat {:.3} ms, shadow_march {:.3} ms",
@@ -137,6 +149,7 @@ const ALL_PASSES: &[&str] = &[
     "sort",
     "density_splat",
     "shadow_march",
+    "shadow_visibility",
     "accumulate",
     "tile_project",
     "tile_gather",

@@ -46,7 +46,9 @@ impl VisibleSystem<'_> {
     fn format(&self, role: AttachmentRole) -> AccumulationFormat {
         match role {
             AttachmentRole::NormalAndAmount | AttachmentRole::SixWay => self.settings.accumulate.format,
-            AttachmentRole::Weights | AttachmentRole::OpticalDepths => AccumulationFormat::Rgba16Float,
+            AttachmentRole::Weights | AttachmentRole::OpticalDepths | AttachmentRole::Depth => {
+                AccumulationFormat::Rgba16Float
+            }
         }
     }
 
@@ -64,6 +66,10 @@ impl VisibleSystem<'_> {
             AttachmentRole::SixWay => (six_way.negative * weighted).extend(weighted),
             AttachmentRole::Weights => Vec4::splat(weighted),
             AttachmentRole::OpticalDepths => (sprite.optical_depths * weighted).extend(weighted),
+            AttachmentRole::Depth => {
+                let moments = self.moments_of_sprite(sprite.view_depth, sprite.radius) * weighted;
+                Vec4::new(moments.x, moments.y, 0.0, weighted)
+            }
         };
         match (self.settings.order(), role) {
             (BlendOrder::Sorted, _) => premultiplied_over(source, texel),

@@ -3,20 +3,18 @@
 use glam::{IVec3, UVec3, Vec3};
 
 use crate::optical_depths::cell_index;
-use crate::sprite::sprite_optical_depth;
-use crate::visible_system::VisibleSystem;
+use crate::sprite::{density_radius, sprite_optical_depth};
 use haze::formula::density_grid::{bump_radius, cell_optical_depth, density_steps, optical_depth_of_steps};
+use haze::formula::uniforms::SystemUniform;
+use haze::frame::Particle;
 
-impl VisibleSystem<'_> {
-    /// Adds the sprites to a grid of `size` cells, in fixed-point steps.
-    pub fn density_splat(&self, size: UVec3, density: &mut [u64]) {
-        let system = &self.system;
-        for particle in self.particles.iter().filter(|particle| particle.is_visible()) {
-            let in_view = system.view_from_particles.transform_point3(particle.position);
-            let centre = system.grid_from_view.transform_point3(in_view);
-            let radius = particle.radius * system.size * system.cells_per_metre;
-            add_sprite(size, density, centre, radius, sprite_optical_depth(system, particle));
-        }
+/// Adds the sprites of a system to a grid of `size` cells, in fixed-point steps.
+pub fn density_splat(system: &SystemUniform, particles: &[Particle], size: UVec3, density: &mut [u64]) {
+    for particle in particles.iter().filter(|particle| particle.is_visible()) {
+        let in_view = system.view_from_particles.transform_point3(particle.position);
+        let centre = system.grid_from_view.transform_point3(in_view);
+        let (radius, depth) = (density_radius(system, particle), sprite_optical_depth(system, particle));
+        add_sprite(size, density, centre, radius, depth);
     }
 }
 

@@ -3,29 +3,44 @@
 use glam::{UVec2, Vec2, Vec3};
 use half::f16;
 
+use crate::shade::Shade;
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::assets::ramp::Ramp;
 use haze::formula::color::bounded_light;
+use haze::formula::depth_moments::{DEPTH_SAMPLES, depth_of_sample};
 use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
 use haze::formula::lighting::{
     backlight_weight, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
 };
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
-use haze::formula::shadow::{depth_of_slot, shadow_position};
+use haze::formula::shadow::{of_slot, shadow_position};
 use haze::formula::six_way::{SixWay, six_way_response};
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
 
 impl VisibleSystem<'_> {
+    /// Share of each light with shadow that reaches the smoke at a pixel past the scene. `moments`: those of its depth.
+    pub fn scene_visibility(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
+        let Some(volume) = self.optical_depths.as_ref().filter(|volume| volume.visible.is_some()) else {
+            return Vec3::ONE;
+        };
+        let system = &self.system;
+        let sample = |index| {
+            let depth = depth_of_sample(index, moments, system.smoke_near, system.smoke_far);
+            volume.sample_visible(system.grid_from_view.transform_point3(self.view_position(pixel, depth)))
+        };
+        (0..DEPTH_SAMPLES).map(sample).sum::<Vec3>() / DEPTH_SAMPLES as f32
+    }
+
     /// Samples a ramp of one row with the filter of the settings.
     pub fn sample_ramp(&self, ramp: &Ramp, u: f32) -> Vec3 {
         sample_ramp(ramp, self.settings.ramp_filter, u)
     }
 
-    /// Sum of all lights through the diffuse ramp. `depths`: optical depths towards the lights with shadow.
-    pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3, depths: Vec3) -> Vec3 {
-        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position, depths)).sum()
+    /// Sum of all lights through the diffuse ramp.
+    pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3, shade: &Shade) -> Vec3 {
+        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position, shade)).sum()
     }
 
     /// Contribution of a light through the diffuse ramp.
@@ -35,7 +50,7 @@ impl VisibleSystem<'_> {
         normal: Vec3,
         covered: f32,
         position: Vec3,
-        depths: Vec3,
+        shade: &Shade,
     ) -> Vec3 {
         let sample = sample_light(light, position);
         let at = Vec2::new(diffuse_coordinate(normal, sample.direction), covered);
@@ -46,31 +61,31 @@ impl VisibleSystem<'_> {
             let weight = backlight_weight(sample.direction, to_viewer);
             falloff = falloff.lerp(look_up(&self.material.backlight_ramp), weight);
         }
-        falloff * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, depths)
+        falloff * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, shade)
     }
 
     /// Share of a light that comes through the smoke before it.
-    pub fn shadow_on_light(&self, light: &LightUniform, to_light: Vec3, position: Vec3, depths: Vec3) -> Vec3 {
+    pub fn shadow_on_light(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec3 {
         if self.system.shadow_strength <= 0.0 || light.shadow_slot < 0.5 {
             return Vec3::ONE;
         }
         let to_viewer = direction_to_viewer(position, self.view.orthographic);
-        let at = shadow_position(depth_of_slot(light.shadow_slot, depths), to_light, to_viewer);
+        let at = shadow_position(of_slot(light.shadow_slot, shade.optical_depths), to_light, to_viewer);
         let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
-        Vec3::ONE.lerp(painted, self.system.shadow_strength)
+        Vec3::ONE.lerp(painted, self.system.shadow_strength) * of_slot(light.shadow_slot, shade.visible)
     }
 
     /// Sum of all lights through six-way maps.
-    pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3, depths: Vec3) -> Vec3 {
-        self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position, depths)).sum()
+    pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3, shade: &Shade) -> Vec3 {
+        self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position, shade)).sum()
     }
 
     /// Contribution of a light through six-way maps.
-    pub fn six_way_from_light(&self, light: &LightUniform, six_way: &SixWay, position: Vec3, depths: Vec3) -> Vec3 {
+    pub fn six_way_from_light(&self, light: &LightUniform, six_way: &SixWay, position: Vec3, shade: &Shade) -> Vec3 {
         let sample = sample_light(light, position);
         let response =
             six_way_response(six_way.positive, six_way.negative, sample.direction, self.system.six_way_anisotropy);
-        let shadow = self.shadow_on_light(light, sample.direction, position, depths);
+        let shadow = self.shadow_on_light(light, sample.direction, position, shade);
         light.color * (response * sample.attenuation) * self.system.six_way_color * shadow
     }
 
@@ -99,7 +114,7 @@ impl VisibleSystem<'_> {
                     DiffuseMode::Motif => motif_normal(place),
                     _ => cube_direction(face, place).normalize(),
                 };
-                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.centre, Vec3::ZERO));
+                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.centre, &Shade::NONE));
                 *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
             });
             baked

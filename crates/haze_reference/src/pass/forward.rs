@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::blend_unit::forward_blend;
+use crate::shade::Shade;
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::blending::forward_fragment;
@@ -26,9 +27,14 @@ impl VisibleSystem<'_> {
                 let normal = fragment.normal / fragment.normal.length_squared().max(1.0e-12).sqrt();
                 let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
                 let covered = coverage(amount, system.boost);
+                let mut shade = Shade { optical_depths: sprite.optical_depths, ..Shade::NONE };
+                if self.settings.lights_by_depth() {
+                    let moments = self.moments_of_sprite(sprite.view_depth, sprite.radius);
+                    shade.visible = self.scene_visibility(at.as_vec2() + 0.5, moments);
+                }
                 let diffuse = match self.settings.is_six_way() {
-                    true => self.diffuse_from_six_way(&fragment.six_way, position, sprite.optical_depths),
-                    false => self.diffuse_from_lights(normal, covered, position, sprite.optical_depths),
+                    true => self.diffuse_from_six_way(&fragment.six_way, position, &shade),
+                    false => self.diffuse_from_lights(normal, covered, position, &shade),
                 };
                 let diffuse = diffuse * system.diffuse_intensity;
                 let color = self.sample_ramp(&self.material.age_ramp, sprite.age);

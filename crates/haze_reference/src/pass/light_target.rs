@@ -25,9 +25,9 @@ impl AccumulatedTarget<'_> {
         if amount <= 0.0 {
             return Vec4::ZERO;
         }
-        let surface = self.surface(&self.attachments(accumulated, |texture| texture.load(at)));
         let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale as f32;
-        let position = visible.view_position(pixel, -system.centre.z);
+        let surface = self.shaded_surface(&self.attachments(accumulated, |texture| texture.load(at)), pixel);
+        let position = self.lit_position(&surface, pixel);
         let light = bounded_light(self.diffuse(&surface, amount, position) + visible.soft_scatter(amount));
         quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)
     }

@@ -7,5 +7,6 @@ mod diffuse_bake;
 mod forward;
 mod light_target;
 pub mod shadow_march;
+pub mod shadow_visibility;
 mod specular_scatter;
 pub mod transfer;

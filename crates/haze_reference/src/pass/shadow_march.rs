@@ -23,5 +23,5 @@ pub fn shadow_march(density: &[f32], shadow: &SmokeShadow) -> OpticalDepths {
         });
         Vec3::from(depths)
     };
-    OpticalDepths { size, cells: (0..size.element_product()).map(march).collect() }
+    OpticalDepths { size, cells: (0..size.element_product()).map(march).collect(), visible: None }
 }

@@ -4,6 +4,7 @@ use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::accumulated::{AccumulatedTarget, Attachments};
 use crate::blend_unit::premultiplied_over;
+use crate::shade::Shade;
 use haze::assets::image::Image;
 use haze::formula::color::{bounded_light, overdraw_color};
 use haze::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
@@ -22,20 +23,22 @@ pub struct Surface {
     pub normal: Vec3,
     /// From six-way maps.
     pub six_way: SixWay,
-    /// Mean optical depths of the smoke before the surface, towards the lights with shadow.
-    pub optical_depths: Vec3,
+    /// Smoke and scene before it.
+    pub shade: Shade,
+    /// Moments of its depth, if the system accumulates them.
+    pub depth: Vec2,
 }
 
 impl AccumulatedTarget<'_> {
     /// Diffuse light on a surface, by the system's mode.
     pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
-        let (visible, normal, depths) = (self.visible, surface.normal, surface.optical_depths);
+        let (visible, normal, shade) = (self.visible, surface.normal, &surface.shade);
         if visible.settings.is_six_way() {
-            return visible.diffuse_from_six_way(&surface.six_way, position, depths) * visible.system.diffuse_intensity;
+            return visible.diffuse_from_six_way(&surface.six_way, position, shade) * visible.system.diffuse_intensity;
         }
         let light = match visible.settings.diffuse.mode {
             DiffuseMode::Ramp => {
-                visible.diffuse_from_lights(normal, coverage(amount, visible.system.boost), position, depths)
+                visible.diffuse_from_lights(normal, coverage(amount, visible.system.boost), position, shade)
             }
             DiffuseMode::Cubemap => {
                 let cube = cube_coordinate(normal);
@@ -110,7 +113,7 @@ impl AccumulatedTarget<'_> {
         }
         let mut light = Vec3::ZERO;
         if debug_view != DebugView::SoftScatter {
-            light += self.diffuse(&surface, amount, self.visible.view_position(pixel, -system.centre.z));
+            light += self.diffuse(&surface, amount, self.lit_position(&surface, pixel));
         }
         if debug_view != DebugView::Diffuse {
             light += self.visible.soft_scatter(amount);
@@ -129,24 +132,44 @@ impl AccumulatedTarget<'_> {
     }
 
     fn surface_at(&self, accumulated: Vec4, pixel: Vec2) -> Surface {
-        self.surface(&self.attachments(accumulated, |texture| self.sample_target(texture, pixel)))
+        self.shaded_surface(&self.attachments(accumulated, |texture| self.sample_target(texture, pixel)), pixel)
+    }
+
+    /// Surface at a pixel, past the scene's shadow.
+    pub fn shaded_surface(&self, attachments: &Attachments, pixel: Vec2) -> Surface {
+        let mut surface = self.surface(attachments);
+        if AttachmentRole::Depth.is_used(&self.visible.settings) {
+            surface.shade.visible = self.visible.scene_visibility(pixel, surface.depth);
+        }
+        surface
+    }
+
+    /// Point of the smoke that is lit at a pixel, view space: at its mean depth, or on the plane of the system's centre.
+    pub fn lit_position(&self, surface: &Surface, pixel: Vec2) -> Vec3 {
+        let (visible, system) = (self.visible, &self.visible.system);
+        let depth = match AttachmentRole::Depth.is_used(&visible.settings) {
+            true => system.smoke_near + (system.smoke_far - system.smoke_near) * saturate(surface.depth.x),
+            false => -system.centre.z,
+        };
+        visible.view_position(pixel, depth)
     }
 
     /// `surface_from_accumulation()` in lit_smoke.wgsl.
     pub fn surface(&self, attachments: &Attachments) -> Surface {
         let settings = self.visible.settings;
         let accumulate = &settings.accumulate;
-        let [accumulated, six_way, weights, depths] = *attachments;
-        let optical_depths = depths.xyz() / depths.w.max(1.0e-6);
+        let [accumulated, six_way, weights, depths, moments] = *attachments;
+        let shade = Shade { optical_depths: depths.xyz() / depths.w.max(1.0e-6), ..Shade::NONE };
+        let depth = moments.xy() / moments.w.max(1.0e-6);
         if AttachmentRole::SixWay.is_used(&settings) {
             let scale = 1.0 / six_way.w.max(1.0e-6);
             let [positive, negative] = [accumulated, six_way].map(|light| light.xyz().max(Vec3::ZERO) * scale);
             let normal = normal_from_six_way(positive, negative);
-            return Surface { normal, six_way: SixWay { positive, negative }, optical_depths };
+            return Surface { normal, six_way: SixWay { positive, negative }, shade, depth };
         }
         let weights = if AttachmentRole::Weights.is_used(&settings) { weights.x } else { accumulated.w };
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
-        Surface { normal, six_way: SixWay::default(), optical_depths }
+        Surface { normal, six_way: SixWay::default(), shade, depth }
     }
 
     /// Amount and surface at a pixel.
@@ -158,8 +181,8 @@ impl AccumulatedTarget<'_> {
     /// Contribution of a light if none is baked.
     pub fn diffuse_from_light(&self, light: &LightUniform, surface: &Surface, covered: f32, position: Vec3) -> Vec3 {
         match self.visible.settings.is_six_way() {
-            true => self.visible.six_way_from_light(light, &surface.six_way, position, surface.optical_depths),
-            false => self.visible.diffuse_from_light(light, surface.normal, covered, position, surface.optical_depths),
+            true => self.visible.six_way_from_light(light, &surface.six_way, position, &surface.shade),
+            false => self.visible.diffuse_from_light(light, surface.normal, covered, position, &surface.shade),
         }
     }
 }

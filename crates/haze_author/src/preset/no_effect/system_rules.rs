@@ -225,7 +225,13 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "only at a shadow.strength above 0",
         |s, _| s.settings.shadow.strength <= 0.0,
-        &["settings.shadow.density", "settings.shadow.resolution", "material.shadow_ramp"],
+        &[
+            "settings.shadow.density",
+            "settings.shadow.resolution",
+            "settings.shadow.by_depth",
+            "settings.shadow.scene",
+            "material.shadow_ramp",
+        ],
     ),
     rule(
         "diffuse.mode painted_motif takes its light from the motif",

@@ -1,0 +1,43 @@
+//! CPU version of `shaders/shadow_visibility.wgsl`.
+
+use glam::{Mat4, UVec3, Vec3, Vec4, Vec4Swizzles};
+use half::f16;
+
+use crate::input::ShadowMap;
+use haze::assets::image::Image;
+use haze::formula::shadow_map::{shadow_map_place, shadow_map_visibility};
+use haze::formula::uniforms::ShadowMapUniform;
+use haze::view_setup::SmokeShadow;
+
+/// Share of each cell of the density grid that the lights with shadow reach past the scene.
+pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow) -> Vec<Vec3> {
+    let of_light = |light: usize| maps.iter().find(|map| map.projection.light == light);
+    let uniform = shadow.visibility(|light| of_light(light).map(|map| map.projection));
+    let layers = shadow.lights.map(|light| light.and_then(of_light).map_or(&[][..], |map| map.layers));
+    let size = shadow.grid.size;
+    let look_up = |index: u32| {
+        let cell = UVec3::new(index % size.x, index / size.x % size.y, index / (size.x * size.y));
+        let visible: Vec3 = (0..8)
+            .map(|corner| {
+                let offset = UVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2).as_vec3() * 0.5 + 0.25;
+                let place = cell.as_vec3() + offset;
+                Vec3::from([0, 1, 2].map(|slot| is_visible(&uniform.maps[slot], layers[slot], place)))
+            })
+            .sum();
+        Vec3::from((visible / 8.0).to_array().map(|visible| f16::from_f32(visible).to_f32()))
+    };
+    (0..size.element_product()).map(look_up).collect()
+}
+
+fn is_visible(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3) -> f32 {
+    let inside = |(clip_from_grid, layer): (&Mat4, _)| {
+        let at = shadow_map_place(*clip_from_grid * place.extend(1.0));
+        (at.w > 0.5).then_some((at, layer))
+    };
+    let found: Option<(Vec4, &Image<f32>)> = map.clip_from_grid.iter().zip(layers).find_map(inside);
+    found.map_or(1.0, |(at, layer)| {
+        let texel = (at.xy() * layer.size.as_vec2()).min(layer.size.as_vec2() - 1.0);
+        let stored = layer.load(texel.as_ivec2());
+        shadow_map_visibility(at.z, stored, map.bias, map.reversed == 1)
+    })
+}

@@ -1,0 +1,45 @@
+// Shadow of smoke in a host's shader: the bindings of Renderer::scene_shadow(), and the function that reads them. The group
+// is a host's choice: scene_shadow_wgsl() replaces its number.
+
+#import "lib/ramp.wgsl"
+#import "lib/scene_shadow.wgsl"
+
+struct SceneShadow {
+    // Corner of the density grid, world space.
+    origin: vec3f,
+    cells_per_metre: f32,
+    // Number of cells along each axis.
+    size: vec3f,
+    // Mix of full light and shadow. 0: no smoke casts shadow.
+    strength: f32,
+    // The lights with shadow, in cells: position, and 0 in w; or the direction to the light, and 1 in w.
+    lights: array<vec4f, 3>,
+    // Their indices in FrameInput::lights; 4294967295 for none.
+    indices: vec4u,
+}
+
+@group(0) @binding(0) var<uniform> haze_scene_shadow: SceneShadow;
+@group(0) @binding(1) var haze_optical_depths: texture_3d<f32>;
+@group(0) @binding(2) var haze_shadow_ramp: texture_2d<f32>;
+@group(0) @binding(3) var haze_linear_sampler: sampler;
+
+// Share of a light that reaches a point through the smoke, linear RGB: multiply the light's diffuse and specular parts.
+// `light`: index in FrameInput::lights. 1 for lights without shadow, and where there is no smoke before the light.
+fn haze_transmittance(world_position: vec3f, light: u32) -> vec3f {
+    let found = haze_scene_shadow.indices.xyz == vec3u(light);
+    if !any(found) || haze_scene_shadow.strength <= 0.0 {
+        return vec3f(1.0);
+    }
+    let slot = select(select(2u, 1u, found.y), 0u, found.x);
+    let size = haze_scene_shadow.size;
+    let place = (world_position - haze_scene_shadow.origin) * haze_scene_shadow.cells_per_metre;
+    let entry = grid_entry(haze_scene_shadow.lights[slot], place, size);
+    if entry.w < 0.5 {
+        return vec3f(1.0);
+    }
+    let at = clamp(entry.xyz, vec3f(0.5), size - 0.5) / vec3f(textureDimensions(haze_optical_depths));
+    let optical_depth = textureSampleLevel(haze_optical_depths, haze_linear_sampler, at, 0.0)[slot];
+    let coordinate = vec2f(saturate(1.0 - exp2(-optical_depth)), 1.0);
+    let painted = sample_ramp_2d(haze_shadow_ramp, haze_linear_sampler, coordinate);
+    return mix(vec3f(1.0), transmitted_light(optical_depth, painted), haze_scene_shadow.strength);
+}

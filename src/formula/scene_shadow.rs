@@ -1,0 +1,30 @@
+//! Shadow of smoke on the scene. Lengths are in cells of the density grid.
+
+use glam::{Vec3, Vec4};
+
+use super::saturate;
+
+/// Place at which light comes to `from` out of the grid of `size` cells, and 1 in w: the point itself inside of the grid, and
+/// outside, where its line to the light enters the grid. 0 in w if the line does not meet the grid before the light.
+/// `light`: its position, and 0 in w; or the
+/// direction to it, and 1 in w.
+pub fn grid_entry(light: Vec4, from: Vec3, size: Vec3) -> Vec4 {
+    let to_light = light.truncate() - from * (1.0 - light.w);
+    let distance = to_light.dot(to_light).max(1.0e-8).sqrt();
+    let direction = to_light / distance;
+    let steady = Vec3::select(direction.abs().cmplt(Vec3::splat(1.0e-6)), Vec3::splat(1.0e-6), direction);
+    let (low, high) = (-from / steady, (size - from) / steady);
+    let (first, last) = (low.min(high), low.max(high));
+    let enter = first.x.max(first.y).max(first.z).max(0.0);
+    let leave = last.x.min(last.y).min(last.z);
+    let reach = if light.w > 0.5 { leave } else { leave.min(distance) };
+    (from + direction * enter).extend(if enter < reach { 1.0 } else { 0.0 })
+}
+
+/// Share of a light that falls through smoke onto the scene. `painted`: color of the shadow ramp for that optical depth and
+/// a light behind the smoke, which tints what is left of the light.
+pub fn transmitted_light(optical_depth: f32, painted: Vec3) -> Vec3 {
+    let brightest = painted.max_element();
+    let hue = if brightest > 1.0e-4 { painted / brightest } else { Vec3::ONE };
+    Vec3::ONE.lerp(hue, saturate(1.0 - (-optical_depth).exp2())) * (-optical_depth).exp()
+}

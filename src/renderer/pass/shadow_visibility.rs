@@ -1,0 +1,38 @@
+//! shadow_visibility: looks up a host's shadow maps at the cells of the density grid.
+//!
+//! Reads: shadow maps of up to three lights.
+//! Writes: visibility of the lights, in the second block of the volume.
+
+use glam::UVec3;
+
+use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::gpu::record::begin_compute;
+use crate::renderer::gpu::timing::Timing;
+
+/// Cells of a workgroup along each axis.
+const SIDE: u32 = 4;
+
+/// Returns the pipeline's parts.
+pub(crate) fn describe((): ()) -> ComputePipelineDescription {
+    ComputePipelineDescription { entry_point: "look_up_cells", constants: Vec::new() }
+}
+
+/// The pass for one frame.
+#[derive(Debug)]
+pub(crate) struct ShadowVisibility {
+    pub pipeline: wgpu::ComputePipeline,
+    /// Group 0.
+    pub inputs: wgpu::BindGroup,
+    /// Number of cells along each axis.
+    pub size: UVec3,
+}
+
+impl ShadowVisibility {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        let mut pass = begin_compute(encoder, "shadow_visibility", timing);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.inputs, &[]);
+        let workgroups = |cells: u32| cells.div_ceil(SIDE);
+        pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), workgroups(self.size.z));
+    }
+}
