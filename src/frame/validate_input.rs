@@ -75,8 +75,8 @@ pub fn validate_shadow_projections<'a>(
     for (index, projection) in projections.enumerate() {
         let field = |name| format!("shadow_maps[{index}].projection.{name}");
         let ShadowProjection { light, clip_from_world, bias, .. } = projection;
-        let expected = format!("the index of one of the {lights} lights");
         let Some(seen) = seen.get_mut(light).filter(|_| light < lights) else {
+            let expected = format!("the index of one of the {lights} lights");
             return Err(FieldError::new(field("light"), light, expected));
         };
         if std::mem::replace(seen, true) {

@@ -107,6 +107,18 @@ impl Layouts {
     }
 }
 
+/// Creates a bind group of resources, in the order of its layout.
+pub(crate) fn bind_resources<'a>(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
+) -> wgpu::BindGroup {
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
 /// Creates a bind group of textures, in the order of its layout.
 pub(crate) fn bind_textures<const N: usize>(
     device: &wgpu::Device,

@@ -2,6 +2,7 @@
 
 use super::context::Shared;
 use super::gpu::record::uniform_buffer;
+use super::layouts::bind_resources;
 use super::tiled::FrameShadow;
 use crate::formula::uniforms::SceneShadowUniform;
 use crate::frame::FrameInput;
@@ -56,12 +57,5 @@ fn bind(shared: &Shared, uniform: &wgpu::Buffer, [optical_depths, ramp]: &[wgpu:
         wgpu::BindingResource::TextureView(ramp),
         wgpu::BindingResource::Sampler(&shared.textures.linear),
     ];
-    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-    let layout = &shared.layouts.scene_shadow;
-    shared.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("haze scene shadow"),
-        layout,
-        entries: &entries,
-    })
+    bind_resources(&shared.device, "haze scene shadow", &shared.layouts.scene_shadow, resources)
 }

@@ -139,19 +139,13 @@ impl SystemParticles {
     }
 
     /// Releases buffers that have not been needed for 120 frames. `is_untiled`: true if that is so for the path
-    /// `tiled`. `is_measured`: true if a host's particles were measured in this frame; `is_splatted`: true if they were added
-    /// to a density grid.
-    pub fn release_unused(
-        &mut self,
-        is_untiled: bool,
-        is_measured: bool,
-        is_splatted: bool,
-        pass: Option<&ParticlePass>,
-    ) {
+    /// `tiled`. `is_sorted`: true if the GPU sorted a host's particles in this frame; `is_measured`: if it measured them;
+    /// `is_splatted`: if it added the particles to a density grid.
+    pub fn release_unused(&mut self, is_untiled: bool, is_sorted: bool, is_measured: bool, is_splatted: bool) {
         if is_untiled {
             self.emitted = EmittedParticles::default();
         }
-        if self.frames_unsorted.tick(!matches!(pass, Some(ParticlePass::DepthSort(..)))) {
+        if self.frames_unsorted.tick(!is_sorted) {
             self.depth_sorted = SortedParticles::default();
         }
         if self.frames_unmeasured.tick(!is_measured) {

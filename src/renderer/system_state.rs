@@ -265,11 +265,9 @@ impl SystemState {
         if is_released {
             self.tiles = TiledSystem::default();
         }
-        let caster = self.prepared.as_ref().map(|prepared| &prepared.caster).or(self.hidden.as_ref());
-        let particle_pass = caster.and_then(|caster| caster.particle_pass.as_ref());
-        let is_measured = caster.is_some_and(|caster| caster.measure.is_some());
-        let is_splatted = caster.is_some_and(|caster| caster.splat.is_some());
-        self.particles.release_unused(is_released, is_measured, is_splatted, particle_pass);
+        let is_sorted = matches!(self.particle_pass(), Some(ParticlePass::DepthSort(..)));
+        let (is_measured, is_splatted) = (self.measure().is_some(), self.splat().is_some());
+        self.particles.release_unused(is_released, is_sorted, is_measured, is_splatted);
     }
 
     fn prepare(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) -> Option<PreparedSystem> {

@@ -206,6 +206,7 @@ fn shadow_on_the_ground_is_close_to_that_of_all_densities() {
     let (_, kind) = kind_of("dust", PathTrace { size: 48, samples: 4, seed: 1 });
     for (error, shadow) in ground_errors(&kind, "dust") {
         println!("{:.1} % of full light, mean shadow {:.1} %", 100.0 * error, 100.0 * shadow);
+        // Measured: 1 to 4 %, of shadows of 6 to 18 %.
         assert!(error < 0.05 && shadow > 0.05, "{error}, {shadow}");
     }
 }

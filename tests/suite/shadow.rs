@@ -354,7 +354,7 @@ fn casting_shadow_first_draws_the_same_frame() {
         assert_eq!(host.renderer.shadowed_lights().count(), if is_tiled_available() { 1 } else { 0 });
         // Commands that were dropped are recorded again.
         let mut dropped = gpu().device.create_command_encoder(&Default::default());
-        host.prepare(&mut dropped, &scene, haze::Particles::Slice(&scene.particles)).unwrap();
+        host.cast_shadow(&mut dropped, &scene).unwrap();
         drop(dropped);
         host.casts_first = false;
         host.draw(gpu(), &scene).unwrap();

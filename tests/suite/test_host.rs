@@ -192,6 +192,28 @@ impl Host {
         scene: &TestScene,
         particles: Particles<'_>,
     ) -> Result<(), Error> {
+        let casts_first = self.casts_first;
+        self.with_frame(scene, particles, |renderer, frame| {
+            if casts_first {
+                renderer.cast_shadow(encoder, frame)?;
+            }
+            renderer.prepare(encoder, frame)
+        })
+    }
+
+    /// Records `cast_shadow` alone.
+    pub fn cast_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) -> Result<(), Error> {
+        let particles = Particles::Slice(&scene.particles);
+        self.with_frame(scene, particles, |renderer, frame| renderer.cast_shadow(encoder, frame))
+    }
+
+    /// Calls `f` with the renderer and the input of a frame.
+    fn with_frame(
+        &mut self,
+        scene: &TestScene,
+        particles: Particles<'_>,
+        f: impl FnOnce(&mut Renderer, &FrameInput<'_>) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         let (bounds, world_from_particles) = (scene.bounds, scene.world_from_particles);
         let mut systems = vec![ParticleSystem {
             bounds,
@@ -223,10 +245,7 @@ impl Host {
             debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
             ..FrameInput::new(scene.view, scene_depth)
         };
-        if self.casts_first {
-            self.renderer.cast_shadow(encoder, &frame)?;
-        }
-        self.renderer.prepare(encoder, &frame)
+        f(&mut self.renderer, &frame)
     }
 
     /// Records the host's pass, the second half of a frame.

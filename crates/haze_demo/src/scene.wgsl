@@ -246,10 +246,14 @@ fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) ve
 // Alpha of paint without a box.
 const NO_BOX: f32 = -1.0;
 
+// Returns the vector from the eye to view depth 1. `uv` is 0..1, from the image's upper left corner.
+fn ray_at_unit_depth(uv: vec2f) -> vec3f {
+    return scene.ray_forward + scene.ray_right * (uv.x * 2.0 - 1.0) + scene.ray_up * (1.0 - uv.y * 2.0);
+}
+
 // Returns the direction of the ray through a position in the image, pixels.
 fn ray_direction(place: vec2f) -> vec3f {
-    let uv = place * 2.0 / vec2f(textureDimensions(paint));
-    return normalize(scene.ray_forward + scene.ray_right * (uv.x * 2.0 - 1.0) + scene.ray_up * (1.0 - uv.y * 2.0));
+    return normalize(ray_at_unit_depth(place * 2.0 / vec2f(textureDimensions(paint))));
 }
 
 // Returns the point at which the ray meets the plane of a face.
@@ -341,9 +345,7 @@ fn shade_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = vec2i(position.xy);
     var color = textureLoad(rest, at, 0).rgb;
     let view_depth = view_depth_from_ndc_depth(textureLoad(depth, at, 0).r, scene.depth_coefficients);
-    let uv = position.xy / vec2f(textureDimensions(rest));
-    let ray = scene.ray_forward + scene.ray_right * (uv.x * 2.0 - 1.0) + scene.ray_up * (1.0 - uv.y * 2.0);
-    let world = scene.eye + ray * view_depth;
+    let world = scene.eye + ray_at_unit_depth(position.xy / vec2f(textureDimensions(rest))) * view_depth;
     var through = array<vec3f, 3>(vec3f(1.0), vec3f(1.0), vec3f(1.0));
     if view_depth < SKY_VIEW_DEPTH {
         for (var slot = 0; slot < 3; slot++) {

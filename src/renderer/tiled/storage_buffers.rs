@@ -1,5 +1,7 @@
 //! Creation of buffers and bind groups.
 
+use crate::renderer::layouts::bind_resources;
+
 /// Bytes of a key, index or count.
 pub(super) const WORD_BYTES: u64 = 4;
 
@@ -29,7 +31,5 @@ pub(super) fn bind<'a>(
     layout: &wgpu::BindGroupLayout,
     resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
 ) -> wgpu::BindGroup {
-    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("haze tiled"), layout, entries: &entries })
+    bind_resources(device, "haze tiled", layout, resources)
 }
