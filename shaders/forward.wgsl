@@ -49,9 +49,14 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
     let covered = coverage(amount, system.boost);
-    var shade = Shade(in.optical_depths, vec3f(1.0));
+    var shade = Shade(in.optical_depths, vec3f(1.0), vec2f(1.0));
     if BY_DEPTH {
-        shade.visible = scene_visibility(ray_through(position), moments_of_sprite(in.centre_radius));
+        let ray = ray_through(position);
+        let moments = moments_of_sprite(in.centre_radius);
+        shade.visible = scene_visibility(ray, moments);
+        if AMBIENT {
+            shade.openness = openness(ray, moments);
+        }
     }
     var light = vec3f(0.0);
     if SIX_WAY {

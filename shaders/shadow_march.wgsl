@@ -1,19 +1,23 @@
 // shadow_march
-// Marches from every cell of the density grid to the lights with shadow.
+// Marches from every cell of the density grid to the lights with shadow, and to sky and ground.
 //
 // Reads   optical depths across the cells, in fixed-point steps.
-// Writes  optical depths towards the lights.
+// Writes  optical depths towards the lights; openness to sky and ground, in a block of its own.
 // Space   Cells of the grid.
 
 #import "lib/density_grid.wgsl"
 #import "lib/shadow.wgsl"
+#import "lib/ambient.wgsl"
 
 struct ShadowMarch {
     // Position, and 0 in w; or the direction to the light, and 1 in w.
     lights: array<vec4f, 3>,
+    // Directions to the sky, and 1 in w. Those to the ground are opposite.
+    sky: array<vec4f, 4>,
     // Number of cells along each axis.
     size: vec3f,
-    padding: f32,
+    // First cell of the openness along z.
+    openness_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> march: ShadowMarch;
@@ -45,11 +49,11 @@ fn sample_density(place: vec3f) -> f32 {
     return sum;
 }
 
-fn optical_depth_towards(light: vec4f, origin: vec3f) -> f32 {
+fn optical_depth_towards(light: vec4f, origin: vec3f, steps: u32) -> f32 {
     let ray = shadow_ray(light, origin, march.size);
-    let step = ray.w / f32(SHADOW_STEPS);
+    let step = ray.w / f32(steps);
     var depth = 0.0;
-    for (var i = 0u; i < SHADOW_STEPS; i++) {
+    for (var i = 0u; i < steps; i++) {
         depth += sample_density(origin + ray.xyz * ((f32(i) + 0.5) * step));
     }
     return min(depth * step, MAX_OPTICAL_DEPTH);
@@ -68,9 +72,27 @@ fn march_cells(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocatio
     let light = local.z / SIDE;
     let cell = workgroup * SIDE + place;
     let index = (place.z * SIDE + place.y) * SIDE + place.x;
-    depths[light][index] = optical_depth_towards(march.lights[light], vec3f(cell) + 0.5);
+    depths[light][index] = optical_depth_towards(march.lights[light], vec3f(cell) + 0.5, SHADOW_STEPS);
     workgroupBarrier();
     if light == 0u && all(cell < vec3u(march.size)) {
         textureStore(optical_depths, cell, vec4f(depths[0][index], depths[1][index], depths[2][index], 0.0));
+    }
+}
+
+// Mean of 2^(-optical depth) over the directions to the sky, or, with a `side` of -1, to the ground.
+fn openness_towards(side: f32, origin: vec3f) -> f32 {
+    var sum = 0.0;
+    for (var i = 0u; i < SKY_DIRECTIONS; i++) {
+        sum += exp2(-optical_depth_towards(vec4f(march.sky[i].xyz * side, 1.0), origin, SKY_STEPS));
+    }
+    return sum / f32(SKY_DIRECTIONS);
+}
+
+@compute @workgroup_size(4, 4, 4)
+fn march_sky(@builtin(global_invocation_id) cell: vec3u) {
+    if all(cell < vec3u(march.size)) {
+        let origin = vec3f(cell) + 0.5;
+        let openness = vec2f(openness_towards(1.0, origin), openness_towards(-1.0, origin));
+        textureStore(optical_depths, vec3u(cell.xy, cell.z + march.openness_offset), vec4f(openness, 0.0, 0.0));
     }
 }

@@ -4,6 +4,7 @@
 #import "lib/ramp.wgsl"
 #import "lib/six_way.wgsl"
 #import "lib/shadow.wgsl"
+#import "lib/ambient.wgsl"
 
 const SOFT_SCATTER_MODE_SMOOTHSTEP: u32 = 0u;
 const SOFT_SCATTER_MODE_RAMP: u32 = 1u;
@@ -13,12 +14,17 @@ const BACKLIGHT_SAME: u32 = 0u;
 const BACKLIGHT_RAMP: u32 = 1u;
 override BACKLIGHT: u32 = BACKLIGHT_SAME;
 
-// Smoke and scene between a point of the smoke and the lights with shadow.
+// True if light from sky and ground falls on the smoke.
+override AMBIENT: bool = false;
+
+// Smoke and scene between a point of the smoke and the light that falls on it.
 struct Shade {
-    // Of other smoke.
+    // Of other smoke, towards the lights with shadow.
     optical_depths: vec3f,
-    // Share of each light that comes past the scene.
+    // Share of each of these lights that comes past the scene.
     visible: vec3f,
+    // To sky and ground.
+    openness: vec2f,
 }
 
 // Share of a light that comes past the scene and through the smoke before it.
@@ -29,6 +35,44 @@ fn shadow_on_light(slot: f32, shade: Shade, to_light: vec3f, to_viewer: vec3f) -
     let at = shadow_position(of_slot(slot, shade.optical_depths), to_light, to_viewer);
     let through = mix(vec3f(1.0), sample_ramp_2d(shadow_ramp, linear_sampler, at), system.shadow_strength);
     return through * of_slot(slot, shade.visible);
+}
+
+// Share of the light from a hemisphere that comes through the smoke.
+fn shadow_on_hemisphere(openness: f32) -> vec3f {
+    if !SHADOW {
+        return vec3f(1.0);
+    }
+    let painted = sample_ramp_2d(shadow_ramp, linear_sampler, openness_position(openness));
+    return mix(vec3f(1.0), painted, system.shadow_strength);
+}
+
+// Light from sky and ground, after the smoke between them.
+struct Hemispheres {
+    sky: vec3f,
+    ground: vec3f,
+}
+
+fn hemispheres(openness: vec2f) -> Hemispheres {
+    return Hemispheres(
+        system.sky_color * shadow_on_hemisphere(openness.x),
+        system.ground_color * shadow_on_hemisphere(openness.y),
+    );
+}
+
+// Light from sky and ground through the diffuse ramp.
+fn ambient_from_ramp(normal: vec3f, covered: f32, openness: vec2f) -> vec3f {
+    let light = hemispheres(openness);
+    let above = vec2f(hemisphere_coordinate(normal, system.up), covered);
+    let below = vec2f(hemisphere_coordinate(normal, -system.up), covered);
+    return light.sky * sample_ramp_2d(diffuse_ramp, linear_sampler, above)
+        + light.ground * sample_ramp_2d(diffuse_ramp, linear_sampler, below);
+}
+
+// Light from sky and ground through six-way maps.
+fn ambient_from_six_way(six_way: SixWay, openness: vec2f) -> vec3f {
+    let light = hemispheres(openness);
+    return light.sky * six_way_hemisphere(six_way.positive, six_way.negative, system.up)
+        + light.ground * six_way_hemisphere(six_way.positive, six_way.negative, -system.up);
 }
 
 // Sum of all lights through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · color · attenuation. (OTEE
@@ -47,6 +91,9 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f, shade: Shad
         let shadow = shadow_on_light(lights[i].shadow_slot, shade, light.direction, to_viewer);
         sum += falloff * lights[i].color * light.attenuation * shadow;
     }
+    if AMBIENT {
+        sum += ambient_from_ramp(normal, covered, shade.openness);
+    }
     return sum;
 }
 
@@ -59,6 +106,9 @@ fn diffuse_from_six_way(six_way: SixWay, position: vec3f, shade: Shade) -> vec3f
         let response = six_way_response(six_way.positive, six_way.negative, light.direction, system.six_way_anisotropy);
         let shadow = shadow_on_light(lights[i].shadow_slot, shade, light.direction, to_viewer);
         sum += lights[i].color * (response * light.attenuation) * shadow;
+    }
+    if AMBIENT {
+        sum += ambient_from_six_way(six_way, shade.openness);
     }
     return sum * system.six_way_color;
 }

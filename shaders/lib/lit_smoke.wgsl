@@ -71,6 +71,7 @@ fn load_attachments(texel: vec2i) -> Attachments {
 fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Surface {
     var surface: Surface;
     surface.shade.visible = vec3f(1.0);
+    surface.shade.openness = vec2f(1.0);
     if OPTICAL_DEPTHS_SLOT != 0u {
         let depths = attachments.optical_depths;
         surface.shade.optical_depths = depths.rgb / max(depths.a, 1.0e-6);
@@ -94,11 +95,15 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
     return surface;
 }
 
-// Surface at a pixel, past the scene's shadow.
+// Surface at a pixel, past the scene's shadow and open to the sky.
 fn shaded_surface(accumulated: vec4f, attachments: Attachments, pixel: vec2f) -> Surface {
     var surface = surface_from_accumulation(accumulated, attachments);
     if DEPTH_SLOT != 0u {
-        surface.shade.visible = scene_visibility(ray_of_pixel(pixel), surface.depth);
+        let ray = ray_of_pixel(pixel);
+        surface.shade.visible = scene_visibility(ray, surface.depth);
+        if AMBIENT {
+            surface.shade.openness = openness(ray, surface.depth);
+        }
     }
     return surface;
 }

@@ -76,11 +76,19 @@ struct System {
     grid_from_view: mat4x4f,
     grid_size: vec3f,
     cells_per_metre: f32,
+    // View space, unit length.
+    up: vec3f,
     // 0: no shadow.
     shadow_strength: f32,
+    // Light from above, exposed.
+    sky_color: vec3f,
     shadow_density: f32,
+    // Light from below, exposed.
+    ground_color: vec3f,
     // Extent of a sprite's density, as a share of the sprite's.
     density_reach: f32,
-    // 2 if the volume has the scene's visibility beside optical depths; otherwise 1.
-    volume_blocks: f32,
+    // Blocks of the volume that hold the lights' visibility past the scene, and openness to sky and ground; 0 for none.
+    visibility_block: f32,
+    openness_block: f32,
+    padding: vec2f,
 }

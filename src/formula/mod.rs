@@ -1,6 +1,7 @@
 //! Executable specification: every formula once, in plain Rust on glam, under the same name and in a file of the same
 //! name as in `shaders/lib/`. Both renderers, the bakers and the tests use it.
 
+pub mod ambient;
 pub mod blending;
 pub mod color;
 pub mod density_grid;

@@ -115,10 +115,15 @@ uniform! {
         grid_from_view: Mat4,
         grid_size: Vec3,
         cells_per_metre: f32,
+        up: Vec3,
         shadow_strength: f32,
+        sky_color: Vec3,
         shadow_density: f32,
+        ground_color: Vec3,
         density_reach: f32,
-        volume_blocks: f32,
+        visibility_block: f32,
+        openness_block: f32,
+        padding: Vec2,
     }
 }
 
@@ -126,8 +131,9 @@ uniform! {
     /// `ShadowMarch` in `shaders/shadow_march.wgsl`.
     ShadowMarchUniform {
         lights: [Vec4; 3],
+        sky: [Vec4; 4],
         size: Vec3,
-        padding: f32,
+        openness_offset: u32,
     }
 }
 

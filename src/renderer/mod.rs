@@ -261,7 +261,7 @@ impl Renderer {
             Some(state.measure_box(shared, &view, system))
         });
         let mapped = frame.shadow_maps.iter().map(|map| map.projection.light);
-        let shadow = SmokeShadow::new(&view, frame.lights, mapped, measured);
+        let shadow = SmokeShadow::new((&view, frame.up.normalize_or(glam::Vec3::Y)), frame.lights, mapped, measured);
         self.shadowed_lights = shadow.map_or([None; SHADOWED_LIGHTS], |shadow| shadow.lights);
         // Places and clears the density grid around all systems, if any system receives shadow.
         if let Some(tiled) = &shared.pipelines.tiled {

@@ -122,6 +122,7 @@ pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &ResolvedSettings,
         shows_through: settings.show_through_distance() > 0.0,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
+        ambient: settings.has_ambient(),
         ramp_filter: settings.ramp_filter,
         reversed: inputs.reversed,
     };
@@ -174,6 +175,7 @@ fn deferred<'a>(
         diffuse_mode: settings.diffuse.mode,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
+        ambient: settings.has_ambient(),
         ramp_filter,
         exact_filtering,
     };
@@ -196,6 +198,7 @@ fn deferred<'a>(
         diffuse_bake: bakes.then_some(DiffuseBakeKey {
             mode: settings.diffuse.mode,
             backlight: settings.diffuse.backlight,
+            ambient: settings.has_ambient(),
             ramp_filter,
             exact_filtering,
         }),

@@ -105,6 +105,23 @@ settings! {
 }
 
 settings! {
+    /// Light without a source: sky from above, light that the ground reflects from below. Smoke between them shades it with
+    /// `shadow.by_depth`.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Ambient {
+        /// Multiplies both colors. 0: no ambient light, and no cost. 1: white smoke has the color of the sky on its upper
+        /// side. Not with `diffuse.mode` `painted_motif` or `spherical_harmonics`.
+        intensity: f32 = 0.0, number(0.0..=100.0, "");
+        /// Linear RGB of the light from above.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        sky_color: Vec3 = Vec3::new(0.25, 0.32, 0.42), color(0.0..=100.0);
+        /// Linear RGB of the light from below.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        ground_color: Vec3 = Vec3::new(0.09, 0.08, 0.065), color(0.0..=100.0);
+    }
+}
+
+settings! {
     /// Soft scatter: even backlight of thin smoke, which darkens as the amount grows.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SoftScatter {

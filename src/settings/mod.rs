@@ -27,7 +27,8 @@ pub use choice::choice;
 pub use choice::{Choice, UnknownChoice};
 pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
-    Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
+    Ambient, Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode,
+    SpecularScatter,
 };
 pub use scale_budget::{Budget, ScaleBudget};
 pub(crate) use settings_macro::settings;
@@ -157,6 +158,8 @@ settings! {
         diffuse: Diffuse = Diffuse::default(), group;
         /// Shadow of smoke on smoke.
         shadow: Shadow = Shadow::default(), group;
+        /// Light from the sky and from the ground.
+        ambient: Ambient = Ambient::default(), group;
         /// Soft scatter, by amount: light without a source.
         soft_scatter: SoftScatter = SoftScatter::default(), group;
         /// Glow around lights behind the smoke.
@@ -188,6 +191,22 @@ impl Settings {
     /// True if the smoke is lit at its mean depth, in the shadow of the scene.
     pub fn lights_by_depth(&self) -> bool {
         self.shadow.by_depth && self.receives_shadow()
+    }
+
+    /// True if light from sky and ground can fall on the smoke: it is looked up, or baked, by normal.
+    pub fn can_have_ambient(&self) -> bool {
+        let by_normal = !matches!(self.diffuse.mode, DiffuseMode::PaintedMotif | DiffuseMode::SphericalHarmonics);
+        self.is_forward() || self.is_six_way() || by_normal
+    }
+
+    /// True if light from sky and ground falls on the smoke.
+    pub fn has_ambient(&self) -> bool {
+        self.ambient.intensity > 0.0 && self.can_have_ambient()
+    }
+
+    /// True if smoke shades ambient light.
+    pub fn shades_ambient(&self) -> bool {
+        self.has_ambient() && self.lights_by_depth()
     }
 
     /// Order in which sprites are drawn. Forward sprites hide each other and are always sorted.

@@ -4,6 +4,7 @@ use glam::{DMat4, DVec3, Mat4, UVec3, Vec3, Vec4};
 
 use super::resolved_settings::ResolvedSettings;
 use super::view_geometry::ViewGeometry;
+use crate::formula::ambient::SKY_DIRECTIONS;
 use crate::formula::color::luminance;
 use crate::formula::lighting::distance_attenuation;
 use crate::formula::shadow::SHADOWED_LIGHTS;
@@ -76,19 +77,21 @@ pub struct SmokeShadow {
     pub on_scene: Option<(usize, f32)>,
     /// True if the host's shadow maps shade smoke.
     pub has_visibility: bool,
+    /// True if smoke shades ambient light.
+    pub has_openness: bool,
 }
 
 impl SmokeShadow {
     /// `systems`: box and settings of each system. `mapped`: indices of the lights that have shadow maps. Returns `None` if no
-    /// system receives shadow, or there is no smoke.
+    /// system receives shadow, or there is no smoke. `up`: world space, unit length.
     pub fn new(
-        view: &ViewGeometry,
+        (view, up): (&ViewGeometry, Vec3),
         lights: &[Light],
         mut mapped: impl Iterator<Item = usize>,
         systems: impl Iterator<Item = (Bounds, ResolvedSettings)>,
     ) -> Option<Self> {
         let mut around = Bounds::EMPTY;
-        let (mut resolution, mut on_scene, mut by_depth) = (None, None, false);
+        let (mut resolution, mut on_scene, mut by_depth, mut has_openness) = (None, None, false, false);
         for (index, (bounds, settings)) in systems.enumerate() {
             if !bounds.is_empty() {
                 (around.min, around.max) = (around.min.min(bounds.min), around.max.max(bounds.max));
@@ -96,6 +99,7 @@ impl SmokeShadow {
             if settings.receives_shadow() {
                 resolution = resolution.max(Some(settings.shadow.resolution));
                 by_depth |= settings.lights_by_depth();
+                has_openness |= settings.shades_ambient();
                 on_scene = on_scene.or(Some((index, settings.shadow.scene)));
             }
         }
@@ -111,21 +115,38 @@ impl SmokeShadow {
             Some(light) => grid.place(light.position).extend(0.0),
         });
         let has_visibility = by_depth && mapped.any(|light| chosen.contains(&Some(light)));
-        let march = ShadowMarchUniform { lights: placed, size: grid.size.as_vec3(), padding: 0.0 };
-        Some(Self {
+        let mut shadow = Self {
             grid,
             grid_from_view: grid.grid_from_view(view),
             resolution,
             lights: chosen,
-            march,
+            march: ShadowMarchUniform {
+                lights: placed,
+                sky: sky_directions(up).map(|direction| direction.extend(1.0)),
+                size: grid.size.as_vec3(),
+                openness_offset: 0,
+            },
             on_scene,
             has_visibility,
-        })
+            has_openness,
+        };
+        shadow.march.openness_offset = shadow.openness_block() * resolution;
+        Some(shadow)
     }
 
     /// Number of blocks of the volume.
     pub fn blocks(&self) -> u32 {
-        if self.has_visibility { 2 } else { 1 }
+        1 + u32::from(self.has_visibility) + u32::from(self.has_openness)
+    }
+
+    /// Block that holds the lights' visibility past the scene; 0 for none.
+    pub fn visibility_block(&self) -> u32 {
+        u32::from(self.has_visibility)
+    }
+
+    /// Block that holds openness to sky and ground; 0 for none.
+    pub fn openness_block(&self) -> u32 {
+        if self.has_openness { self.blocks() - 1 } else { 0 }
     }
 
     /// Returns the lookups of shadow maps, by the lights' slots. `projection` returns that of a light's map, by its index.
@@ -166,6 +187,13 @@ impl SmokeShadow {
     pub fn slot(&self, light: usize) -> f32 {
         self.lights.iter().position(|&chosen| chosen == Some(light)).map_or(0.0, |slot| slot as f32 + 1.0)
     }
+}
+
+/// Returns directions halfway between the pole of the upper hemisphere and its rim, where half of the light from an even sky
+/// comes from either side.
+fn sky_directions(up: Vec3) -> [Vec3; SKY_DIRECTIONS] {
+    let (x, z) = up.any_orthonormal_pair();
+    [x, z, -x, -z].map(|side| (up + side).normalize())
 }
 
 /// Returns the indices of the lights that are brightest at the box, in ascending order.

@@ -137,7 +137,11 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         },
         spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
         shadow_strength: if shadow.is_some() && settings.receives_shadow() { settings.shadow.strength } else { 0.0 },
-        volume_blocks: shadow.map_or(1.0, |shadow| shadow.blocks() as f32),
+        up: view.view_from_world.transform_vector3(up).normalize_or(Vec3::Y),
+        sky_color: settings.ambient.sky_color * (settings.ambient.intensity * exposure),
+        ground_color: settings.ambient.ground_color * (settings.ambient.intensity * exposure),
+        visibility_block: shadow.map_or(0.0, |shadow| shadow.visibility_block() as f32),
+        openness_block: shadow.map_or(0.0, |shadow| shadow.openness_block() as f32),
         ..caster_uniform(system)
     };
     // If sprites show through the scene, the scene may hide the front of the box.

@@ -127,6 +127,11 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| (s.settings.diffuse.backlight, s.material.backlight_ramp) = (Backlight::Ramp, "diffuse_ember".into()),
     |s, _| s.settings.shadow.strength = 1.0,
     |s, _| (s.settings.shadow.strength, s.settings.diffuse.mode) = (1.0, DiffuseMode::Cubemap),
+    |s, _| (s.settings.ambient.intensity, s.settings.diffuse.mode) = (1.0, DiffuseMode::Cubemap),
+    |s, _| (s.settings.ambient.intensity, s.settings.diffuse.mode) = (1.0, DiffuseMode::SphericalHarmonics),
+    |s, _| {
+        (s.settings.ambient.intensity, s.settings.shadow.strength, s.settings.shadow.by_depth) = (1.0, 0.8, true);
+    },
     |s, _| (s.emitter.turbulence, s.emitter.extent, s.emitter.buoyancy) = (0.0, Vec3::ZERO, 0.0),
     |s, _| (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into()),
     |s, _| {
@@ -286,7 +291,7 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
         "no effect in these cases: {unreported:?}"
     );
     // All reasons except the one about the demo scene.
-    assert_eq!(reasons.len(), 46, "{reasons:#?}");
+    assert_eq!(reasons.len(), 48, "{reasons:#?}");
 }
 
 #[test]

@@ -142,6 +142,8 @@ fn stages() -> Vec<TestScene> {
     let weighted: fn(&mut Settings) = |s| s.accumulate.order = BlendOrder::Weighted;
     let six_way: fn(&mut Settings) = |s| s.lighting = Lighting::SixWay;
     let shaded: fn(&mut Settings) = |s| s.shadow.strength = 0.7;
+    let under_a_sky: fn(&mut Settings) =
+        |s| (s.shadow.strength, s.shadow.by_depth, s.ambient.intensity) = (0.7, true, 1.0);
     let mut stages = vec![
         scene(Technique::Soft, RenderPath::Raster, nothing),
         scene(Technique::Soft, RenderPath::Raster, weighted),
@@ -155,6 +157,7 @@ fn stages() -> Vec<TestScene> {
     ];
     if is_tiled_available() {
         stages.push(scene(Technique::Soft, RenderPath::Raster, shaded));
+        stages.push(scene(Technique::Soft, RenderPath::Raster, under_a_sky));
     }
     stages
 }

@@ -5,6 +5,7 @@
 //! A test sets what a function reads: [`testable`] turns uniforms, storage buffers and override constants into private
 //! variables, which start with the values of [`fixture`], and replaces every texture by a test texture of its kind.
 
+mod ambient;
 mod blending;
 mod color;
 mod compute;
@@ -64,6 +65,7 @@ struct Formula {
 
 fn formulas() -> Vec<Formula> {
     let all = [
+        ambient::formulas(),
         blending::formulas(),
         color::formulas(),
         depth::formulas(),
@@ -195,9 +197,14 @@ const INDIRECT: &[(&str, &str)] = &[
     ("map_texel", "reads a host's shadow map; whole frames with shadow maps cover it"),
     ("is_visible", "reads a host's shadow map; whole frames with shadow maps cover it"),
     ("sample_volume", "reads the volume of the shadow; whole frames with shadow cover it"),
-    ("scene_visibility", "reads the volume of the shadow; whole frames with shadow maps cover it"),
+    ("mean_along_ray", "reads the volume of the shadow; whole frames with shadow maps cover it"),
+    ("scene_visibility", "calls mean_along_ray"),
+    ("openness", "calls mean_along_ray"),
+    ("openness_towards", "reads the density grid; whole frames with ambient light cover it"),
+    ("shadow_on_hemisphere", "looks up the shadow ramp; ambient_from_ramp and ambient_from_six_way cover it"),
+    ("hemispheres", "calls shadow_on_hemisphere; ambient_from_ramp and ambient_from_six_way cover it"),
     ("moments_of_sprite", "calls depth_moments with a sprite; whole frames with shadow maps cover it"),
-    ("shaded_surface", "adds scene_visibility to a tested surface"),
+    ("shaded_surface", "adds scene_visibility and openness to a tested surface"),
     ("lit_position", "chooses a depth for view_position; whole frames with shadow maps cover it"),
     ("ray_of_pixel", "calls ndc_from_pixel; shading_position covers it"),
     ("ray_through", "divides by the depth; whole frames of the path forward cover it"),

@@ -119,7 +119,8 @@ fn probed_values_match_every_debug_view() {
         }
         if shot.preset.systems[0].settings.diffuse.mode == DiffuseMode::Ramp {
             for system in probes.iter().flat_map(|probe| &probe.systems) {
-                let sum: Vec3 = system.lights.iter().map(|light| light.diffuse).sum();
+                let of_lights: Vec3 = system.lights.iter().map(|light| light.diffuse).sum();
+                let sum = of_lights + system.ambient.unwrap_or_default();
                 assert!(difference(sum, system.diffuse) < 1.0, "sum over lights {sum}, diffuse {}", system.diffuse);
             }
         }

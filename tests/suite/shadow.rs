@@ -292,6 +292,73 @@ fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
 }
 
 #[test]
+fn gpu_and_cpu_draw_the_same_ambient_light() {
+    type Change = fn(&mut TestScene);
+    let changes: &[(&str, Change)] = &[
+        ("without shadow", |s| s.settings.shadow.strength = 0.0),
+        ("cubemap", |s| (s.settings.shadow.strength, s.settings.diffuse.mode) = (0.0, DiffuseMode::Cubemap)),
+        ("raster", |_| {}),
+        ("not by depth", |s| s.settings.shadow.by_depth = false),
+        ("forward", |s| s.settings.path = RenderPath::Forward),
+        ("tiled", |s| s.settings.path = RenderPath::Tiled),
+        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
+        ("lit per texel", |s| {
+            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+        }),
+        ("another up", |s| s.up = vec3(0.5, -0.7, 0.3)),
+        ("exposed", |s| s.exposure = 1.7),
+    ];
+    for (name, change) in changes {
+        for has_map in [false, true] {
+            let mut scene = under_a_roof();
+            scene.settings.ambient.intensity = 1.0;
+            change(&mut scene);
+            if scene.settings.shadow.strength > 0.0 && !is_tiled_available() {
+                continue;
+            }
+            if !has_map {
+                scene.shadow_maps.clear();
+            }
+            let seen = drawn(&scene);
+            let same = psnr(&seen, &scene.on_cpu());
+            scene.settings.ambient.intensity = 0.0;
+            let effect = psnr(&drawn(&scene), &seen);
+            println!("{name}: {same:.1} dB, without ambient light {effect:.1} dB");
+            assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+            assert!(effect < 45.0, "{name}: without ambient light {effect:.1} dB");
+        }
+    }
+}
+
+#[test]
+fn sky_lights_the_top_of_smoke_and_not_its_inside() {
+    if !is_tiled_available() {
+        return;
+    }
+    let mut scene = under_a_roof();
+    (scene.shadow_maps, scene.lights) = (Vec::new(), Vec::new());
+    scene.settings.soft_scatter.intensity = 0.0;
+    scene.settings.ambient = Ambient { intensity: 1.0, sky_color: Vec3::ONE, ground_color: Vec3::ZERO };
+    // A dense column in the middle of the picture.
+    let puff = |index: u32| Particle {
+        position: vec3(0.1 * (index % 3) as f32, 0.15 * (index / 3) as f32 - 1.0, -5.0),
+        radius: 0.4,
+        amount: 0.8,
+        ..scene.particles[0]
+    };
+    scene.particles = (0..42).map(puff).collect();
+    scene.settings.shadow.density = 4.0;
+    let row = |picture: &Image<Vec4>, y: i32| (76..84).map(|x| picture.load(glam::IVec2::new(x, y)).x).sum::<f32>();
+    let shaded = drawn(&scene);
+    scene.settings.shadow.by_depth = false;
+    let open = drawn(&scene);
+    let [top, middle] = [18, 45].map(|y| row(&shaded, y) / row(&open, y));
+    println!("{top} {middle}");
+    // Smoke scatters light onwards: by the ramp, its inside keeps more than half.
+    assert!(top > 0.8 && middle < 0.65, "{top}, {middle}");
+}
+
+#[test]
 fn smoke_under_a_roof_is_dark() {
     if !is_tiled_available() {
         return;

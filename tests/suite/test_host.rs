@@ -241,6 +241,7 @@ impl Host {
             systems: &systems,
             target_size: scene.host.target_size,
             exposure: scene.exposure,
+            up: scene.up,
             time: scene.time,
             debug_views: scene.debug_views.unwrap_or(std::slice::from_ref(&scene.debug_view)),
             ..FrameInput::new(scene.view, scene_depth)

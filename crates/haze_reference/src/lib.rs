@@ -3,6 +3,7 @@
 
 pub mod accumulated;
 pub mod blend_unit;
+mod frame_shadow;
 mod input;
 pub mod optical_depths;
 pub mod pass;
@@ -23,12 +24,9 @@ use haze::settings::DebugView;
 use accumulated::AccumulatedTarget;
 pub use accumulated::AccumulatedTextures;
 pub use input::{FrameInput, ParticleSystem, ShadowMap};
-use pass::density_splat::{density_from_steps, density_splat};
-use pass::shadow_march::shadow_march;
-use pass::shadow_visibility::shadow_visibility;
 pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
 pub use scene_shadow::SceneShadow;
-use visible_system::{PlacedSystems, VisibleSystem, place_systems};
+use visible_system::{VisibleSystem, place_systems};
 
 /// Frame whose shadow is computed, before its smoke is drawn.
 pub struct PreparedFrame<'a> {
@@ -43,17 +41,11 @@ impl<'a> PreparedFrame<'a> {
     /// # Errors
     /// The first view, light or setting that is invalid.
     pub fn new(frame: &FrameInput<'a>, picture: UVec2) -> Result<Self, FieldError> {
-        let PlacedSystems { visible: mut systems, hidden, shadow } = place_systems(frame, picture)?;
+        let placed = place_systems(frame, picture)?;
+        let volume = placed.shadow.map(|shadow| (shadow, Arc::new(placed.shadow_volume(frame, &shadow))));
+        let mut systems = placed.visible;
         let mut scene_shadow = None;
-        if let Some(shadow) = shadow {
-            let size = shadow.grid.size;
-            let mut steps = vec![0; size.element_product() as usize];
-            let visible = systems.iter().map(|(_, visible)| (&visible.system, visible.particles.as_slice()));
-            let hidden = hidden.iter().map(|(uniform, particles)| (uniform, *particles));
-            visible.chain(hidden).for_each(|(system, particles)| density_splat(system, particles, size, &mut steps));
-            let mut depths = shadow_march(&density_from_steps(&steps), &shadow);
-            depths.visible = shadow.has_visibility.then(|| shadow_visibility(frame.shadow_maps, &shadow));
-            let depths = Arc::new(depths);
+        if let Some((shadow, depths)) = volume {
             systems.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(depths.clone()));
             scene_shadow = SceneShadow::new(frame, &shadow, &depths);
         }

@@ -11,6 +11,8 @@ pub struct OpticalDepths {
     pub cells: Vec<Vec3>,
     /// Visibility of the lights, if shadow maps shade smoke.
     pub visible: Option<Vec<Vec3>>,
+    /// Openness to sky and ground in x and y, if smoke shades ambient light.
+    pub openness: Option<Vec<Vec3>>,
 }
 
 impl OpticalDepths {
@@ -22,6 +24,11 @@ impl OpticalDepths {
     /// Visibility of the lights at a place, in cells; 1 without shadow maps.
     pub fn sample_visible(&self, place: Vec3) -> Vec3 {
         self.visible.as_ref().map_or(Vec3::ONE, |cells| self.sample_cells(cells, place))
+    }
+
+    /// Openness to sky and ground at a place, in cells; 1 if smoke does not shade ambient light.
+    pub fn sample_openness(&self, place: Vec3) -> Vec3 {
+        self.openness.as_ref().map_or(Vec3::ONE, |cells| self.sample_cells(cells, place))
     }
 
     fn sample_cells(&self, cells: &[Vec3], place: Vec3) -> Vec3 {

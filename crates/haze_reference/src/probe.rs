@@ -7,9 +7,7 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use super::blend_unit::premultiplied_over;
 use super::input::FrameInput;
-use super::optical_depths::OpticalDepths;
-use super::pass::shadow_visibility::shadow_visibility;
-use super::visible_system::{PlacedSystems, VisibleSystem, place_systems};
+use super::visible_system::{VisibleSystem, place_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
@@ -56,6 +54,9 @@ pub struct SystemProbe {
     pub six_way: Option<SixWay>,
     /// Lights that reach the system.
     pub lights: Vec<LightProbe>,
+    /// Light from sky and ground, times the intensity of diffuse light, of which it is a part. In modes that bake light it is
+    /// not known.
+    pub ambient: Option<Vec3>,
     /// Diffuse light by the system's mode, times its intensity.
     pub diffuse: Vec3,
     /// Weight of `ambient_color` against `scatter_color` in soft scatter; `None` if it comes from a ramp.
@@ -104,13 +105,11 @@ pub fn probe(
     behind: &Image<Vec4>,
     pixels: &[UVec2],
 ) -> Result<Vec<Probe>, FieldError> {
-    let PlacedSystems { mut visible, shadow, .. } = place_systems(frame, behind.size)?;
-    if let Some(shadow) = shadow.filter(|shadow| shadow.has_visibility) {
-        // The optical depths themselves are in the texels.
-        let seen = Some(shadow_visibility(frame.shadow_maps, &shadow));
-        let volume = Arc::new(OpticalDepths { size: shadow.grid.size, cells: Vec::new(), visible: seen });
-        visible.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(volume.clone()));
-    }
+    let placed = place_systems(frame, behind.size)?;
+    // The optical depths towards the lights are in the texels.
+    let volume = placed.shadow.map(|shadow| Arc::new(placed.shadow_volume_without_lights(frame, &shadow)));
+    let mut visible = placed.visible;
+    visible.iter_mut().for_each(|(_, visible)| visible.optical_depths = volume.clone());
     let mut deferred = Vec::new();
     for (index, visible) in visible.iter().filter(|(_, visible)| !visible.settings.is_forward()) {
         let Some(Some(texels)) = texels.get(*index) else { continue };
@@ -211,6 +210,7 @@ impl<'a> ProbedSystem<'a> {
             normal: surface.normal,
             six_way: visible.settings.is_six_way().then_some(surface.six_way),
             lights: visible.lights.iter().zip(&glows).zip(&self.lights).map(light).collect(),
+            ambient: smoke.ambient(&surface, covered),
             diffuse: smoke.diffuse(&surface, amount, position),
             soft_scatter_weight: is_curve
                 .then(|| soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth)),

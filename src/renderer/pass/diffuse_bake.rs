@@ -21,6 +21,7 @@ pub(crate) struct DiffuseBakeKey {
     /// A mode that bakes.
     pub mode: DiffuseMode,
     pub backlight: Backlight,
+    pub ambient: bool,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
@@ -38,6 +39,7 @@ pub(crate) fn describe(key: DiffuseBakeKey) -> RenderPipelineDescription {
             bool_constant("MOTIF", key.mode == DiffuseMode::Motif),
             ("BAKE_SIZE", f64::from(side)),
             enum_constant!("BACKLIGHT", key.backlight),
+            bool_constant("AMBIENT", key.ambient),
             enum_constant!("RAMP_FILTER", key.ramp_filter),
             bool_constant("EXACT_FILTERING", key.exact_filtering),
         ],

@@ -25,6 +25,7 @@ pub(crate) struct ForwardKey {
     pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
+    pub ambient: bool,
     pub ramp_filter: RampFilter,
     pub reversed: bool,
 }
@@ -50,6 +51,7 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
             bool_constant("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
             enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
             enum_constant!("BACKLIGHT", key.backlight),
+            bool_constant("AMBIENT", key.ambient),
             enum_constant!("RAMP_FILTER", key.ramp_filter),
         ]),
     }

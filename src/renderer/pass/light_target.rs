@@ -25,6 +25,7 @@ pub(crate) struct LightingKey {
     pub diffuse_mode: DiffuseMode,
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
+    pub ambient: bool,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
@@ -38,6 +39,7 @@ impl LightingKey {
             enum_constant!("NORMAL_ENCODING", self.encoding),
             enum_constant!("NORMAL_DECODE", self.decode),
             enum_constant!("BACKLIGHT", self.backlight),
+            bool_constant("AMBIENT", self.ambient),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
             bool_constant("EXACT_FILTERING", self.exact_filtering),
             bool_constant("SHADOW", self.attachments.contains(AttachmentRole::OpticalDepths)),

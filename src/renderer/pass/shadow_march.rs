@@ -1,7 +1,7 @@
-//! shadow_march: marches from every cell of the density grid to the lights with shadow.
+//! shadow_march: marches from every cell of the density grid to the lights with shadow, and to sky and ground.
 //!
 //! Reads: optical depths across the cells.
-//! Writes: optical depths towards the lights.
+//! Writes: optical depths towards the lights; openness to sky and ground.
 
 use glam::UVec3;
 
@@ -12,15 +12,28 @@ use crate::renderer::gpu::timing::Timing;
 /// Cells of a workgroup along each axis: SIDE in `shaders/shadow_march.wgsl`.
 const SIDE: u32 = 4;
 
-/// Returns the pipeline's parts.
-pub(crate) fn describe((): ()) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "march_cells", constants: Vec::new() }
+/// Ends of the marches: the key of a pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MarchTo {
+    Lights,
+    Sky,
+}
+
+/// Returns the pipeline's parts for a key.
+pub(crate) fn describe(key: MarchTo) -> ComputePipelineDescription {
+    let entry_point = match key {
+        MarchTo::Lights => "march_cells",
+        MarchTo::Sky => "march_sky",
+    };
+    ComputePipelineDescription { entry_point, constants: Vec::new() }
 }
 
 /// The pass for one frame.
 #[derive(Debug)]
 pub(crate) struct ShadowMarch {
-    pub pipeline: wgpu::ComputePipeline,
+    pub to_lights: wgpu::ComputePipeline,
+    /// `None` if no system has ambient light that smoke shades.
+    pub to_sky: Option<wgpu::ComputePipeline>,
     /// Group 0.
     pub inputs: wgpu::BindGroup,
     /// Number of cells along each axis.
@@ -30,9 +43,11 @@ pub(crate) struct ShadowMarch {
 impl ShadowMarch {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         let mut pass = begin_compute(encoder, "shadow_march", timing);
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.inputs, &[]);
         let workgroups = |cells: u32| cells.div_ceil(SIDE);
-        pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), workgroups(self.size.z));
+        for pipeline in [Some(&self.to_lights), self.to_sky.as_ref()].into_iter().flatten() {
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), workgroups(self.size.z));
+        }
     }
 }

@@ -36,6 +36,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "tile_refine.wgsl",
     "transfer.wgsl",
     "lib/accumulated.wgsl",
+    "lib/ambient.wgsl",
     "lib/attachments.wgsl",
     "lib/bindings.wgsl",
     "lib/blending.wgsl",

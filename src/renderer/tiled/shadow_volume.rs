@@ -14,7 +14,7 @@ use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::layouts::SHADOW_FORMAT;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::density_splat::DensitySplat;
-use crate::renderer::pass::shadow_march::ShadowMarch;
+use crate::renderer::pass::shadow_march::{MarchTo, ShadowMarch};
 use crate::renderer::pass::shadow_visibility::ShadowVisibility;
 use crate::renderer::sprite_instances::Sprites;
 use crate::view_setup::SmokeShadow;
@@ -37,11 +37,12 @@ pub(crate) struct ShadowVolume {
 struct VolumeBuffers {
     /// Cells along each axis that fit.
     resolution: u32,
+    blocks: u32,
     uniform: wgpu::Buffer,
     density: wgpu::Buffer,
     optical_depths: wgpu::TextureView,
     march: wgpu::BindGroup,
-    /// Present if the volume has a second block.
+    /// Present if shadow maps shade smoke.
     maps: Option<MapBuffers>,
 }
 
@@ -77,8 +78,10 @@ impl ShadowVolume {
             self.buffers = None;
         }
         let Some(shadow) = shadow else { return };
-        let fits =
-            |held: &VolumeBuffers| held.resolution == shadow.resolution && held.maps.is_some() == shadow.has_visibility;
+        let fits = |held: &VolumeBuffers| {
+            (held.resolution, held.blocks) == (shadow.resolution, shadow.blocks())
+                && held.maps.is_some() == shadow.has_visibility
+        };
         if !self.buffers.as_ref().is_some_and(fits) {
             self.buffers = None;
         }
@@ -103,7 +106,8 @@ impl ShadowVolume {
     /// Returns the pass that marches to the lights.
     pub fn march(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowMarch> {
         let inputs = self.buffers.as_ref()?.march.clone();
-        Some(ShadowMarch { pipeline: tiled.shadow_march.get(()), inputs, size: shadow.grid.size })
+        let to_sky = shadow.has_openness.then(|| tiled.shadow_march.get(MarchTo::Sky));
+        Some(ShadowMarch { to_lights: tiled.shadow_march.get(MarchTo::Lights), to_sky, inputs, size: shadow.grid.size })
     }
 
     /// Returns the pass that looks up the host's shadow maps, if they shade smoke.
@@ -115,8 +119,8 @@ impl ShadowVolume {
     /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.buffers.as_ref().map_or(0, |held| {
-            let (maps, blocks) = held.maps.as_ref().map_or((0, 1), |maps| (maps.uniform.size(), 2));
-            let volume = blocks * TEXEL_BYTES * u64::from(held.resolution).pow(3);
+            let maps = held.maps.as_ref().map_or(0, |maps| maps.uniform.size());
+            let volume = u64::from(held.blocks) * TEXEL_BYTES * u64::from(held.resolution).pow(3);
             held.uniform.size() + held.density.size() + volume + maps
         })
     }
@@ -135,7 +139,7 @@ impl VolumeBuffers {
         ];
         let march = bind(device, &tiled.layouts.shadow_march, resources);
         let maps = shadow.has_visibility.then(|| MapBuffers::new(device, tiled, &optical_depths));
-        Self { resolution, uniform, density, optical_depths, march, maps }
+        Self { resolution, blocks, uniform, density, optical_depths, march, maps }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::renderer::pass::density_splat;
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
 use crate::renderer::pass::measure::{self, MeasureKey};
-use crate::renderer::pass::shadow_march;
+use crate::renderer::pass::shadow_march::{self, MarchTo};
 use crate::renderer::pass::shadow_visibility;
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::TileAccumulateKey;
@@ -37,7 +37,7 @@ pub(crate) struct TiledPipelines {
     pub measure: PipelineVariants<MeasureKey, ComputePipelineDescription>,
     pub depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
     pub density_splat: PipelineVariants<(), ComputePipelineDescription>,
-    pub shadow_march: PipelineVariants<(), ComputePipelineDescription>,
+    pub shadow_march: PipelineVariants<MarchTo, ComputePipelineDescription>,
     pub shadow_visibility: PipelineVariants<(), ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
@@ -152,7 +152,8 @@ impl TiledPipelines {
     /// Compiles the pipelines of shadow.
     pub fn compile_shadow(&self) -> Result<(), Error> {
         self.density_splat.check(())?;
-        self.shadow_march.check(())?;
+        self.shadow_march.check(MarchTo::Lights)?;
+        self.shadow_march.check(MarchTo::Sky)?;
         self.shadow_visibility.check(())
     }
 

@@ -129,6 +129,27 @@ fn shaded_system(settings: &Settings, has_shadow: bool) -> VisibleSystem<'_> {
     visible
 }
 
+const SHARE: (f32, f32) = (0.0, 1.0);
+
+/// Sky and ground, before the test's own lines. `x[6..9]` is up.
+macro_rules! sky {
+    ($lines:literal) => {
+        concat!(
+            "SHADOW = x(0) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); system.up = vec3f(x(6), x(7), x(8)); \
+             system.sky_color = vec3f(0.2, 0.5, 0.9); system.ground_color = vec3f(0.7, 0.4, 0.1);",
+            $lines
+        )
+    };
+}
+
+/// The system under a sky, with or without shadow.
+fn under_a_sky(has_shadow: bool, up: Vec3) -> VisibleSystem<'static> {
+    let mut visible = shaded_system(&DEFAULTS, has_shadow);
+    (visible.system.sky_color, visible.system.ground_color) = (Vec3::new(0.2, 0.5, 0.9), Vec3::new(0.7, 0.4, 0.1));
+    visible.system.up = up;
+    visible
+}
+
 fn diffuse() -> Vec<Formula> {
     vec![
         Formula {
@@ -136,7 +157,7 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "BACKLIGHT = u32(x(0)); \
                    SHADOW = x(8) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), Shade(vec3f(0.3, 0.8, x(8)), vec3f(1.0, 0.5, 0.9))));",
+                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), Shade(vec3f(0.3, 0.8, x(8)), vec3f(1.0, 0.5, 0.9), vec2f(1.0))));",
             reference: |x| {
                 let settings = changed(|s| s.diffuse.backlight = Backlight::ALL[x[0] as usize]);
                 let (visible, shade) = (shaded_system(&settings, x[8] > 0.5), shade(Vec3::new(0.3, 0.8, x[8])));
@@ -169,7 +190,7 @@ fn diffuse() -> Vec<Formula> {
             wgsl: "let s = SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
                    system.six_way_color = vec3f(0.9, 0.7, 0.5); \
                    SHADOW = x(0) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), Shade(vec3f(0.3, 0.8, x(1)), vec3f(1.0, 0.5, 0.9))));",
+                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), Shade(vec3f(0.3, 0.8, x(1)), vec3f(1.0, 0.5, 0.9), vec2f(1.0))));",
             reference: |x| {
                 let mut visible = shaded_system(&DEFAULTS, x[0] > 0.5);
                 visible.system.six_way_color = Vec3::new(0.9, 0.7, 0.5);
@@ -193,11 +214,11 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "SHADOW = true; system.shadow_strength = 0.8; let position = vec3f(x(7), x(8), x(9)); \
                    let to_viewer = direction_to_viewer(position, view.orthographic); \
-                   y3(0, shadow_on_light(x(0), Shade(vec3f(x(1), x(2), x(3)), vec3f(0.9, 0.5, 0.7)), vec3f(x(4), x(5), x(6)), to_viewer));",
+                   y3(0, shadow_on_light(x(0), Shade(vec3f(x(1), x(2), x(3)), vec3f(0.9, 0.5, 0.7), vec2f(1.0)), vec3f(x(4), x(5), x(6)), to_viewer));",
             reference: |x| {
                 let visible = shaded_system(&DEFAULTS, true);
                 let light = LightUniform { shadow_slot: x[0], ..visible.lights[0] };
-                let shade = Shade { optical_depths: v3(&x[1..]), visible: Vec3::new(0.9, 0.5, 0.7) };
+                let shade = Shade { optical_depths: v3(&x[1..]), visible: Vec3::new(0.9, 0.5, 0.7), ..Shade::NONE };
                 visible.shadow_on_light(&light, v3(&x[4..]), v3(&x[7..]), &shade).to_array().to_vec()
             },
             cases: unit_vectors(
@@ -213,6 +234,49 @@ fn diffuse() -> Vec<Formula> {
                 ("|| slot < 0.5", ""),
                 (", system.shadow_strength);", ", 1.0);"),
                 ("through * of_slot(slot, shade.visible)", "through"),
+            ],
+        },
+        Formula {
+            name: "ambient_from_ramp",
+            file: "lib/diffuse.wgsl",
+            wgsl: sky!("y3(0, ambient_from_ramp(vec3f(x(3), x(4), x(5)), x(2), vec2f(x(0), x(1))));"),
+            reference: |x| {
+                let visible = under_a_sky(x[0] > 0.5, v3(&x[6..]));
+                visible.ambient_from_ramp(v3(&x[3..]), x[2], v2(x)).to_array().to_vec()
+            },
+            cases: unit_vectors(
+                unit_vectors(random(100, &[SHARE, SHARE, SHARE, SIDE, SIDE, SIDE, SIDE, SIDE, SIDE]), 3),
+                6,
+            ),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("hemisphere_coordinate(normal, -system.up)", "hemisphere_coordinate(normal, system.up)"),
+                (
+                    "system.ground_color * shadow_on_hemisphere(openness.y)",
+                    "system.ground_color * shadow_on_hemisphere(openness.x)",
+                ),
+                ("return light.sky * sample_ramp_2d", "return light.ground * sample_ramp_2d"),
+            ],
+        },
+        Formula {
+            name: "ambient_from_six_way",
+            file: "lib/diffuse.wgsl",
+            wgsl: sky!(
+                "let s = SixWay(vec3f(x(2), x(3), x(4)), vec3f(x(4), x(2), x(3))); \
+                 y3(0, ambient_from_six_way(s, vec2f(x(0), x(1))));"
+            ),
+            reference: |x| {
+                let mut visible = under_a_sky(x[0] > 0.5, v3(&x[6..]));
+                // Both renderers multiply the sum of all light.
+                visible.system.six_way_color = Vec3::ONE;
+                let six_way = SixWay { positive: Vec3::new(x[2], x[3], x[4]), negative: Vec3::new(x[4], x[2], x[3]) };
+                visible.ambient_from_six_way(&six_way, v2(x)).to_array().to_vec()
+            },
+            cases: unit_vectors(random(100, &[SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SIDE, SIDE, SIDE]), 6),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("six_way.negative, -system.up)", "six_way.negative, system.up)"),
+                ("painted, system.shadow_strength", "painted, 1.0"),
             ],
         },
         Formula {
@@ -239,7 +303,7 @@ fn diffuse() -> Vec<Formula> {
 }
 
 fn shade(optical_depths: Vec3) -> Shade {
-    Shade { optical_depths, visible: Vec3::new(1.0, 0.5, 0.9) }
+    Shade { optical_depths, visible: Vec3::new(1.0, 0.5, 0.9), ..Shade::NONE }
 }
 
 fn surfaces() -> Vec<Formula> {
@@ -317,7 +381,7 @@ fn lit_surfaces() -> Vec<Formula> {
         file: "lib/lit_smoke.wgsl",
         wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
                    for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
-                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), Shade(vec3f(0.0), vec3f(1.0)), vec2f(0.0)); \
+                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), Shade(vec3f(0.0), vec3f(1.0), vec2f(1.0)), vec2f(0.0)); \
                    y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",
         reference: |x| {
             let settings = changed(|s| {

@@ -3,10 +3,12 @@
 use glam::{UVec2, Vec2, Vec3};
 use half::f16;
 
+use crate::optical_depths::OpticalDepths;
 use crate::shade::Shade;
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::assets::ramp::Ramp;
+use haze::formula::ambient::{hemisphere_coordinate, openness_position, six_way_hemisphere};
 use haze::formula::color::bounded_light;
 use haze::formula::depth_moments::{DEPTH_SAMPLES, depth_of_sample};
 use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
@@ -22,15 +24,53 @@ use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
 impl VisibleSystem<'_> {
     /// Share of each light with shadow that reaches the smoke at a pixel past the scene. `moments`: those of its depth.
     pub fn scene_visibility(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
-        let Some(volume) = self.optical_depths.as_ref().filter(|volume| volume.visible.is_some()) else {
-            return Vec3::ONE;
-        };
-        let system = &self.system;
+        self.mean_along_ray(pixel, moments, OpticalDepths::sample_visible)
+    }
+
+    /// Openness of the smoke at a pixel to sky and ground.
+    pub fn openness(&self, pixel: Vec2, moments: Vec2) -> Vec2 {
+        self.mean_along_ray(pixel, moments, OpticalDepths::sample_openness).truncate()
+    }
+
+    fn mean_along_ray(&self, pixel: Vec2, moments: Vec2, sample: impl Fn(&OpticalDepths, Vec3) -> Vec3) -> Vec3 {
+        let (Some(volume), system) = (&self.optical_depths, &self.system) else { return Vec3::ONE };
         let sample = |index| {
             let depth = depth_of_sample(index, moments, system.smoke_near, system.smoke_far);
-            volume.sample_visible(system.grid_from_view.transform_point3(self.view_position(pixel, depth)))
+            sample(volume, system.grid_from_view.transform_point3(self.view_position(pixel, depth)))
         };
         (0..DEPTH_SAMPLES).map(sample).sum::<Vec3>() / DEPTH_SAMPLES as f32
+    }
+
+    /// Light from sky and ground, after the smoke between them.
+    fn hemispheres(&self, openness: Vec2) -> [Vec3; 2] {
+        let system = &self.system;
+        let shadow = |openness| {
+            if system.shadow_strength <= 0.0 {
+                return Vec3::ONE;
+            }
+            let at = openness_position(openness);
+            let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
+            Vec3::ONE.lerp(painted, system.shadow_strength)
+        };
+        [system.sky_color * shadow(openness.x), system.ground_color * shadow(openness.y)]
+    }
+
+    /// Light from sky and ground through the diffuse ramp.
+    pub fn ambient_from_ramp(&self, normal: Vec3, covered: f32, openness: Vec2) -> Vec3 {
+        let [sky, ground] = self.hemispheres(openness);
+        let look_up = |axis| {
+            let at = Vec2::new(hemisphere_coordinate(normal, axis), covered);
+            sample_ramp_2d(&self.material.diffuse_ramp, self.settings.ramp_filter, at)
+        };
+        sky * look_up(self.system.up) + ground * look_up(-self.system.up)
+    }
+
+    /// Light from sky and ground through six-way maps.
+    pub fn ambient_from_six_way(&self, six_way: &SixWay, openness: Vec2) -> Vec3 {
+        let [sky, ground] = self.hemispheres(openness);
+        let response = |axis| six_way_hemisphere(six_way.positive, six_way.negative, axis);
+        let light = sky * response(self.system.up) + ground * response(-self.system.up);
+        light * self.system.six_way_color
     }
 
     /// Samples a ramp of one row with the filter of the settings.
@@ -40,7 +80,12 @@ impl VisibleSystem<'_> {
 
     /// Sum of all lights through the diffuse ramp.
     pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3, shade: &Shade) -> Vec3 {
-        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position, shade)).sum()
+        let of_light = |light| self.diffuse_from_light(light, normal, covered, position, shade);
+        let lights: Vec3 = self.lights.iter().map(of_light).sum();
+        match self.settings.has_ambient() {
+            true => lights + self.ambient_from_ramp(normal, covered, shade.openness),
+            false => lights,
+        }
     }
 
     /// Contribution of a light through the diffuse ramp.
@@ -77,7 +122,12 @@ impl VisibleSystem<'_> {
 
     /// Sum of all lights through six-way maps.
     pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3, shade: &Shade) -> Vec3 {
-        self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position, shade)).sum()
+        let lights: Vec3 =
+            self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position, shade)).sum();
+        match self.settings.has_ambient() {
+            true => lights + self.ambient_from_six_way(six_way, shade.openness),
+            false => lights,
+        }
     }
 
     /// Contribution of a light through six-way maps.

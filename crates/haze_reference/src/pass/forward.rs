@@ -30,7 +30,9 @@ impl VisibleSystem<'_> {
                 let mut shade = Shade { optical_depths: sprite.optical_depths, ..Shade::NONE };
                 if self.settings.lights_by_depth() {
                     let moments = self.moments_of_sprite(sprite.view_depth, sprite.radius);
-                    shade.visible = self.scene_visibility(at.as_vec2() + 0.5, moments);
+                    let pixel = at.as_vec2() + 0.5;
+                    shade.visible = self.scene_visibility(pixel, moments);
+                    shade.openness = self.openness(pixel, moments);
                 }
                 let diffuse = match self.settings.is_six_way() {
                     true => self.diffuse_from_six_way(&fragment.six_way, position, &shade),

@@ -140,6 +140,7 @@ impl AccumulatedTarget<'_> {
         let mut surface = self.surface(attachments);
         if AttachmentRole::Depth.is_used(&self.visible.settings) {
             surface.shade.visible = self.visible.scene_visibility(pixel, surface.depth);
+            surface.shade.openness = self.visible.openness(pixel, surface.depth);
         }
         surface
     }
@@ -176,6 +177,17 @@ impl AccumulatedTarget<'_> {
     pub fn amount_and_surface(&self, pixel: Vec2) -> (f32, Surface) {
         let accumulated = self.sample_accumulated(pixel);
         (accumulated.w, self.surface_at(accumulated, pixel))
+    }
+
+    /// Light from sky and ground, if the system has it and does not bake it.
+    pub fn ambient(&self, surface: &Surface, covered: f32) -> Option<Vec3> {
+        let (visible, openness) = (self.visible, surface.shade.openness);
+        let light = match visible.settings.is_six_way() {
+            true => visible.ambient_from_six_way(&surface.six_way, openness),
+            false => visible.ambient_from_ramp(surface.normal, covered, openness),
+        };
+        let is_shown = visible.settings.has_ambient() && visible.settings.can_receive_shadow();
+        is_shown.then_some(light * visible.system.diffuse_intensity)
     }
 
     /// Contribution of a light if none is baked.

@@ -211,11 +211,22 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.diffuse.six_way_color",
             "settings.diffuse.six_way_anisotropy",
             "settings.shadow",
+            "settings.ambient",
             "material.diffuse_ramp",
             "material.backlight_ramp",
             "material.shadow_ramp",
             "material.motif",
         ],
+    ),
+    rule(
+        "not with diffuse.mode painted_motif or spherical_harmonics",
+        |s, _| !s.settings.can_have_ambient(),
+        &["settings.ambient"],
+    ),
+    rule(
+        "only at an intensity of ambient light above 0",
+        |s, _| s.settings.ambient.intensity <= 0.0,
+        &["settings.ambient.sky_color", "settings.ambient.ground_color"],
     ),
     rule(
         "only with lighting six_way, path forward or diffuse.mode ramp",
