@@ -7,6 +7,7 @@
 
 #import "lib/sprite_fragment.wgsl"
 #import "lib/diffuse.wgsl"
+#import "lib/emission.wgsl"
 #import "lib/shadow_volume.wgsl"
 #import "lib/blending.wgsl"
 #import "lib/color.wgsl"
@@ -49,7 +50,7 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
     let covered = coverage(amount, system.boost);
-    var shade = Shade(in.optical_depths, vec3f(1.0), vec2f(1.0));
+    var shade = Shade(in.depths_and_heat.xyz, vec3f(1.0), vec2f(1.0));
     if BY_DEPTH {
         let ray = ray_through(position);
         let moments = moments_of_sprite(in.centre_radius);
@@ -69,6 +70,10 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     if AGE_COLOR {
         let color = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
         light *= mix(vec3f(1.0), color, system.age_color);
+    }
+    if FIRE {
+        let heat = heat_at(in.depths_and_heat.w, fragment.thickness, system.fire_core);
+        light += emission(fire_from_moments(vec2f(heat, heat * heat)), amount);
     }
     return forward_fragment(BLEND_MODE, bounded_light(light), covered);
 }

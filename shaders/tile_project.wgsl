@@ -18,8 +18,8 @@
 @group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
 @group(3) @binding(4) var<storage, read_write> keys: array<u32>;
 @group(3) @binding(5) var<storage, read_write> indices: array<u32>;
-// Optical depths of the smoke before each sprite, if SHADOW, in xyz.
-@group(3) @binding(6) var<storage, read_write> optical_depths: array<vec4f>;
+// Of each sprite, as in SpriteVertex, if SHADOW or FIRE.
+@group(3) @binding(6) var<storage, read_write> depths_and_heats: array<vec4f>;
 
 // True: sprites are unsorted and their normals are weighted.
 override WEIGHTED: bool = false;
@@ -82,8 +82,8 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
     let visible = !placed.hidden && index < system.alive_count && all(first < last);
-    if SHADOW {
-        optical_depths[index] = vec4f(placed.optical_depths, 0.0);
+    if SHADOW || FIRE {
+        depths_and_heats[index] = placed.depths_and_heat;
     }
     if visible {
         sprites[index] = sprite;

@@ -94,5 +94,8 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
         light += soft_scatter(amount);
     }
+    if DEBUG_VIEW != DEBUG_VIEW_SOFT_SCATTER && DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
+        light += fire_light(surface, amount);
+    }
     return vec4f(bounded_light(light), 1.0) * covered;
 }

@@ -10,6 +10,7 @@ override SIX_WAY_SLOT: u32 = 0u;
 override WEIGHTS_SLOT: u32 = 0u;
 override OPTICAL_DEPTHS_SLOT: u32 = 0u;
 override DEPTH_SLOT: u32 = 0u;
+override HEAT_SLOT: u32 = 0u;
 
 // Values of a fragment or a texel, by role.
 struct Attachments {
@@ -21,6 +22,8 @@ struct Attachments {
     optical_depths: vec4f,
     // Weighted depth_moments() in rg, sum of weights in a.
     depth: vec4f,
+    // Weighted heat, and its square, in rg, sum of weights in a.
+    heat: vec4f,
 }
 
 fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
@@ -36,6 +39,9 @@ fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
     }
     if DEPTH_SLOT != 0u {
         total.depth += next.depth;
+    }
+    if HEAT_SLOT != 0u {
+        total.heat += next.heat;
     }
     return total;
 }
@@ -56,6 +62,9 @@ fn slots_from_attachments(first: vec4f, values: Attachments) -> array<vec4f, MAX
     if DEPTH_SLOT != 0u {
         slots[DEPTH_SLOT] = values.depth;
     }
+    if HEAT_SLOT != 0u {
+        slots[HEAT_SLOT] = values.heat;
+    }
     return slots;
 }
 
@@ -75,6 +84,9 @@ fn attachments_from_slots(read: array<vec4f, MAX_TARGET_ATTACHMENTS>) -> Attachm
     }
     if DEPTH_SLOT != 0u {
         values.depth = slots[DEPTH_SLOT];
+    }
+    if HEAT_SLOT != 0u {
+        values.heat = slots[HEAT_SLOT];
     }
     return values;
 }

@@ -38,6 +38,10 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(12) var backlight_ramp: texture_2d<f32>;
 // x by optical depth, y by the angle between light and viewer: see shadow_position().
 @group(2) @binding(13) var shadow_ramp: texture_2d<f32>;
+// x by age.
+@group(2) @binding(14) var heat_ramp: texture_2d<f32>;
+// x by heat, y by amount times boost.
+@group(2) @binding(15) var fire_ramp: texture_2d<f32>;
 
 // Depth of the host at a pixel of the view.
 fn load_scene_depth(pixel: vec2i) -> f32 {

@@ -89,9 +89,9 @@ fn coverage(amount: f32, boost: f32) -> f32 {
     return saturate(amount * boost);
 }
 
-// Share of the scene that the smoke hides, read from the coverage ramp. It is the sRGB code of the texel's luminance,
-// so that a displayed middle grey hides half.
-fn painted_coverage(paint: vec3f) -> f32 {
+// Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a displayed
+// middle grey is half.
+fn painted_share(paint: vec3f) -> f32 {
     return srgb_from_linear(saturate(luminance(paint)));
 }
 

@@ -6,6 +6,7 @@
 #import "lib/normal.wgsl"
 #import "lib/shadow_volume.wgsl"
 #import "lib/diffuse_bake.wgsl"
+#import "lib/emission.wgsl"
 
 // Six faces of baked light by normal (cubemap), or one image of a lit sphere (motif).
 @group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
@@ -35,6 +36,8 @@ struct Surface {
     shade: Shade,
     // Moments of its depth, as in depth_moments(), if the target has them.
     depth: vec2f,
+    // Means of heat and of its square, if the target has them.
+    heat: vec2f,
 }
 
 // Samples the textures behind the first at a pixel of the view.
@@ -78,6 +81,10 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
     }
     if DEPTH_SLOT != 0u {
         surface.depth = attachments.depth.rg / max(attachments.depth.a, 1.0e-6);
+    }
+    if HEAT_SLOT != 0u {
+        // The fit of an upsampler may fall below 0, which means cold.
+        surface.heat = max(attachments.heat.rg, vec2f(0.0)) / max(attachments.heat.a, 1.0e-6);
     }
     if SIX_WAY_SLOT != 0u {
         // The fit of an upsampler may fall below 0, which means no light.
@@ -140,11 +147,19 @@ fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
     return light * system.diffuse_intensity;
 }
 
+// Light that the smoke gives at a point.
+fn fire_light(surface: Surface, amount: f32) -> vec3f {
+    if HEAT_SLOT == 0u {
+        return vec3f(0.0);
+    }
+    return emission(fire_from_moments(surface.heat), amount);
+}
+
 // Share of the scene that the smoke hides.
 fn smoke_coverage(amount: f32) -> f32 {
     let covered = coverage(amount, system.boost);
     if COVERAGE_MODE == COVERAGE_MODE_RAMP {
-        return painted_coverage(sample_ramp(coverage_ramp, linear_sampler, covered));
+        return painted_share(sample_ramp(coverage_ramp, linear_sampler, covered));
     }
     return covered;
 }

@@ -4,6 +4,7 @@
 #import "lib/attachments.wgsl"
 #import "lib/depth.wgsl"
 #import "lib/depth_moments.wgsl"
+#import "lib/fire.wgsl"
 #import "lib/noise_volume.wgsl"
 #import "lib/normal.wgsl"
 #import "lib/six_way.wgsl"
@@ -20,20 +21,21 @@ struct SpriteFragment {
     // View space, if SIX_WAY.
     six_way: SixWay,
     amount: f32,
+    // Amount of the sprite's image, before that of the particle.
+    thickness: f32,
     // True behind the scene and outside the sphere: the fragment is not shaded.
     hidden: bool,
 }
 
 const NO_LIGHT: SixWay = SixWay(vec3f(0.0), vec3f(0.0));
-const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, true);
+const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, 0.0, true);
 
-// Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal. `optical_depths`: those
-// of its sprite.
-// `centre_radius`: the sprite in view space.
+// Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal. `depths_and_heat`: as in
+// SpriteVertex. `centre_radius`: the sprite in view space.
 fn attachments_from_fragment(
     fragment: SpriteFragment,
     weight: f32,
-    optical_depths: vec3f,
+    depths_and_heat: vec4f,
     centre_radius: vec4f,
 ) -> Attachments {
     var values: Attachments;
@@ -44,10 +46,14 @@ fn attachments_from_fragment(
         values.weights = weight;
     }
     if OPTICAL_DEPTHS_SLOT != 0u {
-        values.optical_depths = vec4f(optical_depths * weight, weight);
+        values.optical_depths = vec4f(depths_and_heat.xyz * weight, weight);
     }
     if DEPTH_SLOT != 0u {
         values.depth = vec4f(moments_of_sprite(centre_radius) * weight, 0.0, weight);
+    }
+    if HEAT_SLOT != 0u {
+        let heat = heat_at(depths_and_heat.w, fragment.thickness, system.fire_core);
+        values.heat = vec4f(heat * weight, heat * heat * weight, 0.0, weight);
     }
     return values;
 }
@@ -133,13 +139,13 @@ fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec
         let negative = sample_flipbook(sprite, linear_sampler, uv, offset_frames(frames, 2 * count), motion, lod);
         let light = SixWay(six_way_from_texel(positive.rgb), six_way_from_texel(negative.rgb));
         let turned = rotate_six_way(light.positive, light.negative, in.rotation);
-        return SpriteFragment(vec3f(0.0, 0.0, 1.0), turned, positive.a, false);
+        return SpriteFragment(vec3f(0.0, 0.0, 1.0), turned, positive.a, positive.a, false);
     }
     var texel = checkerboard(uv);
     if !DEBUG_SPRITE {
         texel = sample_sprite(sprite, linear_sampler, uv, frames, motion, lod);
     }
-    return SpriteFragment(rotate_normal(texel.xyz, in.rotation), NO_LIGHT, texel.w, false);
+    return SpriteFragment(rotate_normal(texel.xyz, in.rotation), NO_LIGHT, texel.w, texel.w, false);
 }
 
 fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {
@@ -204,5 +210,5 @@ fn volumetric_fragment(
         transmittance *= 1.0 - amount;
     }
     let total = 1.0 - transmittance;
-    return SpriteFragment(normal / max(total, 1.0e-6), NO_LIGHT, total, false);
+    return SpriteFragment(normal / max(total, 1.0e-6), NO_LIGHT, total, total, false);
 }

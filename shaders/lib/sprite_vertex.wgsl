@@ -4,6 +4,7 @@
 
 #import "lib/bindings.wgsl"
 #import "lib/density_grid.wgsl"
+#import "lib/ramp.wgsl"
 #import "lib/shadow.wgsl"
 #import "lib/shadow_volume.wgsl"
 #import "lib/sprite.wgsl"
@@ -35,8 +36,8 @@ struct SpriteVertex {
     @location(4) @interpolate(flat, either) rotation: vec2f,
     // Weight of the normal under the order `weighted`.
     @location(5) @interpolate(flat, either) weight: f32,
-    // Of the smoke before the sprite, towards the lights with shadow.
-    @location(6) @interpolate(flat, either) optical_depths: vec3f,
+    // Optical depths of the smoke before the sprite towards the lights with shadow, and the sprite's heat.
+    @location(6) @interpolate(flat, either) depths_and_heat: vec4f,
 }
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
@@ -46,6 +47,8 @@ override DEBUG_SPRITE: bool = false;
 override SIX_WAY: bool = false;
 // True if sprite.motion is not 0.
 override MOTION: bool = false;
+// True if the smoke gives light of its own.
+override FIRE: bool = false;
 
 // True for techniques whose sprites are spheres.
 fn is_sphere() -> bool {
@@ -91,7 +94,7 @@ struct ProjectedSprite {
     centre_radius: vec4f,
     amount_lod_frame_age: vec4f,
     rotation: vec2f,
-    optical_depths: vec3f,
+    depths_and_heat: vec4f,
 }
 
 // Half the side of the square that the density of a particle's sprite fills, in cells.
@@ -113,6 +116,14 @@ fn optical_depths_of(particle: Particle, centre: vec3f) -> vec3f {
     }
     let in_grid = sample_volume(0.0, (system.grid_from_view * vec4f(centre, 1.0)).xyz);
     return foreign_optical_depths(in_grid, own_optical_depth(density_radius(particle), sprite_optical_depth(particle)));
+}
+
+// Heat of a particle, 0 to 1.
+fn heat_by_age(age: f32) -> f32 {
+    if !FIRE {
+        return 0.0;
+    }
+    return painted_share(sample_ramp(heat_ramp, linear_sampler, age));
 }
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.
@@ -147,7 +158,7 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
         vec4f(centre, radius),
         vec4f(amount, lod, shown_frame, age),
         vec2f(cos(angle), sin(angle)),
-        optical_depths_of(particle, centre),
+        vec4f(optical_depths_of(particle, centre), heat_by_age(age)),
     );
 }
 
@@ -191,7 +202,7 @@ fn sprite_vertex(
     out.amount_lod_frame_age = sprite.amount_lod_frame_age;
     out.rotation = sprite.rotation;
     out.weight = 1.0;
-    out.optical_depths = sprite.optical_depths;
+    out.depths_and_heat = sprite.depths_and_heat;
     let centre = sprite.centre_radius.xyz;
     let corner = sprite_corner(corner_index);
     var clip: vec4f;

@@ -90,5 +90,7 @@ struct System {
     // Blocks of the volume that hold the lights' visibility past the scene, and openness to sky and ground; 0 for none.
     visibility_block: f32,
     openness_block: f32,
-    padding: vec2f,
+    // Of the fire ramp, exposed.
+    fire_intensity: f32,
+    fire_core: f32,
 }

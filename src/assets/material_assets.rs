@@ -43,6 +43,10 @@ pub struct MaterialAssets {
     pub motif: Ramp,
     /// Particle color by age; forward path only. One row. (MS)
     pub age_ramp: Ramp,
+    /// Heat by age, for [`Settings::burns`](crate::settings::Settings::burns): black is cold, white hottest. One row.
+    pub heat_ramp: Ramp,
+    /// Light of hot smoke, by heat (across) and by its amount times `boost` (up). Black at heat 0.
+    pub fire_ramp: Ramp,
     /// Coverage by amount times `boost`, for [`CoverageMode::Ramp`](crate::settings::CoverageMode::Ramp): black is
     /// transparent, white opaque. One row.
     pub coverage_ramp: Ramp,
@@ -63,7 +67,7 @@ impl MaterialAssets {
             && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares_memory(b))
     }
 
-    fn ramps(&self) -> [&Ramp; 8] {
+    fn ramps(&self) -> [&Ramp; 10] {
         [
             &self.diffuse_ramp,
             &self.soft_scatter_ramp,
@@ -73,6 +77,8 @@ impl MaterialAssets {
             &self.coverage_ramp,
             &self.backlight_ramp,
             &self.shadow_ramp,
+            &self.heat_ramp,
+            &self.fire_ramp,
         ]
     }
 

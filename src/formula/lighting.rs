@@ -72,9 +72,9 @@ pub fn coverage(amount: f32, boost: f32) -> f32 {
     saturate(amount * boost)
 }
 
-/// Share of the scene that the smoke hides, read from the coverage ramp. It is the sRGB code of the texel's luminance,
-/// so that a displayed middle grey hides half.
-pub fn painted_coverage(paint: Vec3) -> f32 {
+/// Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a
+/// displayed middle grey is half.
+pub fn painted_share(paint: Vec3) -> f32 {
     srgb_from_linear(saturate(luminance(paint)))
 }
 

@@ -9,6 +9,7 @@ pub mod depth;
 pub mod depth_moments;
 pub mod diffuse_bake;
 pub mod emitter;
+pub mod fire;
 pub mod gradient_noise;
 pub mod hash;
 pub mod lighting;

@@ -123,7 +123,8 @@ uniform! {
         density_reach: f32,
         visibility_block: f32,
         openness_block: f32,
-        padding: Vec2,
+        fire_intensity: f32,
+        fire_core: f32,
     }
 }
 

@@ -49,6 +49,10 @@ settings! {
         motif: String = "motif_studio".into(), image(ImageRole::Motif);
         /// Color by age: from flame to ash.
         age_ramp: String = "age_smoke".into(), image(ImageRole::Ramp);
+        /// Heat by age: where flames end and smoke begins. White is hottest.
+        heat_ramp: String = "heat_flame".into(), image(ImageRole::Ramp);
+        /// Light of hot smoke, by heat and, if it has rows, by amount: the colors of flames.
+        fire_ramp: String = "fire_campfire".into(), image(ImageRole::Ramp);
         /// Coverage by amount: soft, wispy or sharp silhouettes.
         coverage_ramp: String = "coverage_soft".into(), image(ImageRole::Ramp);
         /// Tiling 3D noise: a built-in one, or a PNG of slices one below the other.
@@ -101,6 +105,8 @@ impl MaterialNames {
             ramp("coverage_ramp", &self.coverage_ramp, builtin::RAMPS),
             ramp("backlight_ramp", &self.backlight_ramp, builtin::RAMPS),
             ramp("shadow_ramp", &self.shadow_ramp, builtin::RAMPS),
+            ramp("heat_ramp", &self.heat_ramp, builtin::RAMPS),
+            ramp("fire_ramp", &self.fire_ramp, builtin::RAMPS),
         );
         let noise = match builtin::find(builtin::NOISES, &self.noise) {
             Some(noise) => noise.noise(),
@@ -112,7 +118,7 @@ impl MaterialNames {
         match (sprite, ramps, noise) {
             (
                 Some(SpriteImages { sprite, detail, six_way }),
-                (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g), Some(h)),
+                (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g), Some(h), Some(i), Some(j)),
                 Some(noise),
             ) => Ok(MaterialAssets {
                 sprite,
@@ -127,6 +133,8 @@ impl MaterialNames {
                 coverage_ramp: f,
                 backlight_ramp: g,
                 shadow_ramp: h,
+                heat_ramp: i,
+                fire_ramp: j,
             }),
             _ => Err(errors),
         }
@@ -146,6 +154,8 @@ impl MaterialNames {
                 "coverage_ramp" => (&mut names.coverage_ramp, &defaults.coverage_ramp),
                 "backlight_ramp" => (&mut names.backlight_ramp, &defaults.backlight_ramp),
                 "shadow_ramp" => (&mut names.shadow_ramp, &defaults.shadow_ramp),
+                "heat_ramp" => (&mut names.heat_ramp, &defaults.heat_ramp),
+                "fire_ramp" => (&mut names.fire_ramp, &defaults.fire_ramp),
                 "noise" => (&mut names.noise, &defaults.noise),
                 _ => {
                     (names.detail, names.six_way) = (String::new(), String::new());

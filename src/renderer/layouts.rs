@@ -8,9 +8,12 @@ use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 /// Size of the lights' uniform block, bytes.
 pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as u64;
 
-/// Bindings of a material that the passes that light accumulated smoke read: the ramps, their sampler, and the painted
-/// motif. WebGPU and WebGL2 guarantee 16 textures per stage, too few for all of the material's with the target's.
-pub(crate) const LIGHTING_BINDINGS: [u32; 8] = [1, 2, 3, 4, 5, 10, 12, 13];
+/// Bindings of a material that the passes that draw sprites or bake light read. WebGPU and WebGL2 guarantee 16 textures per
+/// stage, too few for all of the material's.
+pub(crate) const SPRITE_BINDINGS: [u32; 13] = [0, 1, 2, 5, 6, 7, 8, 9, 11, 12, 13, 14, 15];
+
+/// Bindings of a material that the passes that light accumulated smoke read: ramps, their sampler, and the painted motif.
+pub(crate) const LIGHTING_BINDINGS: [u32; 9] = [1, 2, 3, 4, 5, 10, 12, 13, 15];
 
 /// Format of the optical depths in the cells of the density grid.
 pub(crate) const SHADOW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -22,8 +25,9 @@ pub(crate) const TRANSFER_TEXTURES: usize = 3 + (MAX_TARGET_ATTACHMENTS - 1);
 pub(crate) struct Layouts {
     pub frame: wgpu::BindGroupLayout,
     pub system: wgpu::BindGroupLayout,
+    /// With [`SPRITE_BINDINGS`].
     pub material: wgpu::BindGroupLayout,
-    /// As `material`, with [`LIGHTING_BINDINGS`] only.
+    /// As `material`, with [`LIGHTING_BINDINGS`].
     pub lighting: wgpu::BindGroupLayout,
     /// Of depth_resolve alone: the host's multisampled depth.
     pub depth_resolve: wgpu::BindGroupLayout,
@@ -75,6 +79,8 @@ impl Layouts {
             texture(wgpu::TextureSampleType::Uint, D2),
             texture(filterable, D2),
             texture(filterable, D2),
+            texture(filterable, D2),
+            texture(filterable, D2),
         ];
         let multisampled = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Depth,
@@ -89,7 +95,7 @@ impl Layouts {
                 "haze system",
                 &[uniform(size_of::<SystemUniform>() as u64), uniform(LIGHTS_SIZE), texture(filterable, D3)],
             ),
-            material: layout("haze material", &material),
+            material: layout_of("haze material", &|binding| SPRITE_BINDINGS.contains(&binding), &material),
             lighting: layout_of("haze material lighting", &|binding| LIGHTING_BINDINGS.contains(&binding), &material),
             depth_resolve: layout("haze depth samples", &[multisampled]),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),

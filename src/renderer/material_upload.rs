@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use super::gpu::Gpu;
 use super::gpu::capabilities::array_layers;
-use super::layouts::{LIGHTING_BINDINGS, Layouts};
+use super::layouts::{LIGHTING_BINDINGS, Layouts, SPRITE_BINDINGS};
 use crate::assets::material_assets::MaterialAssets;
 use crate::assets::noise::NoiseVolume;
 use crate::assets::ramp::Ramp;
@@ -71,6 +71,8 @@ pub(crate) fn create_material(
     let specular_ramp = ramp("haze specular_ramp", &assets.specular_ramp);
     let motif = ramp("haze painted_motif", &assets.motif);
     let age_ramp = ramp("haze age_ramp", &assets.age_ramp);
+    let heat_ramp = ramp("haze heat_ramp", &assets.heat_ramp);
+    let fire_ramp = ramp("haze fire_ramp", &assets.fire_ramp);
     let coverage_ramp = ramp("haze coverage_ramp", &assets.coverage_ramp);
     let backlight_ramp = ramp("haze backlight_ramp", &assets.backlight_ramp);
     let shadow_ramp = ramp("haze shadow_ramp", &assets.shadow_ramp);
@@ -92,14 +94,17 @@ pub(crate) fn create_material(
         texture(11, &alpha_bounds),
         texture(12, &backlight_ramp),
         texture(13, &shadow_ramp),
+        texture(14, &heat_ramp),
+        texture(15, &fire_ramp),
     ];
     let bind = |label, layout, entries: &[wgpu::BindGroupEntry<'_>]| {
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
     };
+    let of_sprites = SPRITE_BINDINGS.map(|binding| entries[binding as usize].clone());
     let lighting = LIGHTING_BINDINGS.map(|binding| entries[binding as usize].clone());
     Ok(Material {
         context,
-        bind_group: bind("haze material", &layouts.material, &entries),
+        bind_group: bind("haze material", &layouts.material, &of_sprites),
         lighting: bind("haze material lighting", &layouts.lighting, &lighting),
         shadow_ramp,
         info,
@@ -127,6 +132,8 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         ("coverage_ramp", &assets.coverage_ramp),
         ("backlight_ramp", &assets.backlight_ramp),
         ("shadow_ramp", &assets.shadow_ramp),
+        ("heat_ramp", &assets.heat_ramp),
+        ("fire_ramp", &assets.fire_ramp),
     ];
     for (name, ramp) in ramps {
         check(name, ramp.size().max_element(), side, flat)?;

@@ -123,7 +123,6 @@ pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &ResolvedSettings,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
         ambient: settings.has_ambient(),
-        ramp_filter: settings.ramp_filter,
         reversed: inputs.reversed,
     };
     Plan::Forward(ForwardPlan { reads_linear, key })

@@ -3,7 +3,7 @@
 
 use crate::frame::{Particle, ParticleBuffer};
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
-use crate::settings::{FadeCurve, Settings, SpriteAnimation, Technique};
+use crate::settings::{FadeCurve, RampFilter, Settings, SpriteAnimation, Technique};
 
 /// Layout of the instance buffer: one [`Particle`] per sprite.
 pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
@@ -25,6 +25,8 @@ pub(crate) struct SpriteKey {
     exact_filtering: bool,
     shadow: bool,
     by_depth: bool,
+    fire: bool,
+    ramp_filter: RampFilter,
 }
 
 impl SpriteKey {
@@ -41,6 +43,8 @@ impl SpriteKey {
             exact_filtering,
             shadow: settings.receives_shadow(),
             by_depth: settings.lights_by_depth(),
+            fire: settings.burns(),
+            ramp_filter: settings.ramp_filter,
         }
     }
 
@@ -56,6 +60,11 @@ impl SpriteKey {
         self.shadow
     }
 
+    /// Returns true if sprites have optical depths or heat.
+    pub fn is_shaded_or_burns(&self) -> bool {
+        self.shadow || self.fire
+    }
+
     /// Returns the override constants of the shared files, followed by the pass's own.
     pub fn constants(&self, of_pass: impl IntoIterator<Item = Constant>) -> Vec<Constant> {
         let shared = [
@@ -68,6 +77,8 @@ impl SpriteKey {
             bool_constant("LINEAR_DEPTH", self.linear_depth),
             bool_constant("EXACT_FILTERING", self.exact_filtering),
             bool_constant("SHADOW", self.shadow),
+            bool_constant("FIRE", self.fire),
+            enum_constant!("RAMP_FILTER", self.ramp_filter),
         ];
         shared.into_iter().chain(of_pass).collect()
     }

@@ -122,6 +122,17 @@ settings! {
 }
 
 settings! {
+    /// Fire: light of the smoke itself. The heat ramp tells how hot a particle is at each age, the fire ramp how heat glows.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Fire {
+        /// Multiplies the fire ramp. 0: no fire, and no cost. Far above 1: a fire that outshines the scene.
+        intensity: f32 = 0.0, number(0.0..=1000.0, "");
+        /// Share by which the thin edge of a sprite is cooler than its middle. 0: even. 1: flames with dark edges.
+        core: f32 = 0.6, number(0.0..=1.0, "");
+    }
+}
+
+settings! {
     /// Soft scatter: even backlight of thin smoke, which darkens as the amount grows.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SoftScatter {

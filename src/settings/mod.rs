@@ -27,7 +27,7 @@ pub use choice::choice;
 pub use choice::{Choice, UnknownChoice};
 pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
-    Ambient, Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode,
+    Ambient, Backlight, CoverageMode, Diffuse, DiffuseMode, Fire, Lighting, RampFilter, SoftScatter, SoftScatterMode,
     SpecularScatter,
 };
 pub use scale_budget::{Budget, ScaleBudget};
@@ -160,6 +160,8 @@ settings! {
         shadow: Shadow = Shadow::default(), group;
         /// Light from the sky and from the ground.
         ambient: Ambient = Ambient::default(), group;
+        /// Light of hot smoke.
+        fire: Fire = Fire::default(), group;
         /// Soft scatter, by amount: light without a source.
         soft_scatter: SoftScatter = SoftScatter::default(), group;
         /// Glow around lights behind the smoke.
@@ -207,6 +209,11 @@ impl Settings {
     /// True if smoke shades ambient light.
     pub fn shades_ambient(&self) -> bool {
         self.has_ambient() && self.lights_by_depth()
+    }
+
+    /// True if the smoke gives light of its own.
+    pub fn burns(&self) -> bool {
+        self.fire.intensity > 0.0
     }
 
     /// Order in which sprites are drawn. Forward sprites hide each other and are always sorted.

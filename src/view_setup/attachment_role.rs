@@ -21,11 +21,14 @@ pub enum AttachmentRole {
     OpticalDepths,
     /// Weighted depth, as a share of the system's range of depths, and its square, in rg; sum of weights in a.
     Depth,
+    /// Weighted heat, and its square, in rg; sum of weights in a.
+    Heat,
 }
 
 impl AttachmentRole {
     /// All roles, in order.
-    pub const ALL: [Self; 5] = [Self::NormalAndAmount, Self::SixWay, Self::Weights, Self::OpticalDepths, Self::Depth];
+    pub const ALL: [Self; 6] =
+        [Self::NormalAndAmount, Self::SixWay, Self::Weights, Self::OpticalDepths, Self::Depth, Self::Heat];
 
     /// True if a system with these settings has the texture.
     pub fn is_used(self, settings: &Settings) -> bool {
@@ -36,6 +39,7 @@ impl AttachmentRole {
             Self::Weights => settings.accumulate.sums_weights() && !settings.is_six_way(),
             Self::OpticalDepths => settings.receives_shadow(),
             Self::Depth => settings.lights_by_depth(),
+            Self::Heat => settings.burns(),
         }
     }
 
@@ -47,6 +51,7 @@ impl AttachmentRole {
             Self::Weights => ("accumulate.order", "weighted"),
             Self::OpticalDepths => ("shadow.strength", "1"),
             Self::Depth => ("shadow.by_depth", "true"),
+            Self::Heat => ("fire.intensity", "1"),
         }
     }
 }

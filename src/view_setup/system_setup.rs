@@ -140,6 +140,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         up: view.view_from_world.transform_vector3(up).normalize_or(Vec3::Y),
         sky_color: settings.ambient.sky_color * (settings.ambient.intensity * exposure),
         ground_color: settings.ambient.ground_color * (settings.ambient.intensity * exposure),
+        fire_intensity: settings.fire.intensity * exposure,
+        fire_core: settings.fire.core,
         visibility_block: shadow.map_or(0.0, |shadow| shadow.visibility_block() as f32),
         openness_block: shadow.map_or(0.0, |shadow| shadow.openness_block() as f32),
         ..caster_uniform(system)

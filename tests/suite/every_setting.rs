@@ -144,7 +144,9 @@ fn stages() -> Vec<TestScene> {
     let shaded: fn(&mut Settings) = |s| s.shadow.strength = 0.7;
     let under_a_sky: fn(&mut Settings) =
         |s| (s.shadow.strength, s.shadow.by_depth, s.ambient.intensity) = (0.7, true, 1.0);
+    let burning: fn(&mut Settings) = |s| s.fire.intensity = 2.0;
     let mut stages = vec![
+        scene(Technique::Soft, RenderPath::Raster, burning),
         scene(Technique::Soft, RenderPath::Raster, nothing),
         scene(Technique::Soft, RenderPath::Raster, weighted),
         scene(Technique::Soft, RenderPath::Forward, nothing),

@@ -12,6 +12,7 @@ mod compute;
 mod depth;
 mod diffuse_bake;
 mod emitter;
+mod fire;
 mod fixture;
 mod gradient_noise;
 mod hash;
@@ -71,6 +72,7 @@ fn formulas() -> Vec<Formula> {
         depth::formulas(),
         diffuse_bake::formulas(),
         emitter::formulas(),
+        fire::formulas(),
         gradient_noise::formulas(),
         hash::formulas(),
         lighting::formulas(),
@@ -215,8 +217,10 @@ const INDIRECT: &[(&str, &str)] = &[
     ("sample_density", "reads the density grid; whole frames with shadow cover it"),
     ("optical_depth_towards", "reads the density grid; whole frames with shadow cover it"),
     ("haze_transmittance", "reads the volume of optical depths; presets cover it, whose scene is shaded by smoke"),
-    ("depths_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
-    ("depths_of_sprite", "reads a buffer; tests of the tiled path with shadow cover it"),
+    ("heat_by_age", "calls painted_share with a ramp lookup; whole frames with fire cover it"),
+    ("fire_light", "calls emission with fire_from_moments"),
+    ("depths_and_heat_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
+    ("depths_and_heat_of", "reads a buffer; tests of the tiled path with shadow cover it"),
 ];
 
 #[test]

@@ -12,6 +12,7 @@ mod corpus;
 mod effects;
 mod every_setting;
 mod fields;
+mod fire;
 mod formulas;
 mod goldens;
 mod gpu;

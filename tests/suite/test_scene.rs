@@ -155,6 +155,8 @@ fn baked_material() -> MaterialAssets {
         motif: line(Vec3::ZERO, Vec3::ONE),
         coverage_ramp: Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| Vec3::splat((i as f32 / 15.0).powi(3)))),
         age_ramp: line(vec3(1.0, 0.2, 0.1), vec3(0.2, 0.4, 1.0)),
+        heat_ramp: line(Vec3::ONE, Vec3::splat(0.05)),
+        fire_ramp: line(Vec3::ZERO, vec3(2.0, 1.2, 0.3)),
     }
 }
 

@@ -10,6 +10,7 @@ use super::input::FrameInput;
 use super::visible_system::{VisibleSystem, place_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
+use haze::formula::fire::fire_from_moments;
 use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
 use haze::formula::six_way::SixWay;
 use haze::settings::{DebugView, SoftScatterMode};
@@ -63,6 +64,10 @@ pub struct SystemProbe {
     pub soft_scatter_weight: Option<f32>,
     /// Soft scatter, times its intensity.
     pub soft_scatter: Vec3,
+    /// Mean heat of the smoke that burns, and its share of the smoke.
+    pub fire: Vec2,
+    /// Light that the smoke gives.
+    pub fire_light: Vec3,
     /// Premultiplied light and coverage, as blended.
     pub blended: Vec4,
 }
@@ -215,6 +220,8 @@ impl<'a> ProbedSystem<'a> {
             soft_scatter_weight: is_curve
                 .then(|| soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth)),
             soft_scatter: visible.soft_scatter(amount),
+            fire: fire_from_moments(surface.heat),
+            fire_light: smoke.fire_light(&surface, amount),
             blended: blended.unwrap_or(Vec4::ZERO),
         })
     }

@@ -5,6 +5,7 @@ use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 use super::visible_system::VisibleSystem;
 use haze::formula::density_grid::mean_optical_depth;
 use haze::formula::depth_moments::depth_moments;
+use haze::formula::lighting::painted_share;
 use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use haze::formula::normal::rotate_normal;
 use haze::formula::order::{optical_depth_in_front, order_weight};
@@ -46,6 +47,8 @@ pub struct SpriteSetup {
     pub age: f32,
     /// Optical depths of the smoke before the sprite, towards the lights with shadow.
     pub optical_depths: Vec3,
+    /// Heat, 0 to 1.
+    pub heat: f32,
     /// Weight of the normal under the order `weighted`.
     pub weight: f32,
     /// Upper left corner of the pixels that the sprite can cover.
@@ -63,6 +66,8 @@ pub struct SpriteFragment {
     pub six_way: SixWay,
     /// 0 to 1.
     pub amount: f32,
+    /// Amount of the sprite's image, before that of the particle.
+    pub thickness: f32,
 }
 
 impl VisibleSystem<'_> {
@@ -119,6 +124,7 @@ impl VisibleSystem<'_> {
             reach: projector.trimmed_extent(&sprite),
             age: particle.age,
             optical_depths: self.optical_depths_of(particle, centre),
+            heat: self.heat_by_age(particle.age),
             weight: self.order_weight(view_depth),
             min,
             max,
@@ -133,6 +139,12 @@ impl VisibleSystem<'_> {
         };
         let own = own_optical_depth(density_radius(system, particle), sprite_optical_depth(system, particle));
         foreign_optical_depths(depths.sample(system.grid_from_view.transform_point3(centre)), own)
+    }
+
+    /// Heat of a particle.
+    pub fn heat_by_age(&self, age: f32) -> f32 {
+        let paint = |ramp| painted_share(self.sample_ramp(ramp, age));
+        if self.settings.burns() { paint(&self.material.heat_ramp) } else { 0.0 }
     }
 
     /// `depth_moments()` of a sprite.
@@ -237,14 +249,19 @@ impl VisibleSystem<'_> {
             let [positive, negative] = [frames, negative].map(|frames| sample_flipbook(maps, uv, frames, motion, lod));
             let [of_positive, of_negative] = [positive, negative].map(|texel| six_way_from_texel(texel.xyz()));
             let six_way = rotate_six_way(of_positive, of_negative, rotation);
-            return SpriteFragment { normal: Vec3::Z, six_way, amount: positive.w };
+            return SpriteFragment { normal: Vec3::Z, six_way, amount: positive.w, thickness: positive.w };
         }
         let texel = if self.settings.sprite.debug_sprite {
             checkerboard(uv)
         } else {
             sample_sprite(&self.material.sprite, uv, frames, motion, lod)
         };
-        SpriteFragment { normal: rotate_normal(texel.xyz(), rotation), six_way: SixWay::default(), amount: texel.w }
+        SpriteFragment {
+            normal: rotate_normal(texel.xyz(), rotation),
+            six_way: SixWay::default(),
+            amount: texel.w,
+            thickness: texel.w,
+        }
     }
 
     /// Values of a spherical sprite at a pixel; `None` if it is hidden.
@@ -298,7 +315,12 @@ impl VisibleSystem<'_> {
             transmittance *= 1.0 - amount;
         }
         let total = 1.0 - transmittance;
-        SpriteFragment { normal: normal / total.max(1.0e-6), six_way: SixWay::default(), amount: total }
+        SpriteFragment {
+            normal: normal / total.max(1.0e-6),
+            six_way: SixWay::default(),
+            amount: total,
+            thickness: total,
+        }
     }
 }
 

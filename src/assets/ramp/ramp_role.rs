@@ -21,6 +21,10 @@ choice! {
         Coverage = "coverage",
         /// Particle color by age.
         Age = "age",
+        /// Heat by age.
+        Heat = "heat",
+        /// Light of hot smoke, by heat and by how much of it is there.
+        Fire = "fire",
     }
 }
 

@@ -12,7 +12,7 @@ use crate::renderer::gpu::pipeline::{
     enum_constant, read_only_depth,
 };
 use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
-use crate::settings::{Backlight, BlendMode, RampFilter, SoftScatterMode};
+use crate::settings::{Backlight, BlendMode, SoftScatterMode};
 
 /// Key of a forward pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -26,7 +26,6 @@ pub(crate) struct ForwardKey {
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
     pub ambient: bool,
-    pub ramp_filter: RampFilter,
     pub reversed: bool,
 }
 
@@ -52,7 +51,6 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
             enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
             enum_constant!("BACKLIGHT", key.backlight),
             bool_constant("AMBIENT", key.ambient),
-            enum_constant!("RAMP_FILTER", key.ramp_filter),
         ]),
     }
 }

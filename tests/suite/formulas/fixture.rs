@@ -54,6 +54,8 @@ pub static MATERIAL: LazyLock<MaterialAssets> = LazyLock::new(|| {
         motif: test_ramp(),
         coverage_ramp: test_ramp(),
         age_ramp: test_ramp(),
+        heat_ramp: test_ramp(),
+        fire_ramp: test_ramp(),
     }
 });
 

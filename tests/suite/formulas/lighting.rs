@@ -156,10 +156,10 @@ fn coverages() -> Vec<Formula> {
             mutants: &[("saturate(amount * boost)", "amount * boost")],
         },
         Formula {
-            name: "painted_coverage",
+            name: "painted_share",
             file: "lib/lighting.wgsl",
-            wgsl: "y(0, painted_coverage(vec3f(x(0), x(1), x(2))));",
-            reference: |x| vec![lighting::painted_coverage(v3(x))],
+            wgsl: "y(0, painted_share(vec3f(x(0), x(1), x(2))));",
+            reference: |x| vec![lighting::painted_share(v3(x))],
             cases: random(100, &[(0.0, 1.3); 3]),
             tolerance: 1e-5,
             mutants: &[("luminance(paint)", "paint.r"), ("srgb_from_linear(saturate", "(saturate")],

@@ -26,6 +26,7 @@ fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
         reach: glam::Vec4::ONE,
         age: 0.5,
         optical_depths: Vec3::ZERO,
+        heat: 0.0,
         weight: 1.0,
         min: Vec2::ZERO,
         max: Vec2::ZERO,
@@ -45,7 +46,7 @@ macro_rules! with_sprite {
 }
 
 fn numbers(fragment: &SpriteFragment) -> Vec<f32> {
-    [&fragment.normal.to_array()[..], &[fragment.amount]].concat()
+    [&fragment.normal.to_array()[..], &[fragment.amount, fragment.thickness]].concat()
 }
 
 /// Settings of a technique with a short fade.
@@ -132,8 +133,8 @@ fn texels() -> Vec<Formula> {
             "DEBUG_SPRITE = x(0) == 1.0; SIX_WAY = x(0) == 2.0; \
              if SIX_WAY { system.frame_count = 1.0; } \
              let f = sprite_texel(in, vec2f(x(6), x(7)), flipbook_frames(select(0.7, 0.0, SIX_WAY), \
-             system.frame_count), vec2f(x(8), x(9))); y3(0, f.normal); y(3, f.amount); y3(4, f.six_way.positive); \
-             y3(7, f.six_way.negative);"
+             system.frame_count), vec2f(x(8), x(9))); y3(0, f.normal); y(3, f.amount); y(4, f.thickness); y3(5, f.six_way.positive); \
+             y3(8, f.six_way.negative);"
         ),
         reference: |x| {
             let mut settings = Settings::default();
@@ -207,7 +208,7 @@ fn techniques() -> Vec<Formula> {
                 let local = unrotate(ray * depth - in.centre_radius.xy, in.rotation) / in.centre_radius.w; \
                 in.uv = sprite_uv(local); \
                 if !is_sphere() && any(abs(local) > vec2f(1.0)) { return; } \
-                let f = technique_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount);"
+                let f = technique_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount); y(4, f.thickness);"
             )
         ),
         reference: visible_fragment,
@@ -236,7 +237,7 @@ fn spheres() -> Vec<Formula> {
                 TECHNIQUE = TECHNIQUE_SPHERICAL_BILLBOARD; view.orthographic = x(9); \
                 let ray = ndc_from_pixel(vec2f(x(6), x(7)), view.size) * view.ray_scale + view.ray_offset; \
                 in.view_position = view_position(ray, 1.0, view.orthographic); \
-                let f = sphere_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount);"
+                let f = sphere_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount); y(4, f.thickness);"
                 )
             ),
             reference: |x| {
@@ -273,7 +274,7 @@ fn spheres() -> Vec<Formula> {
                 TECHNIQUE = select(TECHNIQUE_VOLUMETRIC_HARD, TECHNIQUE_VOLUMETRIC_SOFT, x(0) > 0.5); \
                 let along = normalize(vec3f(0.1, -0.05, -1.0)); \
                 let f = volumetric_fragment(in, x(8), vec3f(0.0), along, RayInterval(x(6), x(6) + x(7), vec3f(0.0))); \
-                y3(0, f.normal); y(3, f.amount);"
+                y3(0, f.normal); y(3, f.amount); y(4, f.thickness);"
                 )
             ),
             reference: |x| {

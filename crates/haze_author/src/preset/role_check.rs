@@ -16,12 +16,14 @@ pub fn role_warnings(names: &MaterialNames, loaded: &MaterialAssets) -> Vec<(&'s
         ("soft_scatter_ramp", &names.soft_scatter_ramp, &loaded.soft_scatter_ramp),
         ("age_ramp", &names.age_ramp, &loaded.age_ramp),
         ("coverage_ramp", &names.coverage_ramp, &loaded.coverage_ramp),
+        ("heat_ramp", &names.heat_ramp, &loaded.heat_ramp),
     ];
     let of_ramps = ramps.iter().map(|(field, name, ramp)| (*field, *name, check_single_row_ramp(ramp)));
     let others = [
         ("diffuse_ramp", &names.diffuse_ramp, check_diffuse_ramp(&loaded.diffuse_ramp)),
         ("backlight_ramp", &names.backlight_ramp, check_diffuse_ramp(&loaded.backlight_ramp)),
         ("shadow_ramp", &names.shadow_ramp, check_shadow_ramp(&loaded.shadow_ramp)),
+        ("fire_ramp", &names.fire_ramp, check_fire_ramp(&loaded.fire_ramp)),
         ("specular_ramp", &names.specular_ramp, check_specular_ramp(&loaded.specular_ramp)),
         ("motif", &names.motif, check_motif(&loaded.motif)),
     ];
@@ -50,6 +52,14 @@ fn check_shadow_ramp(ramp: &Ramp) -> Option<String> {
         format!("{first}; expected white there: thin smoke is lit by full light")
     };
     (lit < 0.5).then(dark)
+}
+
+/// Checks a ramp that is looked up by heat.
+fn check_fire_ramp(ramp: &Ramp) -> Option<String> {
+    let lit = (0..ramp.size().y).map(|y| ramp.texel(UVec2::new(0, y)).max_element()).fold(0.0, f32::max);
+    let glows =
+        || "not black in the first column, at heat 0; expected black there: cold smoke gives no light".to_owned();
+    (lit > SAME).then(glows).or_else(|| check_rows(ramp))
 }
 
 /// Checks a ramp that is looked up in one row.

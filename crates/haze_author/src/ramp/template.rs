@@ -170,6 +170,27 @@ pub const TEMPLATES: &[Template] = &[
         Curve::Monotone,
         &[(0.0, 0xfff2c8), (0.1, 0xf09a3c), (0.3, 0x7a3018), (0.6, 0x4a4340), (1.0, 0x8a8580)],
     ),
+    one_axis(
+        RampRole::Heat,
+        "cooling",
+        "hot at birth, cold at half the life",
+        Curve::Monotone,
+        &[(0.0, 0xffffff), (0.2, 0xb0b0b0), (0.4, 0x404040), (0.55, 0x000000), (1.0, 0x000000)],
+    ),
+    one_axis(
+        RampRole::Fire,
+        "flame",
+        "from dark red to pale yellow",
+        Curve::Monotone,
+        &[(0.0, 0x000000), (0.15, 0x160200), (0.4, 0x6e1800), (0.65, 0xd85a06), (0.85, 0xffae38), (1.0, 0xffe3a0)],
+    ),
+    one_axis(
+        RampRole::Fire,
+        "spell",
+        "from dark green to white",
+        Curve::Monotone,
+        &[(0.0, 0x000000), (0.25, 0x01200f), (0.55, 0x068a3c), (0.8, 0x5cf07a), (1.0, 0xeaffd8)],
+    ),
     Template {
         name: "neutral_glow",
         description: "a white glow, strongest in smoke of middle thickness",

@@ -7,6 +7,7 @@ use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
 use crate::sprite::{SpriteFragment, SpriteSetup};
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
+use haze::formula::fire::heat_at;
 use haze::formula::normal::accumulation_from_normal;
 use haze::settings::{AccumulationFormat, BlendOrder, RenderPath};
 use haze::view_setup::{AttachmentRole, AttachmentSet, TexelGrid};
@@ -46,7 +47,7 @@ impl VisibleSystem<'_> {
     fn format(&self, role: AttachmentRole) -> AccumulationFormat {
         match role {
             AttachmentRole::NormalAndAmount | AttachmentRole::SixWay => self.settings.accumulate.format,
-            AttachmentRole::Weights | AttachmentRole::OpticalDepths | AttachmentRole::Depth => {
+            AttachmentRole::Weights | AttachmentRole::OpticalDepths | AttachmentRole::Depth | AttachmentRole::Heat => {
                 AccumulationFormat::Rgba16Float
             }
         }
@@ -55,7 +56,7 @@ impl VisibleSystem<'_> {
     /// Texel of the texture with this role after one more fragment, before rounding.
     fn blended(&self, role: AttachmentRole, fragment: SpriteFragment, sprite: &SpriteSetup, texel: Vec4) -> Vec4 {
         let accumulate = &self.settings.accumulate;
-        let SpriteFragment { normal, six_way, amount } = fragment;
+        let SpriteFragment { normal, six_way, amount, thickness } = fragment;
         let weight = sprite.weight;
         let weighted = amount * weight;
         let source = match role {
@@ -69,6 +70,10 @@ impl VisibleSystem<'_> {
             AttachmentRole::Depth => {
                 let moments = self.moments_of_sprite(sprite.view_depth, sprite.radius) * weighted;
                 Vec4::new(moments.x, moments.y, 0.0, weighted)
+            }
+            AttachmentRole::Heat => {
+                let heat = heat_at(sprite.heat, thickness, self.system.fire_core);
+                Vec4::new(heat * weighted, heat * heat * weighted, 0.0, weighted)
             }
         };
         match (self.settings.order(), role) {

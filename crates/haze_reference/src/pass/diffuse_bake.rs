@@ -13,7 +13,7 @@ use haze::formula::color::bounded_light;
 use haze::formula::depth_moments::{DEPTH_SAMPLES, depth_of_sample};
 use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
 use haze::formula::lighting::{
-    backlight_weight, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
+    backlight_weight, coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
 };
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::formula::shadow::{of_slot, shadow_position};
@@ -137,6 +137,14 @@ impl VisibleSystem<'_> {
             six_way_response(six_way.positive, six_way.negative, sample.direction, self.system.six_way_anisotropy);
         let shadow = self.shadow_on_light(light, sample.direction, position, shade);
         light.color * (response * sample.attenuation) * self.system.six_way_color * shadow
+    }
+
+    /// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from
+    /// [`fire_from_moments`](haze::formula::fire::fire_from_moments).
+    pub fn emission(&self, fire: Vec2, amount: f32) -> Vec3 {
+        let system = &self.system;
+        let at = Vec2::new(fire.x, coverage(amount * fire.y, system.boost));
+        sample_ramp_2d(&self.material.fire_ramp, self.settings.ramp_filter, at) * (system.fire_intensity * fire.y)
     }
 
     /// Even backlight of smoke by its amount.

@@ -8,7 +8,8 @@ use crate::shade::Shade;
 use haze::assets::image::Image;
 use haze::formula::color::{bounded_light, overdraw_color};
 use haze::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
-use haze::formula::lighting::{coverage, painted_coverage};
+use haze::formula::fire::fire_from_moments;
+use haze::formula::lighting::{coverage, painted_share};
 use haze::formula::normal::normal_from_accumulation;
 use haze::formula::ramp::sample_ramp_2d;
 use haze::formula::saturate;
@@ -27,6 +28,8 @@ pub struct Surface {
     pub shade: Shade,
     /// Moments of its depth, if the system accumulates them.
     pub depth: Vec2,
+    /// Means of heat and of its square, if the system burns.
+    pub heat: Vec2,
 }
 
 impl AccumulatedTarget<'_> {
@@ -118,6 +121,9 @@ impl AccumulatedTarget<'_> {
         if debug_view != DebugView::Diffuse {
             light += self.visible.soft_scatter(amount);
         }
+        if !matches!(debug_view, DebugView::SoftScatter | DebugView::Diffuse) {
+            light += self.fire_light(&surface, amount);
+        }
         Some(bounded_light(light).extend(1.0) * covered)
     }
 
@@ -127,7 +133,7 @@ impl AccumulatedTarget<'_> {
         let linear = coverage(amount, visible.system.boost);
         match visible.settings.coverage {
             CoverageMode::Linear => linear,
-            CoverageMode::Ramp => painted_coverage(visible.sample_ramp(&visible.material.coverage_ramp, linear)),
+            CoverageMode::Ramp => painted_share(visible.sample_ramp(&visible.material.coverage_ramp, linear)),
         }
     }
 
@@ -159,24 +165,33 @@ impl AccumulatedTarget<'_> {
     pub fn surface(&self, attachments: &Attachments) -> Surface {
         let settings = self.visible.settings;
         let accumulate = &settings.accumulate;
-        let [accumulated, six_way, weights, depths, moments] = *attachments;
+        let [accumulated, six_way, weights, depths, moments, heat] = *attachments;
         let shade = Shade { optical_depths: depths.xyz() / depths.w.max(1.0e-6), ..Shade::NONE };
         let depth = moments.xy() / moments.w.max(1.0e-6);
+        let heat = heat.xy().max(Vec2::ZERO) / heat.w.max(1.0e-6);
         if AttachmentRole::SixWay.is_used(&settings) {
             let scale = 1.0 / six_way.w.max(1.0e-6);
             let [positive, negative] = [accumulated, six_way].map(|light| light.xyz().max(Vec3::ZERO) * scale);
             let normal = normal_from_six_way(positive, negative);
-            return Surface { normal, six_way: SixWay { positive, negative }, shade, depth };
+            return Surface { normal, six_way: SixWay { positive, negative }, shade, depth, heat };
         }
         let weights = if AttachmentRole::Weights.is_used(&settings) { weights.x } else { accumulated.w };
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
-        Surface { normal, six_way: SixWay::default(), shade, depth }
+        Surface { normal, six_way: SixWay::default(), shade, depth, heat }
     }
 
     /// Amount and surface at a pixel.
     pub fn amount_and_surface(&self, pixel: Vec2) -> (f32, Surface) {
         let accumulated = self.sample_accumulated(pixel);
         (accumulated.w, self.surface_at(accumulated, pixel))
+    }
+
+    /// Light that the smoke gives at a point.
+    pub fn fire_light(&self, surface: &Surface, amount: f32) -> Vec3 {
+        match self.visible.settings.burns() {
+            true => self.visible.emission(fire_from_moments(surface.heat), amount),
+            false => Vec3::ZERO,
+        }
     }
 
     /// Light from sky and ground, if the system has it and does not bake it.

@@ -65,6 +65,8 @@ fn write_blank(output: &Path, role: RampRole) -> Result<(), Error> {
         RampRole::Specular => ["at the light", "far from it: black"],
         RampRole::Coverage => ["thin; black hides nothing", "thick; white hides all"],
         RampRole::Age => ["born", "dies"],
+        RampRole::Heat => ["born; white is hottest", "dies; black is cold"],
+        RampRole::Fire => ["cold: black", "hottest"],
     };
     let has_two_axes = matches!(role, RampRole::Specular | RampRole::Backlight | RampRole::Shadow);
     let size = UVec2::new(512, if has_two_axes { 256 } else { 64 });

@@ -160,6 +160,8 @@ fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
             specular_ramp,
             coverage_ramp,
             age_ramp,
+            heat_ramp,
+            fire_ramp,
             ..
         } = material;
         let place = match role {
@@ -189,6 +191,12 @@ fn apply_ramp(shot: &mut Shot, role: RampRole, ramp: &Ramp) {
                 coverage_ramp
             }
             // Only forward smoke uses the age ramp.
+            RampRole::Heat | RampRole::Fire => {
+                if !settings.burns() {
+                    settings.fire.intensity = 4.0;
+                }
+                if role == RampRole::Heat { heat_ramp } else { fire_ramp }
+            }
             RampRole::Age => {
                 settings.path = RenderPath::Forward;
                 settings.sprite.age_color = 1.0;

@@ -158,6 +158,8 @@ impl RampEdits {
                 (&names.specular_ramp, &mut assets.specular_ramp),
                 (&names.coverage_ramp, &mut assets.coverage_ramp),
                 (&names.age_ramp, &mut assets.age_ramp),
+                (&names.heat_ramp, &mut assets.heat_ramp),
+                (&names.fire_ramp, &mut assets.fire_ramp),
             ] {
                 if let Some((_, live)) = self.known.get(name).and_then(|known| known.live.as_ref()) {
                     *ramp = live.clone();

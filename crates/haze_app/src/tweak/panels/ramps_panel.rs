@@ -63,6 +63,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
         ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),
         ("age_ramp", "Age, from birth to death", &system.material.age_ramp),
+        ("heat_ramp", "Heat, from birth to death", &system.material.heat_ramp),
+        ("fire_ramp", "Fire, by heat and amount", &system.material.fire_ramp),
     ] {
         ui.add_space(6.0);
         choose(ui, session, title, &format!("systems[{index}].material.{field}"), name);
@@ -96,7 +98,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let lights = survey.filter(|_| is_diffuse(field)).map_or_else(Vec::new, |survey| survey.by_light(index));
         let (picture, mut bins, marks) =
             ramp_samples(field, material, probe, survey.map(|survey| (survey, index)), &lights, ink);
-        if bins.is_empty() && field != "age_ramp" && !is_forward {
+        if bins.is_empty() && !is_not_counted(field) && !is_forward {
             // Reserves the space of the histogram, so that nothing moves under the pointer when it arrives.
             bins.push((ink, Vec::new()));
         }
@@ -128,6 +130,11 @@ fn is_diffuse(field: &str) -> bool {
     matches!(field, "diffuse_ramp" | "backlight_ramp")
 }
 
+/// True for ramps whose lookups are not counted.
+fn is_not_counted(field: &str) -> bool {
+    matches!(field, "age_ramp" | "heat_ramp" | "fire_ramp")
+}
+
 /// Returns a ramp with one axis, the histograms of the coordinates that the image samples, and the marks of the probed
 /// pixel. `survey` comes with the index of the system; `lights` are its histograms of the diffuse ramps.
 fn ramp_samples<'a>(
@@ -156,6 +163,8 @@ fn ramp_samples<'a>(
             let at = probe.map(|probe| probe.coverage_coordinate);
             (&material.coverage_ramp, bins.into_iter().collect(), one(at))
         }
+        "heat_ramp" => (&material.heat_ramp, Vec::new(), Vec::new()),
+        "fire_ramp" => (&material.fire_ramp, Vec::new(), one(probe.map(|probe| probe.fire.x))),
         _ => (&material.age_ramp, Vec::new(), Vec::new()),
     }
 }

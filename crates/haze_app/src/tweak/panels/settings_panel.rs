@@ -169,6 +169,7 @@ fn smoke(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: 
     section(ui, context, "Diffuse", &at("diffuse"), false, &mut settings.diffuse);
     section(ui, context, "Shadow", &at("shadow"), false, &mut settings.shadow);
     section(ui, context, "Ambient", &at("ambient"), false, &mut settings.ambient);
+    section(ui, context, "Fire", &at("fire"), false, &mut settings.fire);
     section(ui, context, "Soft scatter", &at("soft_scatter"), false, &mut settings.soft_scatter);
     section(ui, context, "Specular scatter", &at("specular_scatter"), false, &mut settings.specular_scatter);
     if section(ui, context, "Soft fade", &at("soft_fade"), false, &mut settings.soft_fade) {

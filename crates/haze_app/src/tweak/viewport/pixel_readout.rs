@@ -109,13 +109,15 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
     egui::Grid::new(("sums", probe.system)).num_columns(3).spacing(gaps(ui)).show(ui, |ui| {
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
         let ambient = probe.ambient.map(|light| ("of it ambient", String::new(), light));
+        let heat = format!("heat {:.2}", probe.fire.x);
+        let fire = (probe.fire_light != Vec3::ZERO).then(|| ("fire", heat, probe.fire_light));
         let sums = [
             ("soft scatter", scatter, probe.soft_scatter),
             ("specular", String::new(), probe.specular()),
             ("blended", String::new(), probe.blended.xyz()),
         ];
         let diffuse = [("diffuse", String::new(), probe.diffuse)];
-        for (title, note, light) in diffuse.into_iter().chain(ambient).chain(sums) {
+        for (title, note, light) in diffuse.into_iter().chain(ambient).chain(fire).chain(sums) {
             ui.label(title);
             color(ui, light);
             ui.weak(note);

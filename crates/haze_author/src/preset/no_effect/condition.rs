@@ -74,7 +74,7 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
         settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0
     };
     let by_shadow = is_lit && settings.receives_shadow();
-    !(by_normal || by_amount || by_shadow || others)
+    !(by_normal || by_amount || by_shadow || others || settings.burns())
 }
 
 pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {

@@ -201,6 +201,11 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &["settings.volumetric.scroll_speed", "emitter.frame_rate", "cache.flipbook_rate"],
     ),
     rule("nothing moves: frame_rate and scroll_speed are 0", has_no_animation, &["settings.sprite.freeze_animation"]),
+    rule(
+        "only at an intensity of fire above 0",
+        |s, _| !s.settings.burns(),
+        &["settings.fire.core", "material.heat_ramp", "material.fire_ramp"],
+    ),
     rule("only at an age_color above 0", |s, _| s.settings.sprite.age_color <= 0.0, &["material.age_ramp"]),
     rule(
         "only at an intensity of diffuse light above 0",

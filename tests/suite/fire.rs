@@ -1,0 +1,127 @@
+//! Fire: whole frames on the GPU and on the CPU, and how smoke and fire hide each other.
+
+use glam::{IVec2, UVec2, Vec3, Vec4, vec3};
+use haze::Particle;
+use haze::image::Image;
+use haze::ramp::Ramp;
+use haze::settings::*;
+
+use crate::gpu::{gpu, is_tiled_available};
+use crate::psnr::{MIN_PSNR, psnr};
+use crate::test_scene::TestScene;
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// The test cloud, burning. Particles have all ages.
+fn burning() -> TestScene {
+    let mut scene = TestScene::new(SIZE);
+    scene.settings.specular_scatter.intensity = 0.0;
+    scene.settings.fire.intensity = 3.0;
+    let count = scene.particles.len() as f32;
+    for (index, particle) in scene.particles.iter_mut().enumerate() {
+        particle.age = (index as f32 * 0.618) % 1.0 * count / (count + 1.0);
+    }
+    scene
+}
+
+fn drawn(scene: &TestScene) -> Image<Vec4> {
+    scene.on_gpu(gpu()).picture
+}
+
+#[test]
+fn gpu_and_cpu_draw_the_same_fire() {
+    type Change = fn(&mut TestScene);
+    let changes: &[(&str, Change)] = &[
+        ("raster", |_| {}),
+        ("forward", |s| s.settings.path = RenderPath::Forward),
+        ("tiled", |s| s.settings.path = RenderPath::Tiled),
+        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
+        ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
+        ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
+        ("weighted, tiled", |s| {
+            (s.settings.accumulate.order, s.settings.path) = (BlendOrder::Weighted, RenderPath::Tiled);
+        }),
+        ("with shadow", |s| s.settings.shadow.strength = 0.8),
+        ("with shadow by depth, tiled", |s| {
+            (s.settings.shadow.strength, s.settings.shadow.by_depth, s.settings.path) = (0.8, true, RenderPath::Tiled);
+        }),
+        ("lit per texel", |s| {
+            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+        }),
+        ("guided", |s| (s.settings.accumulate.scale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
+        ("spheres", |s| s.settings.technique = Technique::SphericalBillboard),
+        ("volumetric", |s| s.settings.technique = Technique::VolumetricSoft),
+        ("density", |s| s.settings.technique = Technique::Density),
+        ("steps", |s| s.settings.ramp_filter = RampFilter::Nearest),
+        ("exposed", |s| s.exposure = 0.4),
+    ];
+    for (name, change) in changes {
+        let mut scene = burning();
+        change(&mut scene);
+        let needs_compute = scene.settings.path == RenderPath::Tiled || scene.settings.shadow.strength > 0.0;
+        if needs_compute && !is_tiled_available() {
+            continue;
+        }
+        let (seen, reference) = (drawn(&scene), scene.on_cpu());
+        let same = psnr(&seen, &reference);
+        scene.settings.fire.intensity = 0.0;
+        let effect = psnr(&drawn(&scene), &seen);
+        println!("{name}: {same:.1} dB, without fire {effect:.1} dB");
+        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+        assert!(effect < 35.0, "{name}: without fire {effect:.1} dB");
+    }
+}
+
+/// A puff in the middle of the picture, at this depth.
+fn puff(z: f32, age: f32, amount: f32, like: &Particle) -> Particle {
+    Particle { position: vec3(0.0, 0.0, z), radius: 1.0, age, amount, rotation: 0.0, ..*like }
+}
+
+/// Fire alone, and behind smoke of these amounts, as one system; the light that is not reflected.
+fn seen_through(amounts: &[f32]) -> Vec3 {
+    let mut scene = burning();
+    // Nothing but fire gives light; heat is 1 at birth and 0 from then on.
+    scene.lights.clear();
+    (scene.settings.soft_scatter.intensity, scene.settings.boost) = (0.0, 1.0);
+    (scene.settings.accumulate.scale, scene.settings.fire.core) = (1, 0.0);
+    let heat = |x| if x == 0 { Vec3::ONE } else { Vec3::ZERO };
+    scene.material.heat_ramp = Ramp::from_linear(UVec2::new(64, 1), (0..64).map(heat));
+    let fire = puff(-6.0, 0.0, 0.6, &scene.particles[0]);
+    let smoke = amounts.iter().map(|amount| puff(-5.0, 1.0, *amount, &fire));
+    scene.particles = [fire].into_iter().chain(smoke.clone()).collect();
+    let with_fire = drawn(&scene);
+    scene.settings.fire.intensity = 0.0;
+    let without = drawn(&scene);
+    let middle = IVec2::new(SIZE.x as i32 / 2, SIZE.y as i32 / 2);
+    (with_fire.load(middle) - without.load(middle)).truncate()
+}
+
+#[test]
+fn smoke_in_front_dims_a_fire_by_its_transmittance() {
+    let alone = seen_through(&[]);
+    assert!(alone.max_element() > 0.5, "{alone}");
+    for layers in 1..=4 {
+        let amounts = vec![0.5; layers];
+        let (seen, expected) = (seen_through(&amounts), alone * 0.5_f32.powi(layers as i32));
+        let error = ((seen - expected) / expected).abs().max_element();
+        println!("{layers} layers: {seen}, expected {expected}, off by {:.1} %", 100.0 * error);
+        // The alpha of the sprite's image is not exactly 1 in its middle.
+        assert!(error < 0.1, "{layers} layers: {seen}, expected {expected}");
+    }
+}
+
+#[test]
+fn cold_smoke_gives_no_light_and_strange_ages_are_harmless() {
+    let mut scene = burning();
+    scene.settings.fire.intensity = 1000.0;
+    for (particle, age) in scene.particles.iter_mut().zip([f32::NAN, 1.0e30, -5.0, f32::INFINITY]) {
+        particle.age = age;
+    }
+    let seen = drawn(&scene);
+    assert!(seen.texels.iter().all(|texel| texel.is_finite()));
+    let mut cold = burning();
+    cold.material.heat_ramp = Ramp::from_linear(UVec2::new(2, 1), [Vec3::ZERO; 2]);
+    let mut without = cold.clone();
+    without.settings.fire.intensity = 0.0;
+    assert!(psnr(&drawn(&cold), &drawn(&without)) > 70.0);
+}
