@@ -74,6 +74,7 @@
 pub mod assets;
 pub mod emitter;
 pub mod error;
+pub mod fire;
 #[doc(hidden)]
 pub mod formula;
 pub mod frame;

@@ -133,6 +133,7 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
         (s.settings.ambient.intensity, s.settings.shadow.strength, s.settings.shadow.by_depth) = (1.0, 0.8, true);
     },
     |s, _| s.settings.fire.intensity = 2.0,
+    |s, _| (s.settings.fire.intensity, s.settings.fire.light) = (2.0, 0.0),
     |s, _| (s.settings.fire.intensity, s.settings.path) = (2.0, RenderPath::Forward),
     |s, _| (s.emitter.turbulence, s.emitter.extent, s.emitter.buoyancy) = (0.0, Vec3::ZERO, 0.0),
     |s, _| (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into()),
@@ -293,7 +294,7 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
         "no effect in these cases: {unreported:?}"
     );
     // All reasons except the one about the demo scene.
-    assert_eq!(reasons.len(), 49, "{reasons:#?}");
+    assert_eq!(reasons.len(), 50, "{reasons:#?}");
 }
 
 #[test]

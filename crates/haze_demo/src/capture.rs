@@ -138,7 +138,8 @@ impl ProbeInputs {
         let systems = self.shot.reference_systems(&self.systems);
         let maps = ShadowLayers::new(&self.shot.scene(), self.shot.shadow_views());
         let shadow_maps = maps.maps();
-        let frame = self.shot.reference_frame(scene_depth, &systems, &shadow_maps);
+        let lights = self.shot.lights();
+        let frame = self.shot.reference_frame(scene_depth, &systems, &shadow_maps, &lights);
         Ok(probe(&frame, texels, behind, pixels)?)
     }
 }

@@ -8,7 +8,7 @@ use super::shadow_views::{ShadowView, casters};
 use super::shot::Shot;
 use haze::assets::image::Image;
 use haze::error::Error;
-use haze::frame::Particle;
+use haze::frame::{Light, Particle};
 use haze::settings::Settings;
 use haze_reference::PreparedFrame;
 
@@ -25,7 +25,8 @@ impl Shot {
         let systems = self.reference_systems(&particles);
         let maps = ShadowLayers::new(&scene, self.shadow_views());
         let shadow_maps = maps.maps();
-        let frame = PreparedFrame::new(&self.reference_frame(&depth, &systems, &shadow_maps), self.size)?;
+        let lights = self.lights();
+        let frame = PreparedFrame::new(&self.reference_frame(&depth, &systems, &shadow_maps, &lights), self.size)?;
         let through = |world, light: u32| {
             frame.scene_shadow().map_or(Vec3::ONE, |shadow| shadow.haze_transmittance(world, light as usize))
         };
@@ -52,10 +53,11 @@ impl Shot {
         scene_depth: &'a Image<f32>,
         systems: &'a [haze_reference::ParticleSystem<'a>],
         shadow_maps: &'a [haze_reference::ShadowMap<'a>],
+        lights: &'a [Light],
     ) -> haze_reference::FrameInput<'a> {
         haze_reference::FrameInput {
             shadow_maps,
-            lights: &self.preset.lights,
+            lights,
             systems,
             time: self.preset.time,
             up: Vec3::Y,

@@ -181,9 +181,10 @@ impl OffscreenRenderer {
             .iter()
             .map(|(view, depth)| ShadowMap { depth, first_layer: 0, projection: view.projection() })
             .collect();
+        let lights = shot.lights();
         let frame = FrameInput {
             shadow_maps: &shadow_maps,
-            lights: &shot.preset.lights,
+            lights: &lights,
             systems: &systems,
             time: shot.preset.time,
             up: Vec3::Y,
@@ -191,9 +192,13 @@ impl OffscreenRenderer {
             ..FrameInput::new(view, scene_depth)
         };
         self.renderer.cast_shadow(encoder, &frame)?;
-        let (environment, lights) = (shot.preset.environment, shot.preset.lights.clone());
-        let scene_inputs =
-            SceneInputs { environment, lights, view, shadowed: self.renderer.shadowed_lights().collect() };
+        let environment = shot.preset.environment;
+        let scene_inputs = SceneInputs {
+            environment,
+            lights: lights.clone(),
+            view,
+            shadowed: self.renderer.shadowed_lights().collect(),
+        };
         if sized.scene_inputs.as_ref() != Some(&scene_inputs) {
             scene.record(encoder, &mut sized.targets, &shot.scene(), &view, &scene_inputs.shadowed);
             sized.scene_inputs = Some(scene_inputs);

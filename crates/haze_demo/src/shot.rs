@@ -8,7 +8,8 @@ use super::scene::Scene;
 use super::shadow_views::{ShadowView, shadow_views};
 use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
-use haze::frame::{EmitterSnapshot, Particle};
+use haze::fire;
+use haze::frame::{EmitterSnapshot, Light, MAX_LIGHTS, Particle};
 use haze::preset::{AssetFolders, Preset, PresetSystem};
 use haze::settings::{DebugView, Settings};
 use haze_author::particle_files::{self, ParticleFrames, load_particle_files};
@@ -91,14 +92,43 @@ impl Shot {
         self.debug_view == DebugView::Final
     }
 
-    /// Shadow maps of the lights, if the scene shades smoke.
+    /// Shadow maps of the preset's lights, if the scene shades smoke. Fires have none: their lights move in every frame.
     pub(super) fn shadow_views(&self) -> Vec<ShadowView> {
         let by_depth = self.preset.systems.iter().any(|system| system.settings.lights_by_depth());
         if by_depth { shadow_views(&self.preset.lights) } else { Vec::new() }
     }
 
+    /// Returns the lights of the preset, followed by those of its fires.
+    pub fn lights(&self) -> Vec<Light> {
+        let mut lights = self.preset.lights.clone();
+        let time = self.preset.time;
+        let fires =
+            (0..).zip(self.preset.systems.iter().zip(&self.materials)).filter_map(|(index, (system, assets))| {
+                let settings = &system.settings;
+                if !settings.burns() {
+                    return None;
+                }
+                let files = self.caches.get(index).and_then(Option::as_ref);
+                let mut particles = Vec::new();
+                let step = match particle_files::emission(system, files, time) {
+                    Some(emission) => {
+                        emission.sample(&mut particles);
+                        emission.step
+                    }
+                    None => {
+                        particle_files::particles(system, files, time, &mut particles);
+                        1
+                    }
+                };
+                fire::light(&particles, step, settings, assets, (time, system.emitter.seed))
+            });
+        lights.extend(fires);
+        lights.truncate(MAX_LIGHTS);
+        lights
+    }
+
     pub(super) fn scene(&self) -> Scene {
-        Scene::new(&self.preset.environment, &self.preset.lights)
+        Scene::new(&self.preset.environment, &self.lights())
     }
 
     /// Evaluates the particles and settings of every system, in order.

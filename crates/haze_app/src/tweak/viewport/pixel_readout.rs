@@ -129,7 +129,7 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
 fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
     // Their sums are shown as numbers in any case.
     let color = if is_small { hue_swatch } else { color };
-    ui.label(names.get(light.light).map_or("light", String::as_str));
+    ui.label(names.get(light.light).map_or("fire", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
     ui.label(format!("{:.3}", light.attenuation));

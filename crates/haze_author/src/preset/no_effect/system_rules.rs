@@ -204,8 +204,15 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "only at an intensity of fire above 0",
         |s, _| !s.settings.burns(),
-        &["settings.fire.core", "material.heat_ramp", "material.fire_ramp"],
+        &[
+            "settings.fire.core",
+            "settings.fire.light",
+            "settings.fire.flicker",
+            "material.heat_ramp",
+            "material.fire_ramp",
+        ],
     ),
+    rule("only at a light of the fire above 0", |s, _| s.settings.fire.light <= 0.0, &["settings.fire.flicker"]),
     rule("only at an age_color above 0", |s, _| s.settings.sprite.age_color <= 0.0, &["material.age_ramp"]),
     rule(
         "only at an intensity of diffuse light above 0",
