@@ -72,7 +72,7 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         light *= mix(vec3f(1.0), color, system.age_color);
     }
     if FIRE {
-        let heat = heat_at(in.depths_and_heat.w, fragment.thickness, system.fire_core);
+        let heat = fragment_heat(fragment, in.depths_and_heat.w);
         light += emission(fire_from_moments(vec2f(heat, heat * heat)), amount);
     }
     return forward_fragment(BLEND_MODE, bounded_light(light), covered);

@@ -56,12 +56,17 @@ pub fn light(
         range: (intensity / FAINTEST).sqrt(),
         radius: reach,
         specular_scatter: 0.0,
+        // It shines from the outside of the flames, not from their middle.
+        smoke_shadow: false,
         ..Light::default()
     })
 }
 
 /// Places of a sprite, by the alpha of its image, at which its light is taken.
 const THICKNESSES: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
+
+/// Cosine between normal and direction to the viewer in a crease, where most of the light comes from.
+const FACING: f32 = 0.35;
 
 /// Light of a particle, per share of the scene that it hides.
 fn flame_color(settings: &Settings, heat_ramp: &Ramp, fire_ramp: &Ramp, age: f32, amount: f32) -> Vec3 {
@@ -71,7 +76,7 @@ fn flame_color(settings: &Settings, heat_ramp: &Ramp, fire_ramp: &Ramp, age: f32
         return Vec3::ZERO;
     }
     let light = |thickness: f32| {
-        let heat = heat_at(heat, thickness, settings.fire.core);
+        let heat = heat_at(heat, thickness, FACING, settings.fire.core, settings.fire_crust());
         let at = Vec2::new(heat, coverage(amount * thickness, settings.boost));
         sample_ramp_2d(fire_ramp, filter, at) * thickness
     };

@@ -1,9 +1,11 @@
 // Fire: light of hot smoke.
 
-// Heat at a place of a sprite. `thickness`: alpha of the sprite's image there, 0 to 1. `core`: share by which its thin edge is
-// cooler than its middle.
-fn heat_at(heat: f32, thickness: f32, core: f32) -> f32 {
-    return heat * (1.0 - core * (1.0 - thickness));
+// Heat at a place of a sprite. `thickness`: alpha of the sprite's image there, 0 to 1. `facing`: cosine between its normal and
+// the direction to the viewer. `core`: share by which a thin edge is cooler than the middle. `crust`: share by which the side
+// that faces the viewer is cooler than the creases.
+fn heat_at(heat: f32, thickness: f32, facing: f32, core: f32, crust: f32) -> f32 {
+    let front = saturate(facing);
+    return heat * (1.0 - core * (1.0 - thickness)) * (1.0 - crust * front * front);
 }
 
 // Mean heat of the smoke that burns at a point, and its share of all visible smoke there. `moments`: means of heat and of its

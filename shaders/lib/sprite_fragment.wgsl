@@ -52,10 +52,15 @@ fn attachments_from_fragment(
         values.depth = vec4f(moments_of_sprite(centre_radius) * weight, 0.0, weight);
     }
     if HEAT_SLOT != 0u {
-        let heat = heat_at(depths_and_heat.w, fragment.thickness, system.fire_core);
+        let heat = fragment_heat(fragment, depths_and_heat.w);
         values.heat = vec4f(heat * weight, heat * heat * weight, 0.0, weight);
     }
     return values;
+}
+
+// Heat of a fragment of a sprite with this heat.
+fn fragment_heat(fragment: SpriteFragment, heat: f32) -> f32 {
+    return heat_at(heat, fragment.thickness, fragment.normal.z, system.fire_core, system.fire_crust);
 }
 
 // depth_moments() of a sprite in view space.

@@ -93,4 +93,7 @@ struct System {
     // Of the fire ramp, exposed.
     fire_intensity: f32,
     fire_core: f32,
+    fire_crust: f32,
+    padding_0: f32,
+    padding_1: vec2f,
 }

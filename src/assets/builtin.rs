@@ -135,8 +135,21 @@ macro_rules! presets {
 }
 
 /// Presets; the first is the default.
-pub const PRESETS: &[Builtin] =
-    presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates", "dust_storm"]);
+pub const PRESETS: &[Builtin] = presets!([
+    "column",
+    "backlit_fog",
+    "corridor",
+    "explosion",
+    "fence",
+    "inside",
+    "crates",
+    "dust_storm",
+    "campfire",
+    "oil_fire",
+    "fireball",
+    "steam_vent",
+    "spell"
+]);
 
 /// Returns the built-in images for a role; empty for details and six-way maps.
 pub fn for_role(role: ImageRole) -> &'static [Builtin] {

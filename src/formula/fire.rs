@@ -2,10 +2,14 @@
 
 use glam::Vec2;
 
-/// Heat at a place of a sprite. `thickness`: alpha of the sprite's image there, 0 to 1. `core`: share by which its thin
-/// edge is cooler than its middle.
-pub fn heat_at(heat: f32, thickness: f32, core: f32) -> f32 {
-    heat * (1.0 - core * (1.0 - thickness))
+use super::saturate;
+
+/// Heat at a place of a sprite. `thickness`: alpha of the sprite's image there, 0 to 1. `facing`: cosine between its normal
+/// and the direction to the viewer. `core`: share by which a thin edge is cooler than the middle. `crust`: share by which
+/// the side that faces the viewer is cooler than the creases.
+pub fn heat_at(heat: f32, thickness: f32, facing: f32, core: f32, crust: f32) -> f32 {
+    let front = saturate(facing);
+    heat * (1.0 - core * (1.0 - thickness)) * (1.0 - crust * front * front)
 }
 
 /// Mean heat of the smoke that burns at a point, and its share of all visible smoke there. `moments`: means of heat and of

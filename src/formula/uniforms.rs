@@ -125,6 +125,9 @@ uniform! {
         openness_block: f32,
         fire_intensity: f32,
         fire_core: f32,
+        fire_crust: f32,
+        padding_0: f32,
+        padding_1: Vec2,
     }
 }
 

@@ -129,6 +129,9 @@ settings! {
         intensity: f32 = 0.0, number(0.0..=1000.0, "");
         /// Share by which the thin edge of a sprite is cooler than its middle. 0: even. 1: flames with dark edges.
         core: f32 = 0.6, number(0.0..=1.0, "");
+        /// Share by which a puff is cooler where it faces the viewer: soot over the glow of its creases, as on a fireball. Not
+        /// with six-way maps.
+        crust: f32 = 0.0, number(0.0..=1.0, "");
         /// Multiplies the light that the fire casts on smoke and scene. 0: none. A host asks for it, `haze::fire::light`.
         light: f32 = 1.0, number(0.0..=100.0, "");
         /// Flicker of that light. 0: steady. 1: it nearly goes out.

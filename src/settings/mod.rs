@@ -216,6 +216,11 @@ impl Settings {
         self.fire.intensity > 0.0
     }
 
+    /// `fire.crust`, or 0 with six-way maps, which have no normals.
+    pub fn fire_crust(&self) -> f32 {
+        if self.is_six_way() { 0.0 } else { self.fire.crust }
+    }
+
     /// Order in which sprites are drawn. Forward sprites hide each other and are always sorted.
     pub fn order(&self) -> BlendOrder {
         if self.is_forward() { BlendOrder::Sorted } else { self.accumulate.order }

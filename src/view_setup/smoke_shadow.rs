@@ -196,7 +196,7 @@ fn sky_directions(up: Vec3) -> [Vec3; SKY_DIRECTIONS] {
     [x, z, -x, -z].map(|side| (up + side).normalize())
 }
 
-/// Returns the indices of the lights that are brightest at the box, in ascending order.
+/// Returns the indices of the lights that smoke shades and that are brightest at the box, in ascending order.
 fn brightest_lights(lights: &[Light], bounds: &Bounds) -> [Option<usize>; SHADOWED_LIGHTS] {
     let brightness = |light: &Light| {
         let emitted = luminance(light.color) * light.intensity;
@@ -206,7 +206,13 @@ fn brightest_lights(lights: &[Light], bounds: &Bounds) -> [Option<usize>; SHADOW
         let distance = light.position.clamp(bounds.min, bounds.max).distance_squared(light.position);
         emitted * distance_attenuation(distance, 1.0 / light.range, light.radius)
     };
-    let mut bright: Vec<_> = lights.iter().map(brightness).enumerate().filter(|(_, light)| *light > 0.0).collect();
+    let mut bright: Vec<_> = lights
+        .iter()
+        .enumerate()
+        .filter(|(_, light)| light.smoke_shadow)
+        .map(|(index, light)| (index, brightness(light)))
+        .filter(|(_, brightness)| *brightness > 0.0)
+        .collect();
     bright.sort_by(|a, b| b.1.total_cmp(&a.1));
     bright.truncate(SHADOWED_LIGHTS);
     bright.sort_by_key(|(index, _)| *index);

@@ -142,6 +142,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         ground_color: settings.ambient.ground_color * (settings.ambient.intensity * exposure),
         fire_intensity: settings.fire.intensity * exposure,
         fire_core: settings.fire.core,
+        fire_crust: settings.fire_crust(),
         visibility_block: shadow.map_or(0.0, |shadow| shadow.visibility_block() as f32),
         openness_block: shadow.map_or(0.0, |shadow| shadow.openness_block() as f32),
         ..caster_uniform(system)

@@ -218,6 +218,7 @@ const INDIRECT: &[(&str, &str)] = &[
     ("optical_depth_towards", "reads the density grid; whole frames with shadow cover it"),
     ("haze_transmittance", "reads the volume of optical depths; presets cover it, whose scene is shaded by smoke"),
     ("heat_by_age", "calls painted_share with a ramp lookup; whole frames with fire cover it"),
+    ("fragment_heat", "calls heat_at with a fragment"),
     ("fire_light", "calls emission with fire_from_moments"),
     ("depths_and_heat_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
     ("depths_and_heat_of", "reads a buffer; tests of the tiled path with shadow cover it"),

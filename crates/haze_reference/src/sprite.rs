@@ -5,6 +5,7 @@ use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 use super::visible_system::VisibleSystem;
 use haze::formula::density_grid::mean_optical_depth;
 use haze::formula::depth_moments::depth_moments;
+use haze::formula::fire::heat_at;
 use haze::formula::lighting::painted_share;
 use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use haze::formula::normal::rotate_normal;
@@ -145,6 +146,12 @@ impl VisibleSystem<'_> {
     pub fn heat_by_age(&self, age: f32) -> f32 {
         let paint = |ramp| painted_share(self.sample_ramp(ramp, age));
         if self.settings.burns() { paint(&self.material.heat_ramp) } else { 0.0 }
+    }
+
+    /// Heat of a fragment of a sprite with this heat.
+    pub fn fragment_heat(&self, fragment: &SpriteFragment, heat: f32) -> f32 {
+        let system = &self.system;
+        heat_at(heat, fragment.thickness, fragment.normal.z, system.fire_core, system.fire_crust)
     }
 
     /// `depth_moments()` of a sprite.

@@ -13,11 +13,15 @@ pub fn formulas() -> Vec<Formula> {
         Formula {
             name: "heat_at",
             file: "lib/fire.wgsl",
-            wgsl: "y(0, heat_at(x(0), x(1), x(2)));",
-            reference: |x| vec![heat_at(x[0], x[1], x[2])],
-            cases: random(60, &[SHARE, SHARE, SHARE]),
+            wgsl: "y(0, heat_at(x(0), x(1), x(2), x(3), x(4)));",
+            reference: |x| vec![heat_at(x[0], x[1], x[2], x[3], x[4])],
+            cases: random(60, &[SHARE, SHARE, (-1.0, 1.0), SHARE, SHARE]),
             tolerance: ARITHMETIC,
-            mutants: &[("core * (1.0 - thickness)", "core * thickness")],
+            mutants: &[
+                ("core * (1.0 - thickness)", "core * thickness"),
+                ("let front = saturate(facing)", "let front = facing"),
+                ("crust * front * front", "crust"),
+            ],
         },
         Formula {
             name: "fire_from_moments",

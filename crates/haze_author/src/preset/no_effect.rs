@@ -36,6 +36,8 @@ const LIGHT_RULES: &[NoEffectRule<Light>] = &[
     rule("only with kind spot", |light, _| light.kind != LightKind::Spot, &["inner_angle", "outer_angle"]),
 ];
 
+const NO_SHADOW: &str = "only where a system has a shadow.strength above 0";
+
 const ENVIRONMENT_RULES: &[NoEffectRule<Environment>] =
     &[rule("only in the yard", |environment, _| environment.scene != SceneName::Yard, &["lamp", "brazier"])];
 
@@ -54,6 +56,9 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
         return find_reason(SYSTEM_RULES, preset.systems.get(index)?, field, size);
     }
     if let Some((index, field)) = item("lights") {
+        if field == "smoke_shadow" && !preset.systems.iter().any(|system| system.settings.receives_shadow()) {
+            return Some(NO_SHADOW);
+        }
         return find_reason(LIGHT_RULES, preset.lights.get(index)?, field, size);
     }
     find_reason(ENVIRONMENT_RULES, &preset.environment, path.strip_prefix("environment.")?, size)

@@ -7,7 +7,6 @@ use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
 use crate::sprite::{SpriteFragment, SpriteSetup};
 use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
-use haze::formula::fire::heat_at;
 use haze::formula::normal::accumulation_from_normal;
 use haze::settings::{AccumulationFormat, BlendOrder, RenderPath};
 use haze::view_setup::{AttachmentRole, AttachmentSet, TexelGrid};
@@ -56,7 +55,7 @@ impl VisibleSystem<'_> {
     /// Texel of the texture with this role after one more fragment, before rounding.
     fn blended(&self, role: AttachmentRole, fragment: SpriteFragment, sprite: &SpriteSetup, texel: Vec4) -> Vec4 {
         let accumulate = &self.settings.accumulate;
-        let SpriteFragment { normal, six_way, amount, thickness } = fragment;
+        let SpriteFragment { normal, six_way, amount, .. } = fragment;
         let weight = sprite.weight;
         let weighted = amount * weight;
         let source = match role {
@@ -72,7 +71,7 @@ impl VisibleSystem<'_> {
                 Vec4::new(moments.x, moments.y, 0.0, weighted)
             }
             AttachmentRole::Heat => {
-                let heat = heat_at(sprite.heat, thickness, self.system.fire_core);
+                let heat = self.fragment_heat(&fragment, sprite.heat);
                 Vec4::new(heat * weighted, heat * heat * weighted, 0.0, weighted)
             }
         };

@@ -8,7 +8,7 @@ use crate::visible_system::VisibleSystem;
 use haze::assets::image::Image;
 use haze::formula::blending::forward_fragment;
 use haze::formula::color::bounded_light;
-use haze::formula::fire::{fire_from_moments, heat_at};
+use haze::formula::fire::fire_from_moments;
 use haze::formula::lighting::coverage;
 use haze::view_setup::TexelGrid;
 
@@ -43,7 +43,7 @@ impl VisibleSystem<'_> {
                 let color = self.sample_ramp(&self.material.age_ramp, sprite.age);
                 let mut light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(color, system.age_color);
                 if self.settings.burns() {
-                    let heat = heat_at(sprite.heat, fragment.thickness, system.fire_core);
+                    let heat = self.fragment_heat(&fragment, sprite.heat);
                     light += self.emission(fire_from_moments(Vec2::new(heat, heat * heat)), amount);
                 }
                 let source = forward_fragment(mode, bounded_light(light), covered);

@@ -153,6 +153,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.accumulate.layers",
             "settings.diffuse.mode",
             "settings.diffuse.backlight",
+            "settings.fire.crust",
             "material.y_down",
             "material.diffuse_ramp",
             "material.backlight_ramp",
@@ -206,6 +207,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         |s, _| !s.settings.burns(),
         &[
             "settings.fire.core",
+            "settings.fire.crust",
             "settings.fire.light",
             "settings.fire.flicker",
             "material.heat_ramp",
