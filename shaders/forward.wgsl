@@ -12,8 +12,6 @@
 #import "lib/blending.wgsl"
 #import "lib/color.wgsl"
 
-// True if sprite.age_color is not 0.
-override AGE_COLOR: bool = false;
 // True if the smoke is lit by its depth.
 override BY_DEPTH: bool = false;
 
@@ -66,11 +64,7 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         let normal = fragment.normal * inverseSqrt(max(dot(fragment.normal, fragment.normal), 1.0e-12));
         light = diffuse_from_lights(normal, covered, position, shade);
     }
-    light = light * system.diffuse_intensity + soft_scatter(amount);
-    if AGE_COLOR {
-        let color = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
-        light *= mix(vec3f(1.0), color, system.age_color);
-    }
+    light = (light * system.diffuse_intensity + soft_scatter(amount)) * in.tint;
     if FIRE {
         let heat = fragment_heat(fragment, in.depths_and_heat.w);
         light += emission(fire_from_moments(vec2f(heat, heat * heat)), amount);

@@ -26,7 +26,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     // The centre of the texel represents all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * f32(system.scale);
     let surface = shaded_surface(accumulated, load_attachments(vec2i(texel)), pixel);
-    let reflected = diffuse(surface, amount, lit_position(surface, pixel)) + soft_scatter(amount);
+    let reflected = diffuse(surface, amount, lit_position(surface, pixel)) + soft_scatter(amount) * surface.tint;
     let light = reflected + fire_light(surface, amount);
     return vec4f(bounded_light(light), 1.0) * amount;
 }

@@ -26,8 +26,8 @@
 @group(3) @binding(9) var texture_2: texture_storage_2d<rgba16float, write>;
 @group(3) @binding(10) var texture_3: texture_storage_2d<rgba16float, write>;
 
-// Of each sprite, as in SpriteVertex, if SHADOW or FIRE.
-@group(3) @binding(11) var<storage, read> depths_and_heats: array<vec4f>;
+// If SHADOW, FIRE or TINT.
+@group(3) @binding(11) var<storage, read> sprite_values: array<SpriteValues>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override WEIGHTED: bool = false;
@@ -62,9 +62,9 @@ fn init_texel(place: vec2u) -> Texel {
     return texel;
 }
 
-// Returns the texel with one more sprite, behind all accumulated ones. `depths_and_heat`: as in
-// SpriteVertex. `uv`: position in the sprite's square.
-fn accumulate_sprite(texel: Texel, sprite: TileSprite, depths_and_heat: vec4f, uv: vec2f, is_touched: bool) -> Texel {
+// Returns the texel with one more sprite, behind all accumulated ones. `values`: of the
+// sprite. `uv`: position in the sprite's square.
+fn accumulate_sprite(texel: Texel, sprite: TileSprite, values: SpriteValues, uv: vec2f, is_touched: bool) -> Texel {
     let in = fragment_of(sprite, texel.place, texel.ray, uv);
     let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
     let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
@@ -76,7 +76,7 @@ fn accumulate_sprite(texel: Texel, sprite: TileSprite, depths_and_heat: vec4f, u
     } else {
         next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, 1.0, weight).rgb;
     }
-    let attachments = attachments_from_fragment(fragment, weight, depths_and_heat, in.centre_radius);
+    let attachments = attachments_from_fragment(fragment, weight, values, in.centre_radius);
     next.attachments = add_attachments(texel.attachments, attachments);
     next.transmittance *= 1.0 - amount;
     return next;
@@ -121,7 +121,7 @@ const BATCH: u32 = 64u;
 
 // Sprites of a batch that touch the tile, front to back.
 var<workgroup> batch: array<TileSprite, BATCH>;
-var<workgroup> batch_depths_and_heats: array<vec4f, BATCH>;
+var<workgroup> batch_values: array<SpriteValues, BATCH>;
 // One bit for each sprite of the batch.
 var<workgroup> touching: array<atomic<u32>, 2>;
 // 1 if any texel of the tile is not done.
@@ -162,7 +162,7 @@ fn cooperative(
             break;
         }
         var sprite: TileSprite;
-        var depths_and_heat: vec4f;
+        var values: SpriteValues;
         var is_kept = false;
         if first + local < entries {
             // `debug_loop`: repeats the list.
@@ -173,8 +173,8 @@ fn cooperative(
             // Most sprites of a bin do not touch this tile: reads only the rectangle of those.
             if rects_meet(rects[index], low, low + TILE) {
                 sprite = sprites[index];
-                if SHADOW || FIRE {
-                    depths_and_heat = depths_and_heats[index];
+                if SHADOW || FIRE || TINT {
+                    values = sprite_values[index];
                 }
                 // Only texel centres count.
                 let reach = reach_in_square(sprite, 0.5 * vec2f(TILE - 1u));
@@ -191,8 +191,8 @@ fn cooperative(
             let nearer = (1u << (local % 32u)) - 1u;
             let before = countOneBits(select(vec2u(kept.x & nearer, 0u), vec2u(kept.x, kept.y & nearer), local >= 32u));
             batch[before.x + before.y] = sprite;
-            if SHADOW || FIRE {
-                batch_depths_and_heats[before.x + before.y] = depths_and_heat;
+            if SHADOW || FIRE || TINT {
+                batch_values[before.x + before.y] = values;
             }
         }
         if local == 0u {
@@ -203,14 +203,14 @@ fn cooperative(
         let count = counts.x + counts.y;
         for (var at = 0u; at < count && !(is_opaque(a) && is_opaque(b)); at++) {
             let sprite = batch[at];
-            let depths_and_heat = depths_and_heat_in_batch(at);
+            let values = values_in_batch(at);
             let in_a = uv_in_square(sprite, a.place);
             let in_b = in_a + sprite.uv_from_texels.yw;
             let touches_a = touches(sprite, in_a);
             let touches_b = touches(sprite, in_b);
             if touches_a || touches_b {
-                a = accumulate_sprite(a, sprite, depths_and_heat, in_a, touches_a);
-                b = accumulate_sprite(b, sprite, depths_and_heat, in_b, touches_b);
+                a = accumulate_sprite(a, sprite, values, in_a, touches_a);
+                b = accumulate_sprite(b, sprite, values, in_b, touches_b);
             }
         }
     }
@@ -222,18 +222,18 @@ fn cooperative(
     }
 }
 
-fn depths_and_heat_in_batch(at: u32) -> vec4f {
-    if SHADOW || FIRE {
-        return batch_depths_and_heats[at];
+fn values_in_batch(at: u32) -> SpriteValues {
+    if SHADOW || FIRE || TINT {
+        return batch_values[at];
     }
-    return vec4f(0.0);
+    return SpriteValues();
 }
 
-fn depths_and_heat_of(index: u32) -> vec4f {
-    if SHADOW || FIRE {
-        return depths_and_heats[index];
+fn values_of(index: u32) -> SpriteValues {
+    if SHADOW || FIRE || TINT {
+        return sprite_values[index];
     }
-    return vec4f(0.0);
+    return SpriteValues();
 }
 
 // True if a sprite may have something at `uv`, a position in its square.
@@ -286,16 +286,16 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
         for (var count = 0u; count < STRIDE && bits != 0u; count++) {
             let index = sprite_index(list, batch + firstTrailingBit(bits));
             let sprite = sprites[index];
-            let depths_and_heat = depths_and_heat_of(index);
+            let values = values_of(index);
             bits &= bits - 1u;
             let in_a = uv_in_square(sprite, a.place);
             let in_b = in_a + sprite.uv_from_texels.yw;
             let in_c = in_b + sprite.uv_from_texels.yw;
             let in_d = in_c + sprite.uv_from_texels.yw;
-            a = accumulate_sprite(a, sprite, depths_and_heat, in_a, !is_opaque(a) && covers(in_a));
-            b = accumulate_sprite(b, sprite, depths_and_heat, in_b, !is_opaque(b) && covers(in_b));
-            c = accumulate_sprite(c, sprite, depths_and_heat, in_c, !is_opaque(c) && covers(in_c));
-            d = accumulate_sprite(d, sprite, depths_and_heat, in_d, !is_opaque(d) && covers(in_d));
+            a = accumulate_sprite(a, sprite, values, in_a, !is_opaque(a) && covers(in_a));
+            b = accumulate_sprite(b, sprite, values, in_b, !is_opaque(b) && covers(in_b));
+            c = accumulate_sprite(c, sprite, values, in_c, !is_opaque(c) && covers(in_c));
+            d = accumulate_sprite(d, sprite, values, in_d, !is_opaque(d) && covers(in_d));
             last_front = sprite_front(sprite.centre_radius);
         }
         if STOPS || is_flat() {

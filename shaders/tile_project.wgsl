@@ -18,8 +18,8 @@
 @group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
 @group(3) @binding(4) var<storage, read_write> keys: array<u32>;
 @group(3) @binding(5) var<storage, read_write> indices: array<u32>;
-// Of each sprite, as in SpriteVertex, if SHADOW or FIRE.
-@group(3) @binding(6) var<storage, read_write> depths_and_heats: array<vec4f>;
+// If SHADOW, FIRE or TINT.
+@group(3) @binding(6) var<storage, read_write> sprite_values: array<SpriteValues>;
 
 // True: sprites are unsorted and their normals are weighted.
 override WEIGHTED: bool = false;
@@ -82,8 +82,8 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
     let visible = !placed.hidden && index < system.alive_count && all(first < last);
-    if SHADOW || FIRE {
-        depths_and_heats[index] = placed.depths_and_heat;
+    if SHADOW || FIRE || TINT {
+        sprite_values[index] = placed.values;
     }
     if visible {
         sprites[index] = sprite;

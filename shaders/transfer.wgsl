@@ -92,7 +92,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         light += diffuse(surface, amount, lit_position(surface, pixel));
     }
     if DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
-        light += soft_scatter(amount);
+        light += soft_scatter(amount) * surface.tint;
     }
     if DEBUG_VIEW != DEBUG_VIEW_SOFT_SCATTER && DEBUG_VIEW != DEBUG_VIEW_DIFFUSE {
         light += fire_light(surface, amount);

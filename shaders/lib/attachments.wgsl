@@ -11,6 +11,7 @@ override WEIGHTS_SLOT: u32 = 0u;
 override OPTICAL_DEPTHS_SLOT: u32 = 0u;
 override DEPTH_SLOT: u32 = 0u;
 override HEAT_SLOT: u32 = 0u;
+override TINT_SLOT: u32 = 0u;
 
 // Values of a fragment or a texel, by role.
 struct Attachments {
@@ -24,6 +25,8 @@ struct Attachments {
     depth: vec4f,
     // Weighted heat, and its square, in rg, sum of weights in a.
     heat: vec4f,
+    // Weighted color of particles in rgb, sum of weights in a.
+    tint: vec4f,
 }
 
 fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
@@ -42,6 +45,9 @@ fn add_attachments(sum: Attachments, next: Attachments) -> Attachments {
     }
     if HEAT_SLOT != 0u {
         total.heat += next.heat;
+    }
+    if TINT_SLOT != 0u {
+        total.tint += next.tint;
     }
     return total;
 }
@@ -65,6 +71,9 @@ fn slots_from_attachments(first: vec4f, values: Attachments) -> array<vec4f, MAX
     if HEAT_SLOT != 0u {
         slots[HEAT_SLOT] = values.heat;
     }
+    if TINT_SLOT != 0u {
+        slots[TINT_SLOT] = values.tint;
+    }
     return slots;
 }
 
@@ -87,6 +96,9 @@ fn attachments_from_slots(read: array<vec4f, MAX_TARGET_ATTACHMENTS>) -> Attachm
     }
     if HEAT_SLOT != 0u {
         values.heat = slots[HEAT_SLOT];
+    }
+    if TINT_SLOT != 0u {
+        values.tint = slots[TINT_SLOT];
     }
     return values;
 }

@@ -38,6 +38,8 @@ struct Surface {
     depth: vec2f,
     // Means of heat and of its square, if the target has them.
     heat: vec2f,
+    // Mean color of the particles.
+    tint: vec3f,
 }
 
 // Samples the textures behind the first at a pixel of the view.
@@ -75,6 +77,7 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
     var surface: Surface;
     surface.shade.visible = vec3f(1.0);
     surface.shade.openness = vec2f(1.0);
+    surface.tint = vec3f(1.0);
     if OPTICAL_DEPTHS_SLOT != 0u {
         let depths = attachments.optical_depths;
         surface.shade.optical_depths = depths.rgb / max(depths.a, 1.0e-6);
@@ -85,6 +88,9 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
     if HEAT_SLOT != 0u {
         // The fit of an upsampler may fall below 0, which means cold.
         surface.heat = max(attachments.heat.rg, vec2f(0.0)) / max(attachments.heat.a, 1.0e-6);
+    }
+    if TINT_SLOT != 0u {
+        surface.tint = max(attachments.tint.rgb, vec3f(0.0)) / max(attachments.tint.a, 1.0e-6);
     }
     if SIX_WAY_SLOT != 0u {
         // The fit of an upsampler may fall below 0, which means no light.
@@ -126,7 +132,7 @@ fn lit_position(surface: Surface, pixel: vec2f) -> vec3f {
 
 fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
     if SIX_WAY_SLOT != 0u {
-        return diffuse_from_six_way(surface.six_way, position, surface.shade) * system.diffuse_intensity;
+        return diffuse_from_six_way(surface.six_way, position, surface.shade) * system.diffuse_intensity * surface.tint;
     }
     let normal = surface.normal;
     var light = vec3f(0.0);
@@ -144,7 +150,7 @@ fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
             light = diffuse_from_lights(normal, coverage(amount, system.boost), position, surface.shade);
         }
     }
-    return light * system.diffuse_intensity;
+    return light * system.diffuse_intensity * surface.tint;
 }
 
 // Light that the smoke gives at a point.

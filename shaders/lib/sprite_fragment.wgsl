@@ -30,12 +30,12 @@ struct SpriteFragment {
 const NO_LIGHT: SixWay = SixWay(vec3f(0.0), vec3f(0.0));
 const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, 0.0, true);
 
-// Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal. `depths_and_heat`: as in
-// SpriteVertex. `centre_radius`: the sprite in view space.
+// Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal. `sprite_values`: of its
+// sprite. `centre_radius`: the sprite in view space.
 fn attachments_from_fragment(
     fragment: SpriteFragment,
     weight: f32,
-    depths_and_heat: vec4f,
+    sprite_values: SpriteValues,
     centre_radius: vec4f,
 ) -> Attachments {
     var values: Attachments;
@@ -46,14 +46,17 @@ fn attachments_from_fragment(
         values.weights = weight;
     }
     if OPTICAL_DEPTHS_SLOT != 0u {
-        values.optical_depths = vec4f(depths_and_heat.xyz * weight, weight);
+        values.optical_depths = vec4f(sprite_values.depths_and_heat.xyz * weight, weight);
     }
     if DEPTH_SLOT != 0u {
         values.depth = vec4f(moments_of_sprite(centre_radius) * weight, 0.0, weight);
     }
     if HEAT_SLOT != 0u {
-        let heat = fragment_heat(fragment, depths_and_heat.w);
+        let heat = fragment_heat(fragment, sprite_values.depths_and_heat.w);
         values.heat = vec4f(heat * weight, heat * heat * weight, 0.0, weight);
+    }
+    if TINT_SLOT != 0u {
+        values.tint = vec4f(sprite_values.tint * weight, weight);
     }
     return values;
 }

@@ -36,8 +36,9 @@ struct SpriteVertex {
     @location(4) @interpolate(flat, either) rotation: vec2f,
     // Weight of the normal under the order `weighted`.
     @location(5) @interpolate(flat, either) weight: f32,
-    // Optical depths of the smoke before the sprite towards the lights with shadow, and the sprite's heat.
+    // As in SpriteValues.
     @location(6) @interpolate(flat, either) depths_and_heat: vec4f,
+    @location(7) @interpolate(flat, either) tint: vec3f,
 }
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
@@ -49,6 +50,8 @@ override SIX_WAY: bool = false;
 override MOTION: bool = false;
 // True if the smoke gives light of its own.
 override FIRE: bool = false;
+// True if sprite.age_color is not 0.
+override TINT: bool = false;
 
 // True for techniques whose sprites are spheres.
 fn is_sphere() -> bool {
@@ -88,13 +91,21 @@ fn sphere_corner(centre_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> 
     return clamp((ray - view.ray_offset) / view.ray_scale, -edge, edge);
 }
 
+// Values of a sprite for textures of the accumulation target that only some systems have.
+struct SpriteValues {
+    // Optical depths of the smoke before the sprite towards the lights with shadow, and the sprite's heat.
+    depths_and_heat: vec4f,
+    // Color by which the light on it is multiplied.
+    tint: vec3f,
+}
+
 // Particle in view space, with the values that all fragments of its sprite share, as in SpriteVertex.
 struct ProjectedSprite {
     hidden: bool,
     centre_radius: vec4f,
     amount_lod_frame_age: vec4f,
     rotation: vec2f,
-    depths_and_heat: vec4f,
+    values: SpriteValues,
 }
 
 // Half the side of the square that the density of a particle's sprite fills, in cells.
@@ -124,6 +135,14 @@ fn heat_by_age(age: f32) -> f32 {
         return 0.0;
     }
     return painted_share(sample_ramp(heat_ramp, linear_sampler, age));
+}
+
+// Color of a particle.
+fn tint_by_age(age: f32) -> vec3f {
+    if !TINT {
+        return vec3f(1.0);
+    }
+    return mix(vec3f(1.0), sample_ramp(age_ramp, linear_sampler, age), system.age_color);
 }
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.
@@ -158,7 +177,7 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
         vec4f(centre, radius),
         vec4f(amount, lod, shown_frame, age),
         vec2f(cos(angle), sin(angle)),
-        vec4f(optical_depths_of(particle, centre), heat_by_age(age)),
+        SpriteValues(vec4f(optical_depths_of(particle, centre), heat_by_age(age)), tint_by_age(age)),
     );
 }
 
@@ -202,7 +221,8 @@ fn sprite_vertex(
     out.amount_lod_frame_age = sprite.amount_lod_frame_age;
     out.rotation = sprite.rotation;
     out.weight = 1.0;
-    out.depths_and_heat = sprite.depths_and_heat;
+    out.depths_and_heat = sprite.values.depths_and_heat;
+    out.tint = sprite.values.tint;
     let centre = sprite.centre_radius.xyz;
     let corner = sprite_corner(corner_index);
     var clip: vec4f;

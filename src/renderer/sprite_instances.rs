@@ -26,6 +26,7 @@ pub(crate) struct SpriteKey {
     shadow: bool,
     by_depth: bool,
     fire: bool,
+    tint: bool,
     ramp_filter: RampFilter,
 }
 
@@ -44,6 +45,7 @@ impl SpriteKey {
             shadow: settings.receives_shadow(),
             by_depth: settings.lights_by_depth(),
             fire: settings.burns(),
+            tint: settings.is_tinted(),
             ramp_filter: settings.ramp_filter,
         }
     }
@@ -60,9 +62,9 @@ impl SpriteKey {
         self.shadow
     }
 
-    /// Returns true if sprites have optical depths or heat.
-    pub fn is_shaded_or_burns(&self) -> bool {
-        self.shadow || self.fire
+    /// Returns true if the path tiled stores `SpriteValues` of sprites.
+    pub fn has_values(&self) -> bool {
+        self.shadow || self.fire || self.tint
     }
 
     /// Returns the override constants of the shared files, followed by the pass's own.
@@ -78,6 +80,7 @@ impl SpriteKey {
             bool_constant("EXACT_FILTERING", self.exact_filtering),
             bool_constant("SHADOW", self.shadow),
             bool_constant("FIRE", self.fire),
+            bool_constant("TINT", self.tint),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
         ];
         shared.into_iter().chain(of_pass).collect()

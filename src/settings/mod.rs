@@ -216,6 +216,11 @@ impl Settings {
         self.fire.intensity > 0.0
     }
 
+    /// True if particles have colors of their own.
+    pub fn is_tinted(&self) -> bool {
+        self.sprite.age_color > 0.0
+    }
+
     /// `fire.crust`, or 0 with six-way maps, which have no normals.
     pub fn fire_crust(&self) -> f32 {
         if self.is_six_way() { 0.0 } else { self.fire.crust }

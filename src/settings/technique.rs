@@ -87,7 +87,7 @@ settings! {
         /// Motion of texels between two frames, by the detail map. 0: frames are only blended. 1: texels move all the
         /// way.
         motion: f32 = 0.0, number(0.0..=1.0, "");
-        /// Strength of the age ramp's color, forward only. 0: none. 1: full. (MS)
+        /// Strength of the age ramp's color, by which the light on particles is multiplied. 0: none, and no cost. 1: full. (MS)
         age_color: f32 = 0.0, number(0.0..=1.0, "");
         /// Shows a checkerboard instead of the sprite. (NV)
         debug_sprite: bool = false, flag;

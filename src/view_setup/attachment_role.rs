@@ -23,12 +23,14 @@ pub enum AttachmentRole {
     Depth,
     /// Weighted heat, and its square, in rg; sum of weights in a.
     Heat,
+    /// Weighted color of particles in rgb, sum of weights in a.
+    Tint,
 }
 
 impl AttachmentRole {
     /// All roles, in order.
-    pub const ALL: [Self; 6] =
-        [Self::NormalAndAmount, Self::SixWay, Self::Weights, Self::OpticalDepths, Self::Depth, Self::Heat];
+    pub const ALL: [Self; 7] =
+        [Self::NormalAndAmount, Self::SixWay, Self::Weights, Self::OpticalDepths, Self::Depth, Self::Heat, Self::Tint];
 
     /// True if a system with these settings has the texture.
     pub fn is_used(self, settings: &Settings) -> bool {
@@ -40,6 +42,7 @@ impl AttachmentRole {
             Self::OpticalDepths => settings.receives_shadow(),
             Self::Depth => settings.lights_by_depth(),
             Self::Heat => settings.burns(),
+            Self::Tint => settings.is_tinted(),
         }
     }
 
@@ -52,6 +55,7 @@ impl AttachmentRole {
             Self::OpticalDepths => ("shadow.strength", "1"),
             Self::Depth => ("shadow.by_depth", "true"),
             Self::Heat => ("fire.intensity", "1"),
+            Self::Tint => ("sprite.age_color", "1"),
         }
     }
 }

@@ -132,6 +132,7 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| {
         (s.settings.ambient.intensity, s.settings.shadow.strength, s.settings.shadow.by_depth) = (1.0, 0.8, true);
     },
+    |s, _| s.settings.sprite.age_color = 0.5,
     |s, _| s.settings.fire.intensity = 2.0,
     |s, _| (s.settings.fire.intensity, s.settings.fire.light) = (2.0, 0.0),
     |s, _| (s.settings.fire.intensity, s.settings.path) = (2.0, RenderPath::Forward),
@@ -163,9 +164,12 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
 const PARTICLES: &str = "particles_##.csv";
 
 /// Fields whose alternatives give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 5] = [
+const SAME: [&str; 7] = [
     // Shades the scene, which these pictures do not have.
     "systems[0].settings.shadow.scene",
+    // A light that the host adds to its own.
+    "systems[0].settings.fire.light",
+    "systems[0].settings.fire.flicker",
     // At scale 1 the reduced depth equals the host's.
     "systems[0].settings.accumulate.depth_source",
     // The layers that are skipped are invisible.
@@ -177,9 +181,11 @@ const SAME: [&str; 5] = [
 
 /// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
-const NOT_ALWAYS: [&str; 18] = [
+const NOT_ALWAYS: [&str; 20] = [
     // As in `SAME`.
     "systems[0].settings.shadow.scene",
+    "systems[0].settings.fire.light",
+    "systems[0].settings.fire.flicker",
     // The layers that are skipped are invisible.
     "systems[0].settings.accumulate.layers",
     // The light is hidden, or lights nothing.

@@ -165,9 +165,12 @@ fn stages() -> Vec<TestScene> {
 }
 
 /// Values that give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 6] = [
+const SAME: [&str; 8] = [
     // Shades the scene, which this test does not draw.
     "shadow.scene",
+    // A light that the host adds to its own.
+    "fire.light",
+    "fire.flicker",
     // Chooses one of two paths, which are compared elsewhere.
     "path auto",
     // The same image, computed differently; tiled.rs compares the two.

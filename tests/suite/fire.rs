@@ -72,6 +72,60 @@ fn gpu_and_cpu_draw_the_same_fire() {
     }
 }
 
+#[test]
+fn gpu_and_cpu_draw_the_same_colors_by_age() {
+    type Change = fn(&mut TestScene);
+    let changes: &[(&str, Change)] = &[
+        ("raster", |_| {}),
+        ("forward", |s| s.settings.path = RenderPath::Forward),
+        ("tiled", |s| s.settings.path = RenderPath::Tiled),
+        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
+        ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
+        ("with fire", |s| s.settings.fire.intensity = 1.0),
+        ("with fire and shadow, tiled", |s| {
+            (s.settings.fire.intensity, s.settings.shadow.strength, s.settings.path) = (1.0, 0.8, RenderPath::Tiled);
+        }),
+        ("cubemap", |s| s.settings.diffuse.mode = DiffuseMode::Cubemap),
+        ("lit per texel", |s| {
+            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+        }),
+        ("steps", |s| s.settings.ramp_filter = RampFilter::Nearest),
+    ];
+    for (name, change) in changes {
+        let mut scene = burning();
+        (scene.settings.fire.intensity, scene.settings.sprite.age_color) = (0.0, 0.9);
+        change(&mut scene);
+        if scene.settings.path == RenderPath::Tiled && !is_tiled_available() {
+            continue;
+        }
+        let (seen, reference) = (drawn(&scene), scene.on_cpu());
+        let same = psnr(&seen, &reference);
+        scene.settings.sprite.age_color = 0.0;
+        let effect = psnr(&drawn(&scene), &seen);
+        println!("{name}: {same:.1} dB, without colors {effect:.1} dB");
+        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+        assert!(effect < 40.0, "{name}: without colors {effect:.1} dB");
+    }
+}
+
+#[test]
+fn sprites_in_front_hide_the_colors_behind_them() {
+    let mut scene = burning();
+    (scene.settings.fire.intensity, scene.settings.sprite.age_color) = (0.0, 1.0);
+    scene.material.age_ramp = Ramp::from_linear(UVec2::new(2, 1), [vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)]);
+    let like = scene.particles[0];
+    let reddest = |near: f32, far: f32| {
+        let mut scene = scene.clone();
+        scene.particles = vec![puff(-6.0, far, 0.8, &like), puff(-5.0, near, 0.8, &like)];
+        (scene.settings.boost, scene.wall_everywhere) = (4.0, true);
+        let seen = drawn(&scene).load(IVec2::new(SIZE.x as i32 / 2, SIZE.y as i32 / 2));
+        seen.x / (seen.x + seen.y)
+    };
+    let (red, green) = (reddest(0.0, 1.0), reddest(1.0, 0.0));
+    println!("{red} {green}");
+    assert!(red > 0.7 && green < 0.3, "{red} {green}");
+}
+
 /// A puff in the middle of the picture, at this depth.
 fn puff(z: f32, age: f32, amount: f32, like: &Particle) -> Particle {
     Particle { position: vec3(0.0, 0.0, z), radius: 1.0, age, amount, rotation: 0.0, ..*like }

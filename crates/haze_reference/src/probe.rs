@@ -201,7 +201,8 @@ impl<'a> ProbedSystem<'a> {
                 coordinate: diffuse_coordinate(surface.normal, sample.direction),
                 attenuation: sample.attenuation,
                 diffuse: smoke.diffuse_from_light(light, &surface, covered, position)
-                    * visible.system.diffuse_intensity,
+                    * visible.system.diffuse_intensity
+                    * surface.tint,
                 glow: glow.map(|(coordinate, specular)| GlowProbe { coordinate, specular }),
             }
         };
@@ -219,7 +220,7 @@ impl<'a> ProbedSystem<'a> {
             diffuse: smoke.diffuse(&surface, amount, position),
             soft_scatter_weight: is_curve
                 .then(|| soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth)),
-            soft_scatter: visible.soft_scatter(amount),
+            soft_scatter: visible.soft_scatter(amount) * surface.tint,
             fire: fire_from_moments(surface.heat),
             fire_light: smoke.fire_light(&surface, amount),
             blended: blended.unwrap_or(Vec4::ZERO),

@@ -50,6 +50,8 @@ pub struct SpriteSetup {
     pub optical_depths: Vec3,
     /// Heat, 0 to 1.
     pub heat: f32,
+    /// Color by which the light on it is multiplied.
+    pub tint: Vec3,
     /// Weight of the normal under the order `weighted`.
     pub weight: f32,
     /// Upper left corner of the pixels that the sprite can cover.
@@ -126,6 +128,7 @@ impl VisibleSystem<'_> {
             age: particle.age,
             optical_depths: self.optical_depths_of(particle, centre),
             heat: self.heat_by_age(particle.age),
+            tint: self.tint_by_age(particle.age),
             weight: self.order_weight(view_depth),
             min,
             max,
@@ -146,6 +149,14 @@ impl VisibleSystem<'_> {
     pub fn heat_by_age(&self, age: f32) -> f32 {
         let paint = |ramp| painted_share(self.sample_ramp(ramp, age));
         if self.settings.burns() { paint(&self.material.heat_ramp) } else { 0.0 }
+    }
+
+    /// Color of a particle.
+    pub fn tint_by_age(&self, age: f32) -> Vec3 {
+        match self.settings.is_tinted() {
+            true => Vec3::ONE.lerp(self.sample_ramp(&self.material.age_ramp, age), self.system.age_color),
+            false => Vec3::ONE,
+        }
     }
 
     /// Heat of a fragment of a sprite with this heat.

@@ -20,7 +20,6 @@ pub(crate) struct ForwardKey {
     pub host: HostPass,
     pub blend_mode: BlendMode,
     pub sprite: SpriteKey,
-    pub age_color: bool,
     /// True if sprites show through the scene: there is no depth test.
     pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
@@ -45,7 +44,6 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
         targets: key.host.color_targets(blend),
         constants: key.sprite.constants([
             enum_constant!("BLEND_MODE", key.blend_mode),
-            bool_constant("AGE_COLOR", key.age_color),
             bool_constant("BY_DEPTH", key.sprite.lights_by_depth()),
             bool_constant("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
             enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),

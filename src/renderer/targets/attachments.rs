@@ -88,6 +88,15 @@ const ATTACHMENTS: [Attachment; AttachmentRole::ALL.len()] = [
         sorted: PREMULTIPLIED_OVER,
         weighted: ADD_ALL,
     },
+    Attachment {
+        role: AttachmentRole::Tint,
+        label: "haze accumulation: tint",
+        slot_constant: Some("TINT_SLOT"),
+        raster: Format::Fixed(wgpu::TextureFormat::Rgba16Float),
+        tiled: Format::Fixed(wgpu::TextureFormat::Rgba16Float),
+        sorted: PREMULTIPLIED_OVER,
+        weighted: ADD_ALL,
+    },
 ];
 
 /// WebGPU's default limit on the color attachments of a pass, bytes per sample.
@@ -196,7 +205,7 @@ fn bytes_with(bytes: u32, format: wgpu::TextureFormat) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use AttachmentRole::{Heat, NormalAndAmount, SixWay, Weights};
+    use AttachmentRole::{Heat, NormalAndAmount, SixWay, Tint, Weights};
     use wgpu::TextureFormat::{R16Float, R32Float, Rgba8Unorm, Rgba16Float, Rgba32Float};
 
     #[test]
@@ -242,12 +251,13 @@ mod tests {
             ("OPTICAL_DEPTHS_SLOT", 0.0),
             ("DEPTH_SLOT", 0.0),
             ("HEAT_SLOT", 0.0),
+            ("TINT_SLOT", 0.0),
         ];
         assert_eq!(constants, [&[("ATTACHMENT_COUNT", 2.0)], slots.as_slice()].concat());
         let formats = tiled_formats(set, AccumulationFormat::Rgba8Unorm);
         assert_eq!(formats, [Rgba8Unorm, R32Float, PLACEHOLDER_FORMAT, PLACEHOLDER_FORMAT]);
         // Six-way light has weights of its own: no system has both.
-        let all = AttachmentRole::ALL.into_iter().filter(|role| ![SixWay, Heat].contains(role)).collect();
+        let all = AttachmentRole::ALL.into_iter().filter(|role| ![SixWay, Heat, Tint].contains(role)).collect();
         let formats = tiled_formats(all, AccumulationFormat::Rgba16Float);
         assert_eq!(formats, [Rgba16Float, R32Float, Rgba16Float, Rgba16Float]);
         for format in [AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm] {

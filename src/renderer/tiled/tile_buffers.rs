@@ -17,8 +17,8 @@ use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 pub(crate) const TILE_SPRITE_BYTES: u64 = 64;
 /// Bytes of a packed rectangle.
 const RECT_BYTES: u64 = 8;
-/// Bytes of a sprite's optical depths and heat.
-const DEPTHS_AND_HEAT_BYTES: u64 = 16;
+/// Bytes of a `SpriteValues` in `shaders/lib/sprite_vertex.wgsl`.
+const SPRITE_VALUES_BYTES: u64 = 32;
 /// Unit of `TilesUniform::first`, bytes.
 pub(crate) const PARTICLE_ALIGNMENT: u64 = 16;
 
@@ -32,7 +32,7 @@ pub(super) struct TileBuffers {
     pub workgroups: wgpu::Buffer,
     sprites: wgpu::Buffer,
     /// Optical depths of the smoke before each sprite; one element if no system receives shadow.
-    depths_and_heats: wgpu::Buffer,
+    sprite_values: wgpu::Buffer,
     rects: wgpu::Buffer,
     pub sort: SortBuffers,
     sorted_rects: wgpu::Buffer,
@@ -122,7 +122,7 @@ impl TileBuffers {
         Self {
             capacity,
             sprites: storage("haze tile sprites", particles, TILE_SPRITE_BYTES),
-            depths_and_heats: storage("haze sprite depths and heats", shaded, DEPTHS_AND_HEAT_BYTES),
+            sprite_values: storage("haze sprite values", shaded, SPRITE_VALUES_BYTES),
             read_back: Arc::new(read_back),
             gather,
             bin,
@@ -145,7 +145,7 @@ impl TileBuffers {
         let bytes = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|buffer| buffer.size()).sum();
         let [keys, counts] = self.sort.bytes();
         TiledMemory {
-            sprites: bytes(&[&self.uniform, &self.sprites, &self.depths_and_heats, &self.rects, &self.sorted_rects]),
+            sprites: bytes(&[&self.uniform, &self.sprites, &self.sprite_values, &self.rects, &self.sorted_rects]),
             keys,
             counts: counts + bytes(&[&self.bin_counts, &self.counters, &self.workgroups, &self.read_back]),
             lists: bytes(&[&self.lists, &self.bins]),
@@ -157,8 +157,8 @@ impl TileBuffers {
         match &self.project {
             Some((bound, group)) if *bound == particles => group.clone(),
             _ => {
-                let Self { uniform, sprites, depths_and_heats, rects, sort, .. } = self;
-                let buffers = [&*sprites, rects, sort.keys(), sort.indices(), depths_and_heats];
+                let Self { uniform, sprites, sprite_values, rects, sort, .. } = self;
+                let buffers = [&*sprites, rects, sort.keys(), sort.indices(), sprite_values];
                 let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
                 let own = [uniform.as_entire_binding(), particles.binding()];
                 let group = bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers));
@@ -197,11 +197,11 @@ impl TileBuffers {
         match &self.accumulate {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {
-                let Self { uniform, sprites, depths_and_heats, rects, sort, lists, bins, .. } = self;
+                let Self { uniform, sprites, sprite_values, rects, sort, lists, bins, .. } = self;
                 let buffers = [&*uniform, sprites, rects, sort.indices(), lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
-                let resources = resources.chain([depths_and_heats.as_entire_binding()]);
+                let resources = resources.chain([sprite_values.as_entire_binding()]);
                 let group = bind(gpu.device, &tiled.accumulate.get(formats).layout, resources);
                 self.accumulate = Some((views.map(wgpu::TextureView::clone).to_vec(), group.clone()));
                 group

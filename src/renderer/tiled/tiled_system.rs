@@ -89,7 +89,7 @@ impl TiledSystem {
         // tile_refine needs as many words again, in whole batches per bin.
         let expected = if cooperative { expected } else { 2 * expected + BITS_PER_WORD * bins };
         let entries = wanted.max(expected).max(MIN_ENTRIES);
-        let shaded = if keys.project.sprite.is_shaded_or_burns() { sprites.count } else { 1 };
+        let shaded = if keys.project.sprite.has_values() { sprites.count } else { 1 };
         let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, entries, shaded };
         let buffers = self.ensure(gpu, tiled, needed.rounded_up(max_words));
         let capacity = buffers.capacity.entries;

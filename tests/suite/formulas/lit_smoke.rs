@@ -329,7 +329,7 @@ fn surfaces() -> Vec<Formula> {
             wgsl: "NORMAL_DECODE = u32(x(0)); SIX_WAY_SLOT = u32(x(9) > 0.7); WEIGHTS_SLOT = u32(x(9) < 0.3); OPTICAL_DEPTHS_SLOT = 1u; DEPTH_SLOT = 1u; HEAT_SLOT = 1u; \
                    NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, x(9) < 0.3); \
                    let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), \
-                   Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5), vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8)), vec4f(x(2), x(4), x(6), x(8)))); \
+                   Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5), vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8)), vec4f(x(2), x(4), x(6), x(8)), vec4f(0.0))); \
                    y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.shade.optical_depths); y(12, s.depth.x); y(13, s.depth.y); y(14, s.heat.x); y(15, s.heat.y);",
             reference: |x| {
                 let settings = changed(|s| {
@@ -343,7 +343,7 @@ fn surfaces() -> Vec<Formula> {
                     }
                 });
                 let heat = Vec4::new(x[2], x[4], x[6], x[8]);
-                let attachments = [v4(&x[1..]), v4(&x[5..]), v4(&x[5..]), v4(&x[1..]), v4(&x[5..]), heat];
+                let attachments = [v4(&x[1..]), v4(&x[5..]), v4(&x[5..]), v4(&x[1..]), v4(&x[5..]), heat, Vec4::ZERO];
                 let surface = with_target(&settings, |_| {}, |target| target.surface(&attachments));
                 let SixWay { positive, negative } = surface.six_way;
                 let vectors = [surface.normal, positive, negative, surface.shade.optical_depths];
@@ -382,7 +382,7 @@ fn lit_surfaces() -> Vec<Formula> {
         file: "lib/lit_smoke.wgsl",
         wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
                    for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
-                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), Shade(vec3f(0.0), vec3f(1.0), vec2f(1.0)), vec2f(0.0), vec2f(0.0)); \
+                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), Shade(vec3f(0.0), vec3f(1.0), vec2f(1.0)), vec2f(0.0), vec2f(0.0), vec3f(0.9, 0.8, x(4))); \
                    y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",
         reference: |x| {
             let settings = changed(|s| {
@@ -396,8 +396,8 @@ fn lit_surfaces() -> Vec<Formula> {
                 visible.system.spherical_harmonics = std::array::from_fn(|i| Vec4::new(0.3, 0.2, 0.1, 0.0) * i as f32);
             };
             let six_way = SixWay { positive: Vec3::new(0.2, 0.4, 0.6), negative: Vec3::new(0.1, 0.3, 0.5) };
-            let (depth, heat) = (Vec2::ZERO, Vec2::ZERO);
-            let surface = Surface { normal: v3(&x[1..]), six_way, shade: Shade::NONE, depth, heat };
+            let (depth, heat, tint) = (Vec2::ZERO, Vec2::ZERO, Vec3::new(0.9, 0.8, x[4]));
+            let surface = Surface { normal: v3(&x[1..]), six_way, shade: Shade::NONE, depth, heat, tint };
             with_target(&settings, change, |target| target.diffuse(&surface, x[4], v3(&x[5..])).to_array().to_vec())
         },
         cases: unit_vectors(
@@ -409,7 +409,8 @@ fn lit_surfaces() -> Vec<Formula> {
         ),
         tolerance: TRANSCENDENTAL,
         mutants: &[
-            ("return light * system.diffuse_intensity;", "return light;"),
+            ("return light * system.diffuse_intensity * surface.tint;", "return light * surface.tint;"),
+            ("return light * system.diffuse_intensity * surface.tint;", "return light * system.diffuse_intensity;"),
             ("motif_position(normal) * 0.5 + 0.5", "motif_position(normal)"),
             (
                 "diffuse_from_six_way(surface.six_way, position, surface.shade) * system.diffuse_intensity",

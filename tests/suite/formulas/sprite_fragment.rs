@@ -27,6 +27,7 @@ fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
         age: 0.5,
         optical_depths: Vec3::ZERO,
         heat: 0.0,
+        tint: Vec3::ONE,
         weight: 1.0,
         min: Vec2::ZERO,
         max: Vec2::ZERO,

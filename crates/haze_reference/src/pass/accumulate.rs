@@ -46,9 +46,7 @@ impl VisibleSystem<'_> {
     fn format(&self, role: AttachmentRole) -> AccumulationFormat {
         match role {
             AttachmentRole::NormalAndAmount | AttachmentRole::SixWay => self.settings.accumulate.format,
-            AttachmentRole::Weights | AttachmentRole::OpticalDepths | AttachmentRole::Depth | AttachmentRole::Heat => {
-                AccumulationFormat::Rgba16Float
-            }
+            _ => AccumulationFormat::Rgba16Float,
         }
     }
 
@@ -74,6 +72,7 @@ impl VisibleSystem<'_> {
                 let heat = self.fragment_heat(&fragment, sprite.heat);
                 Vec4::new(heat * weighted, heat * heat * weighted, 0.0, weighted)
             }
+            AttachmentRole::Tint => (sprite.tint * weighted).extend(weighted),
         };
         match (self.settings.order(), role) {
             (BlendOrder::Sorted, _) => premultiplied_over(source, texel),

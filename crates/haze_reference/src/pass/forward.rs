@@ -1,6 +1,6 @@
 //! CPU version of `shaders/forward.wgsl`.
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec4};
 
 use crate::blend_unit::forward_blend;
 use crate::shade::Shade;
@@ -40,8 +40,7 @@ impl VisibleSystem<'_> {
                     false => self.diffuse_from_lights(normal, covered, position, &shade),
                 };
                 let diffuse = diffuse * system.diffuse_intensity;
-                let color = self.sample_ramp(&self.material.age_ramp, sprite.age);
-                let mut light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(color, system.age_color);
+                let mut light = (diffuse + self.soft_scatter(amount)) * sprite.tint;
                 if self.settings.burns() {
                     let heat = self.fragment_heat(&fragment, sprite.heat);
                     light += self.emission(fire_from_moments(Vec2::new(heat, heat * heat)), amount);

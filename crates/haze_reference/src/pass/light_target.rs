@@ -28,7 +28,7 @@ impl AccumulatedTarget<'_> {
         let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale as f32;
         let surface = self.shaded_surface(&self.attachments(accumulated, |texture| texture.load(at)), pixel);
         let position = self.lit_position(&surface, pixel);
-        let reflected = self.diffuse(&surface, amount, position) + visible.soft_scatter(amount);
+        let reflected = self.diffuse(&surface, amount, position) + visible.soft_scatter(amount) * surface.tint;
         let light = bounded_light(reflected + self.fire_light(&surface, amount));
         quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)
     }

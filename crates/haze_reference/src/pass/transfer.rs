@@ -30,6 +30,8 @@ pub struct Surface {
     pub depth: Vec2,
     /// Means of heat and of its square, if the system burns.
     pub heat: Vec2,
+    /// Mean color of the particles.
+    pub tint: Vec3,
 }
 
 impl AccumulatedTarget<'_> {
@@ -37,7 +39,8 @@ impl AccumulatedTarget<'_> {
     pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
         let (visible, normal, shade) = (self.visible, surface.normal, &surface.shade);
         if visible.settings.is_six_way() {
-            return visible.diffuse_from_six_way(&surface.six_way, position, shade) * visible.system.diffuse_intensity;
+            let light = visible.diffuse_from_six_way(&surface.six_way, position, shade);
+            return light * visible.system.diffuse_intensity * surface.tint;
         }
         let light = match visible.settings.diffuse.mode {
             DiffuseMode::Ramp => {
@@ -54,7 +57,7 @@ impl AccumulatedTarget<'_> {
             }
             DiffuseMode::SphericalHarmonics => spherical_harmonics(&visible.system.spherical_harmonics, normal),
         };
-        light * visible.system.diffuse_intensity
+        light * visible.system.diffuse_intensity * surface.tint
     }
 
     /// Lights the smoke, or shows a debug view of it, and blends it over the image.
@@ -119,7 +122,7 @@ impl AccumulatedTarget<'_> {
             light += self.diffuse(&surface, amount, self.lit_position(&surface, pixel));
         }
         if debug_view != DebugView::Diffuse {
-            light += self.visible.soft_scatter(amount);
+            light += self.visible.soft_scatter(amount) * surface.tint;
         }
         if !matches!(debug_view, DebugView::SoftScatter | DebugView::Diffuse) {
             light += self.fire_light(&surface, amount);
@@ -165,19 +168,23 @@ impl AccumulatedTarget<'_> {
     pub fn surface(&self, attachments: &Attachments) -> Surface {
         let settings = self.visible.settings;
         let accumulate = &settings.accumulate;
-        let [accumulated, six_way, weights, depths, moments, heat] = *attachments;
+        let [accumulated, six_way, weights, depths, moments, heat, tint] = *attachments;
         let shade = Shade { optical_depths: depths.xyz() / depths.w.max(1.0e-6), ..Shade::NONE };
         let depth = moments.xy() / moments.w.max(1.0e-6);
+        let tint = match AttachmentRole::Tint.is_used(&settings) {
+            true => tint.xyz().max(Vec3::ZERO) / tint.w.max(1.0e-6),
+            false => Vec3::ONE,
+        };
         let heat = heat.xy().max(Vec2::ZERO) / heat.w.max(1.0e-6);
         if AttachmentRole::SixWay.is_used(&settings) {
             let scale = 1.0 / six_way.w.max(1.0e-6);
             let [positive, negative] = [accumulated, six_way].map(|light| light.xyz().max(Vec3::ZERO) * scale);
             let normal = normal_from_six_way(positive, negative);
-            return Surface { normal, six_way: SixWay { positive, negative }, shade, depth, heat };
+            return Surface { normal, six_way: SixWay { positive, negative }, shade, depth, heat, tint };
         }
         let weights = if AttachmentRole::Weights.is_used(&settings) { weights.x } else { accumulated.w };
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
-        Surface { normal, six_way: SixWay::default(), shade, depth, heat }
+        Surface { normal, six_way: SixWay::default(), shade, depth, heat, tint }
     }
 
     /// Amount and surface at a pixel.
@@ -202,7 +209,7 @@ impl AccumulatedTarget<'_> {
             false => visible.ambient_from_ramp(surface.normal, covered, openness),
         };
         let is_shown = visible.settings.has_ambient() && visible.settings.can_receive_shadow();
-        is_shown.then_some(light * visible.system.diffuse_intensity)
+        is_shown.then_some(light * visible.system.diffuse_intensity * surface.tint)
     }
 
     /// Contribution of a light if none is baked.

@@ -68,13 +68,10 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
     let by_normal =
         is_lit && !settings.is_six_way() && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
     let by_amount = settings.soft_scatter.intensity > 0.0 && settings.soft_scatter.mode == SoftScatterMode::Ramp;
-    let others = if is_forward {
-        settings.sprite.age_color > 0.0
-    } else {
-        settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0
-    };
+    let deferred = settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0;
+    let by_age = settings.is_tinted() || settings.burns();
     let by_shadow = is_lit && settings.receives_shadow();
-    !(by_normal || by_amount || by_shadow || others || settings.burns())
+    !(by_normal || by_amount || by_shadow || by_age || deferred && !is_forward)
 }
 
 pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {

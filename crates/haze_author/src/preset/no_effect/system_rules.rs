@@ -29,11 +29,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "cache.flipbook_rate",
         ],
     ),
-    rule(
-        "forward only",
-        |s, _| !s.settings.is_forward(),
-        &["settings.blend_mode", "settings.sprite.age_color", "material.age_ramp"],
-    ),
+    rule("forward only", |s, _| !s.settings.is_forward(), &["settings.blend_mode"]),
     rule(
         "deferred only",
         |s, _| s.settings.is_forward(),
