@@ -211,15 +211,6 @@ fn shadow_on_the_ground_is_close_to_that_of_all_densities() {
     }
 }
 
-/// Prints the table of clouds in docs/light.md.
-#[test]
-#[ignore = "takes some minutes"]
-fn prints_shadow_errors_for_every_medium() {
-    for named in MEDIA {
-        shadow_errors(named.name, 64, 48);
-    }
-}
-
 /// Prints the table of columns in docs/light.md. With `HAZE_LOOK=folder` it also writes a comparison image per medium.
 #[test]
 #[ignore = "takes some minutes"]

@@ -202,16 +202,21 @@ impl PuffCloud<'_> {
         (-depth * STEP * self.kind.medium.density).exp()
     }
 
-    /// Path trace of the summed densities of all puffs.
-    pub fn truth(&self, lights: &[Vec3]) -> LightImages {
-        let PuffKind { medium, path_trace, .. } = self.kind;
-        let side = path_trace.size;
+    /// Summed densities of all puffs.
+    pub fn volume(&self) -> DensityVolume {
+        let side = self.kind.path_trace.size;
         let mut all = DensityVolume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
         for index in 0..all.densities.len() as u32 {
             let voxel = UVec3::new(index % side, index / side % side, index / (side * side));
             all.densities[index as usize] = self.density(all.voxel_centre(voxel));
         }
-        let Ok(traced) = path_trace.run(&all, medium, lights, |_| Ok::<_, std::convert::Infallible>(()));
+        all
+    }
+
+    /// Path trace of the summed densities of all puffs.
+    pub fn truth(&self, lights: &[Vec3]) -> LightImages {
+        let PuffKind { medium, path_trace, .. } = self.kind;
+        let Ok(traced) = path_trace.run(&self.volume(), medium, lights, |_| Ok::<_, std::convert::Infallible>(()));
         traced.light
     }
 
@@ -227,6 +232,22 @@ impl PuffCloud<'_> {
             Ok(Image { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() })
         };
         lights.iter().map(of_light).collect()
+    }
+
+    /// Share of the background that the drawn cloud hides.
+    ///
+    /// # Errors
+    /// As [`PuffCloud::drawn`].
+    pub fn drawn_coverage(&self, material: &PuffMaterial) -> Result<Image<f32>, Error> {
+        let size = UVec2::splat(self.kind.path_trace.size);
+        let [black, white] = [Vec4::ZERO, Vec4::ONE].map(|behind| {
+            let mut picture = Image::new(size, behind);
+            self.prepared(Vec3::Z, material, |frame| frame.render(&mut picture))?;
+            Ok::<_, Error>(picture)
+        });
+        let (black, white) = (black?, white?);
+        let texels = black.texels.iter().zip(&white.texels).map(|(black, white)| 1.0 - (white.y - black.y));
+        Ok(Image { size, texels: texels.collect() })
     }
 
     /// Shares of a light that fall through the cloud onto places of a scene, by the CPU renderer.
