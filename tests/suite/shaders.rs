@@ -240,16 +240,16 @@ fn missing_and_circular_imports_are_reported_at_the_import_line() {
 fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
     let plain = draw(None);
     let folder = ShaderFolder::new();
-    folder.edit("lib/color.wgsl", "return min(light, vec3f(", "return min(light * TINT, vec3f(");
-    assert!(folder.refusal().contains("`TINT`"));
-    // TINT is defined in a separate file, which the others import.
+    folder.edit("lib/color.wgsl", "return min(light, vec3f(", "return min(light * SHADE, vec3f(");
+    assert!(folder.refusal().contains("`SHADE`"));
+    // SHADE is defined in a separate file, which the others import.
     folder.edit("lib/blending.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
     folder.edit("lib/normal.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
     let text = std::fs::read_to_string(folder.0.path().join("lib/color.wgsl")).unwrap();
     folder.write("lib/color.wgsl", format!("#import \"mine/tint.wgsl\"\n{text}"));
-    folder.write("mine/tint.wgsl", "const TINT = vec3f(0.5);\n");
+    folder.write("mine/tint.wgsl", "const SHADE = vec3f(0.5);\n");
     assert_ne!(folder.picture(), plain);
-    folder.write("mine/tint.wgsl", "const TINT = vec3f(1.0);\n");
+    folder.write("mine/tint.wgsl", "const SHADE = vec3f(1.0);\n");
     assert_eq!(folder.picture(), plain);
     let read: Vec<_> = Sources::from_folder(folder.0.path()).unwrap().paths().map(Path::to_owned).collect();
     let files = ["lib/blending.wgsl", "lib/color.wgsl", "lib/normal.wgsl", "mine/tint.wgsl"];

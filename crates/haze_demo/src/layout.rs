@@ -106,9 +106,9 @@ fn corridor() -> Vec<SceneBox> {
     let at = vec3;
     boxes.push(box_on_ground(at(0.0, -1.0, -6.0), vec3(30.0, 1.0, 40.0), 0.0, PAVING, Surface::Slabs));
     // Right wall and ceiling; the left side is open between pillars.
-    boxes.push(box_on_ground(at(3.0, 0.0, -7.0), vec3(0.6, 4.4, 30.0), 0.0, BRICK, Surface::Brick));
+    boxes.push(box_on_ground(at(3.0, 0.0, -7.0), vec3(0.6, 4.3, 29.9), 0.0, BRICK, Surface::Brick));
     boxes.push(box_on_ground(at(0.0, 4.2, -7.0), vec3(6.8, 0.4, 30.0), 0.0, PLASTER, Surface::Plaster));
-    boxes.push(box_on_ground(at(-2.75, 3.5, -7.0), vec3(0.7, 0.7, 30.0), 0.0, STONE, Surface::Plaster));
+    boxes.push(box_on_ground(at(-2.75, 3.5, -7.0), vec3(0.7, 0.7, 29.9), 0.0, STONE, Surface::Plaster));
     for bay in 0..7 {
         let z = 3.0 - 2.9 * bay as f32;
         pillar(&mut boxes, at(-2.75, 0.0, z), 3.28);
