@@ -76,14 +76,8 @@ fn prints_cost_of_six_way_lighting_and_ramps() {
     println!("transfer: one axis {one:.3} ms, two axes {:.2}, light from behind {:.2}", two / one, behind / one);
 }
 
-/// Prints the figures of docs/shadow.md: whole frames of 4,096 sprites under three lights, and the passes of shadow.
-#[test]
-#[ignore = "prints figures for the docs"]
-fn prints_cost_of_shadow() {
-    let Some(gpu) = timed_gpu() else { return };
-    if !is_tiled_available() {
-        return;
-    }
+/// 4,096 sprites under three lights, at half scale.
+fn scene_of_4096_sprites(gpu: &Headless) -> TestScene {
     let is_cpu = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     let mut scene = TestScene::new(if is_cpu { UVec2::new(1280, 720) } else { UVec2::new(1920, 1080) });
     scene.lights.push(Light { kind: LightKind::Directional, direction: Vec3::NEG_Y, ..Light::default() });
@@ -92,9 +86,55 @@ fn prints_cost_of_shadow() {
     let particle = |index: u32| {
         let place = pcg3d(UVec3::new(index, 3, 9));
         let place = (vec3(unit(place.x), unit(place.y), unit(place.z)) - 0.5) * vec3(4.0, 2.4, 2.0);
-        Particle { position: place + vec3(0.0, 0.0, -6.0), radius: 0.2, amount: 0.1, ..some[index as usize % 60] }
+        let age = unit(pcg3d(UVec3::new(index, 5, 9)).x);
+        Particle { position: place + vec3(0.0, 0.0, -6.0), radius: 0.2, amount: 0.1, age, ..some[index as usize % 60] }
     };
     scene.particles = (0..4096).map(particle).collect();
+    scene
+}
+
+/// Prints the figures of docs/fire.md: whole frames, and accumulation, with fire and with colors by age.
+#[test]
+#[ignore = "prints figures for the docs"]
+fn prints_cost_of_fire() {
+    let Some(gpu) = timed_gpu() else { return };
+    type Change = fn(&mut Settings);
+    let changes: &[(&str, Change)] = &[
+        ("normals", |_| {}),
+        ("fire", |s| s.fire.intensity = 4.0),
+        ("colors", |s| s.sprite.age_color = 1.0),
+        ("both", |s| (s.fire.intensity, s.sprite.age_color) = (4.0, 1.0)),
+        ("six-way", |s| s.lighting = Lighting::SixWay),
+    ];
+    for path in [RenderPath::Raster, RenderPath::Tiled].into_iter().take(if is_tiled_available() { 2 } else { 1 }) {
+        let mut scene = scene_of_4096_sprites(gpu);
+        scene.settings.path = path;
+        let stages: Vec<_> = changes
+            .iter()
+            .map(|(_, change)| {
+                let mut scene = scene.clone();
+                change(&mut scene.settings);
+                scene
+            })
+            .collect();
+        let whole = medians(gpu, &stages, ALL_PASSES);
+        let accumulate = medians(gpu, &stages, &["accumulate", "tile_project", "tile_accumulate"]);
+        for (((name, _), whole_frame), accumulate_alone) in changes.iter().zip(&whole).zip(&accumulate) {
+            let ratio = accumulate_alone / accumulate[0];
+            println!("{} {name}: {whole_frame:.3} ms, accumulation {accumulate_alone:.3} ms, {ratio:.2}", path.name());
+        }
+    }
+}
+
+/// Prints the figures of docs/shadow.md: whole frames of 4,096 sprites under three lights, and the passes of shadow.
+#[test]
+#[ignore = "prints figures for the docs"]
+fn prints_cost_of_shadow() {
+    let Some(gpu) = timed_gpu() else { return };
+    if !is_tiled_available() {
+        return;
+    }
+    let mut scene = scene_of_4096_sprites(gpu);
     for path in [RenderPath::Raster, RenderPath::Tiled] {
         scene.settings.path = path;
         let stages: Vec<_> = [0, 16, 24, 32, 48, 64, 96]

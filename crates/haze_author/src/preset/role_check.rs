@@ -171,6 +171,8 @@ mod tests {
         one(|names| names.coverage_ramp = "both.png".into(), "coverage_ramp", "its 64 rows differ");
         one(|names| names.diffuse_ramp = "specular_halo".into(), "diffuse_ramp", "as a specular ramp is");
         assert_eq!(warnings(|names| names.diffuse_ramp = "both.png".into()), []);
+        one(|names| names.fire_ramp = "shadow_neutral".into(), "fire_ramp", "not black in the first column");
+        one(|names| names.shadow_ramp = "across.png".into(), "shadow_ramp", "darker in the first column");
         let ball = builtin::find(builtin::SPRITES, "ball").unwrap();
         std::fs::write(folder.path().join("ball.png"), ball.bytes).unwrap();
         one(|names| names.diffuse_ramp = "ball.png".into(), "diffuse_ramp", "normals of a sprite");

@@ -225,7 +225,7 @@ mod tests {
         assert!(timings.stats.is_timed, "lavapipe tells the time");
         let names = timings.names.clone();
         let memory = timings.stats.memory;
-        let of_shadow = ["density_splat", "shadow_march"];
+        let of_shadow = ["density_splat", "shadow_visibility", "shadow_march"];
         let of_all = ["depth_downsample", "accumulate", "transfer", "specular_scatter"];
         assert_eq!(names, [of_shadow.as_slice(), &of_all].concat());
         for name in names.iter().chain(&[

@@ -110,7 +110,7 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
         let ambient = probe.ambient.map(|light| ("of it ambient", String::new(), light));
         let heat = format!("heat {:.2}", probe.fire.x);
-        let fire = (probe.fire_light != Vec3::ZERO).then(|| ("fire", heat, probe.fire_light));
+        let fire = (probe.fire_light != Vec3::ZERO).then_some(("fire", heat, probe.fire_light));
         let sums = [
             ("soft scatter", scatter, probe.soft_scatter),
             ("specular", String::new(), probe.specular()),
