@@ -126,7 +126,7 @@ fn valid_shot(mut preset: Preset, mut values: RandomValues) -> Option<Shot> {
         system.emitter.rate = system.emitter.rate.min(400.0 / system.emitter.lifetime);
     }
     preset.validate().ok()?;
-    // What needs more textures is refused when a frame is prepared.
+    // A system that needs more textures is refused when a frame is prepared.
     let fits = |settings| AttachmentSet::of(settings).iter().count() <= MAX_TARGET_ATTACHMENTS;
     if !preset.systems.iter().all(|system| fits(&system.settings)) {
         return None;
