@@ -48,6 +48,8 @@ pub fn light(
     let color = sum.light / sum.weight;
     let brightest = color.max_element();
     let intensity = brightest * fire.intensity * fire.light * share * reach * reach * flicker(fire.flicker, time, seed);
+    // Within the ranges of a light.
+    let (intensity, reach) = (intensity.min(1.0e9), reach.min(1.0e4));
     (intensity > FAINTEST).then(|| Light {
         kind: LightKind::Point,
         position: middle,
@@ -86,6 +88,8 @@ fn flame_color(settings: &Settings, heat_ramp: &Ramp, fire_ramp: &Ramp, age: f32
 /// Sums over the flames of a system.
 #[derive(Debug, Default)]
 struct Flames {
+    /// Position of the first flame, which all positions are relative to: squares of large numbers would lose the rest.
+    origin: Option<Vec3>,
     /// Luminance times area: the weight of all sums.
     weight: f32,
     light: Vec3,
@@ -104,6 +108,7 @@ impl Flames {
         self.weight += weight;
         self.light += color * weight;
         self.luminance += luminance * weight;
+        let position = position - *self.origin.get_or_insert(position);
         self.position += position * weight;
         self.square += (position.length_squared() + 0.5 * radius * radius) * weight;
     }
@@ -115,10 +120,11 @@ impl Flames {
 
     /// Middle of the flames, and the radius of the disc that they fill; `None` without flames.
     fn extent(&self) -> Option<(Vec3, f32)> {
+        let origin = self.origin?;
         let middle = self.position / self.weight;
         let variance = self.square / self.weight - middle.length_squared();
         // A disc of radius r has a variance of r²/2.
-        (self.weight > 0.0 && variance > 0.0).then(|| (middle, (2.0 * variance).sqrt()))
+        (variance > 0.0).then(|| (origin + middle, (2.0 * variance).sqrt()))
     }
 }
 
@@ -171,6 +177,24 @@ mod tests {
     }
 
     #[test]
+    fn light_of_strange_particles_is_valid_or_none() {
+        let (mut settings, assets) = burning();
+        settings.fire.intensity = 1000.0;
+        let particle = Particle { position: Vec3::splat(1.0e8), ..Particle::default() };
+        for strange in [
+            particle,
+            Particle { radius: 1.0e9, ..particle },
+            Particle { age: f32::NAN, ..particle },
+            Particle { age: -1.0e30, ..particle },
+            Particle { radius: 1.0e-20, ..particle },
+        ] {
+            let Some(light) = light(&[strange], 1, &settings, &assets, (f32::MAX, 3)) else { continue };
+            assert!((0.0..=1.0e9).contains(&light.intensity) && (0.0..=1.0e4).contains(&light.radius), "{light:?}");
+            assert!(light.position.is_finite() && light.color.is_finite() && light.range >= 0.01, "{light:?}");
+        }
+    }
+
+    #[test]
     fn flicker_is_seekable_continuous_and_different_for_each_seed() {
         let at = |time, seed| flicker(0.8, time, seed);
         let times = || (0..4000).map(|step| step as f32 * 0.005);
@@ -178,7 +202,7 @@ mod tests {
         assert!((mean - 1.0).abs() < 0.06, "{mean}");
         assert!(times().all(|time| (at(time, 1) - at(time + 0.001, 1)).abs() < 0.05));
         assert!(times().any(|time| (at(time, 1) - at(time, 2)).abs() > 0.3));
-        assert_eq!(at(77.3, 5), at(77.3, 5));
-        assert_eq!(flicker(0.0, 3.0, 9), 1.0);
+        assert_eq!(at(77.3, 5).to_bits(), at(77.3, 5).to_bits());
+        assert!((flicker(0.0, 3.0, 9) - 1.0).abs() < 1e-6);
     }
 }
