@@ -17,6 +17,7 @@ use crate::error::{Error, FieldError, display_path};
 use crate::frame::validate_input::validate_lights;
 use crate::frame::{EmitterSnapshot, Light};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
+use crate::view_setup::AttachmentSet;
 
 /// Version of the preset format that this code reads and writes.
 pub const PRESET_VERSION: u32 = 1;
@@ -231,7 +232,9 @@ impl Preset {
                 let problem = format!("at this rate, {most:.0} particles of all systems are alive at once");
                 return Err(FieldError::from_problem(field, problem, format!("at most {MAX_PARTICLES}")));
             }
-            system.settings.validate(|| format!("systems[{index}].settings"))?;
+            let path = || format!("systems[{index}].settings");
+            system.settings.validate(path)?;
+            AttachmentSet::validate(&system.settings, path)?;
         }
         Ok(())
     }

@@ -34,7 +34,7 @@ use crate::error::{Error, FieldError};
 use crate::formula::shadow::SHADOWED_LIGHTS;
 use crate::frame::{FrameInput, SceneDepth};
 use crate::settings::DebugView;
-use crate::view_setup::{ResolvedSettings, SmokeShadow, ViewGeometry};
+use crate::view_setup::{AttachmentSet, ResolvedSettings, SmokeShadow, ViewGeometry};
 
 pub use auto::{PathChoice, PathCosts, PathModel, PathModelSource, PathReason, PathWorkload};
 pub use context::Context;
@@ -148,7 +148,9 @@ impl Renderer {
             shared.pipelines.depth_resolve.check(DepthResolveKey { reversed: view.depth.reversed })?;
         }
         for (index, settings) in expected.settings.iter().enumerate() {
-            settings.validate(|| format!("settings[{index}]"))?;
+            let path = || format!("settings[{index}]");
+            settings.validate(path)?;
+            AttachmentSet::validate(settings, path)?;
             // The sprite's frame count is not known yet: compiles for one frame and for several.
             for frame_count in [1.0, 2.0] {
                 let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, shared.support);

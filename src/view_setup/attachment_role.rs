@@ -1,5 +1,6 @@
 //! Roles of the accumulation target's textures, and the set of roles that a system uses. Both renderers read it.
 
+use crate::error::FieldError;
 use crate::settings::Settings;
 
 /// Maximum number of textures of a target: WebGPU guarantees four storage textures per shader, WebGL2 four draw buffers.
@@ -73,6 +74,22 @@ impl AttachmentSet {
         AttachmentRole::ALL.into_iter().filter(|role| role.is_used(settings)).collect()
     }
 
+    /// Refuses settings that need more textures than every device has. `path` precedes the field's name.
+    ///
+    /// # Errors
+    /// Names the setting that adds the first texture that is too much.
+    pub fn validate(settings: &Settings, path: impl Fn() -> String) -> Result<(), FieldError> {
+        let excess = Self::of(settings).iter().nth(MAX_TARGET_ATTACHMENTS).filter(|_| !settings.is_forward());
+        excess.map_or(Ok(()), |role| {
+            let (setting, value) = role.setting();
+            let expected = format!(
+                "another value, or fewer settings that add textures to the accumulation target: at most \
+                 {MAX_TARGET_ATTACHMENTS} fit"
+            );
+            Err(FieldError::new(format!("{}.{setting}", path()), value, expected))
+        })
+    }
+
     /// True if the set has this role.
     pub fn contains(self, role: AttachmentRole) -> bool {
         self.0 & bit(role) != 0
@@ -115,6 +132,17 @@ mod tests {
             }
         }
         assert!(AttachmentRole::ALL.iter().enumerate().all(|(index, role)| *role as usize == index));
+    }
+
+    #[test]
+    fn a_fifth_texture_is_refused_by_name() {
+        let mut settings = Settings::default();
+        (settings.shadow.strength, settings.shadow.by_depth) = (1.0, true);
+        (settings.fire.intensity, settings.sprite.age_color) = (1.0, 1.0);
+        let error = AttachmentSet::validate(&settings, || "systems[1].settings".into()).unwrap_err().to_string();
+        assert!(error.starts_with("systems[1].settings.sprite.age_color: 1 is not valid"), "{error}");
+        settings.shadow.by_depth = false;
+        AttachmentSet::validate(&settings, String::new).unwrap();
     }
 
     #[test]

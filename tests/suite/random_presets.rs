@@ -9,8 +9,7 @@ use haze::image::Image;
 use haze::noise::{pcg3d, unit};
 use haze::preset::{AssetFolders, Preset};
 use haze::settings::*;
-use haze::view_setup::MAX_TARGET_ATTACHMENTS;
-use haze::{AttachmentSet, Light, builtin};
+use haze::{Light, builtin};
 use haze_demo::shot::Shot;
 
 use crate::gpu::{gpu, is_tiled_available};
@@ -126,11 +125,6 @@ fn valid_shot(mut preset: Preset, mut values: RandomValues) -> Option<Shot> {
         system.emitter.rate = system.emitter.rate.min(400.0 / system.emitter.lifetime);
     }
     preset.validate().ok()?;
-    // A system that needs more textures is refused when a frame is prepared.
-    let fits = |settings| AttachmentSet::of(settings).iter().count() <= MAX_TARGET_ATTACHMENTS;
-    if !preset.systems.iter().all(|system| fits(&system.settings)) {
-        return None;
-    }
     let folder = std::path::Path::new("");
     Shot::from_folders(preset, folder, &AssetFolders::at(folder), SIZE).ok()
 }

@@ -112,7 +112,7 @@ fn images_are_found_in_the_shared_assets_folder() {
     // All errors in the order of the fields; notes are printed too.
     let lines: Vec<_> = said.lines().collect();
     assert_eq!((code, lines.len()), (Some(2), 3), "{said}");
-    let idle = "my.json: bad\n  systems[0].material.age_ramp has no effect: forward only\n  systems[0].material.noise has no effect: ";
+    let idle = "my.json: bad\n  systems[0].material.age_ramp has no effect: only at an age_color above 0\n  systems[0].material.noise has no effect: ";
     assert!(notes.starts_with(idle) && notes.lines().count() == 3, "{notes}");
     assert!(lines[0].contains("systems[0].material.diffuse_ramp: glow.png: No such file in "), "{said}");
     let (_, said, notes) = check(&["--assets", "team"]);
