@@ -144,7 +144,7 @@ fn stages() -> Vec<TestScene> {
     let shaded: fn(&mut Settings) = |s| s.shadow.strength = 0.7;
     let under_a_sky: fn(&mut Settings) =
         |s| (s.shadow.strength, s.shadow.by_depth, s.ambient.intensity) = (0.7, true, 1.0);
-    let burning: fn(&mut Settings) = |s| s.fire.intensity = 2.0;
+    let burning: fn(&mut Settings) = |s| (s.fire.intensity, s.ambient.intensity) = (2.0, 1.0);
     let mut stages = vec![
         scene(Technique::Soft, RenderPath::Raster, burning),
         scene(Technique::Soft, RenderPath::Raster, nothing),
