@@ -26,7 +26,7 @@
 @group(3) @binding(9) var texture_2: texture_storage_2d<rgba16float, write>;
 @group(3) @binding(10) var texture_3: texture_storage_2d<rgba16float, write>;
 
-// If SHADOW, FIRE or TINT.
+// If has_values().
 @group(3) @binding(11) var<storage, read> sprite_values: array<SpriteValues>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
@@ -62,8 +62,8 @@ fn init_texel(place: vec2u) -> Texel {
     return texel;
 }
 
-// Returns the texel with one more sprite, behind all accumulated ones. `values`: of the
-// sprite. `uv`: position in the sprite's square.
+// Returns the texel with one more sprite, behind all accumulated ones. `values`: those of the sprite. `uv`: position in its
+// square.
 fn accumulate_sprite(texel: Texel, sprite: TileSprite, values: SpriteValues, uv: vec2f, is_touched: bool) -> Texel {
     let in = fragment_of(sprite, texel.place, texel.ray, uv);
     let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
@@ -173,7 +173,7 @@ fn cooperative(
             // Most sprites of a bin do not touch this tile: reads only the rectangle of those.
             if rects_meet(rects[index], low, low + TILE) {
                 sprite = sprites[index];
-                if SHADOW || FIRE || TINT {
+                if has_values() {
                     values = sprite_values[index];
                 }
                 // Only texel centres count.
@@ -191,7 +191,7 @@ fn cooperative(
             let nearer = (1u << (local % 32u)) - 1u;
             let before = countOneBits(select(vec2u(kept.x & nearer, 0u), vec2u(kept.x, kept.y & nearer), local >= 32u));
             batch[before.x + before.y] = sprite;
-            if SHADOW || FIRE || TINT {
+            if has_values() {
                 batch_values[before.x + before.y] = values;
             }
         }
@@ -223,14 +223,14 @@ fn cooperative(
 }
 
 fn values_in_batch(at: u32) -> SpriteValues {
-    if SHADOW || FIRE || TINT {
+    if has_values() {
         return batch_values[at];
     }
     return SpriteValues();
 }
 
 fn values_of(index: u32) -> SpriteValues {
-    if SHADOW || FIRE || TINT {
+    if has_values() {
         return sprite_values[index];
     }
     return SpriteValues();

@@ -18,7 +18,7 @@
 @group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
 @group(3) @binding(4) var<storage, read_write> keys: array<u32>;
 @group(3) @binding(5) var<storage, read_write> indices: array<u32>;
-// If SHADOW, FIRE or TINT.
+// If has_values().
 @group(3) @binding(6) var<storage, read_write> sprite_values: array<SpriteValues>;
 
 // True: sprites are unsorted and their normals are weighted.
@@ -82,7 +82,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
     let visible = !placed.hidden && index < system.alive_count && all(first < last);
-    if SHADOW || FIRE || TINT {
+    if has_values() {
         sprite_values[index] = placed.values;
     }
     if visible {

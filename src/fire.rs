@@ -5,6 +5,7 @@ use glam::{UVec3, Vec2, Vec3};
 use crate::assets::material_assets::MaterialAssets;
 use crate::assets::ramp::Ramp;
 use crate::formula::color::luminance;
+use crate::formula::emitter::smoothstep_unit;
 use crate::formula::fire::heat_at;
 use crate::formula::hash::{pcg3d, unit};
 use crate::formula::lighting::{coverage, painted_share};
@@ -21,7 +22,7 @@ const FAINTEST: f32 = 0.004;
 /// they are large and hot. `None` if nothing burns. Add it to [`FrameInput::lights`](crate::FrameInput::lights) and to the
 /// lights of the scene.
 ///
-/// `particles`: all of the system, or a sample, each of which stands for `particles_per_sample`, as from
+/// `particles`: all of the system, or a sample, where one stands for `particles_per_sample`, as from
 /// [`EmitterSnapshot::sample`](crate::EmitterSnapshot::sample). `time`: seconds; the same time gives the same flicker.
 /// `seed`: each value flickers differently.
 pub fn light(
@@ -135,8 +136,7 @@ fn flicker(depth: f32, time: f32, seed: u32) -> f32 {
         let value = |step: i64| unit(pcg3d(UVec3::new(step as u32, octave, seed)).x) * 2.0 - 1.0;
         let first = at.floor() as i64;
         let blend = (at - at.floor()) as f32;
-        let smooth = blend * blend * (3.0 - 2.0 * blend);
-        value(first) + (value(first.wrapping_add(1)) - value(first)) * smooth
+        value(first) + (value(first.wrapping_add(1)) - value(first)) * smoothstep_unit(blend)
     };
     let sum: f32 = (0..).zip(FLICKER_RATES).map(|(octave, rate)| wave(octave, rate)).sum();
     (1.0 + 0.5 * depth * sum).max(0.0)
@@ -166,7 +166,7 @@ mod tests {
         // Far fewer than half of the particles are hot: it is nearer to the source than their mean.
         let mean = particles.iter().map(|particle| particle.position.y).sum::<f32>() / particles.len() as f32;
         assert!(found.position.y < mean, "{} {mean}", found.position.y);
-        // A sample has the same light.
+        // A sample has the same light, but for the chance by which it holds more or fewer of the hottest.
         let half: Vec<_> = particles.iter().copied().step_by(2).collect();
         let sampled = light(&half, 2, &settings, &assets, (9.0, 1)).unwrap();
         assert!((sampled.intensity / found.intensity - 1.0).abs() < 0.15, "{sampled:?} {found:?}");
@@ -198,6 +198,7 @@ mod tests {
     fn flicker_is_seekable_continuous_and_different_for_each_seed() {
         let at = |time, seed| flicker(0.8, time, seed);
         let times = || (0..4000).map(|step| step as f32 * 0.005);
+        // A hundred turns of the slow wave do not average out entirely.
         let mean = times().map(|time| at(time, 1)).sum::<f32>() / 4000.0;
         assert!((mean - 1.0).abs() < 0.06, "{mean}");
         assert!(times().all(|time| (at(time, 1) - at(time + 0.001, 1)).abs() < 0.05));

@@ -99,6 +99,11 @@ struct SpriteValues {
     tint: vec3f,
 }
 
+// True if the path tiled stores SpriteValues of sprites.
+fn has_values() -> bool {
+    return SHADOW || FIRE || TINT;
+}
+
 // Particle in view space, with the values that all fragments of its sprite share, as in SpriteVertex.
 struct ProjectedSprite {
     hidden: bool,

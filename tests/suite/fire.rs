@@ -28,9 +28,21 @@ fn drawn(scene: &TestScene) -> Image<Vec4> {
     scene.on_gpu(gpu()).picture
 }
 
+type Change = fn(&mut TestScene);
+
+/// Both renderers draw the same, and something else after `turn_off`: `most` dB alike.
+fn assert_agreement_and_effect(name: &str, mut scene: TestScene, turn_off: Change, most: f32) {
+    let (seen, reference) = (drawn(&scene), scene.on_cpu());
+    let same = psnr(&seen, &reference);
+    turn_off(&mut scene);
+    let effect = psnr(&drawn(&scene), &seen);
+    println!("{name}: {same:.1} dB, turned off {effect:.1} dB");
+    assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+    assert!(effect < most, "{name}: turned off {effect:.1} dB");
+}
+
 #[test]
 fn gpu_and_cpu_draw_the_same_fire() {
-    type Change = fn(&mut TestScene);
     let changes: &[(&str, Change)] = &[
         ("raster", |_| {}),
         ("forward", |s| s.settings.path = RenderPath::Forward),
@@ -62,19 +74,12 @@ fn gpu_and_cpu_draw_the_same_fire() {
         if needs_compute && !is_tiled_available() {
             continue;
         }
-        let (seen, reference) = (drawn(&scene), scene.on_cpu());
-        let same = psnr(&seen, &reference);
-        scene.settings.fire.intensity = 0.0;
-        let effect = psnr(&drawn(&scene), &seen);
-        println!("{name}: {same:.1} dB, without fire {effect:.1} dB");
-        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-        assert!(effect < 35.0, "{name}: without fire {effect:.1} dB");
+        assert_agreement_and_effect(name, scene, |s| s.settings.fire.intensity = 0.0, 35.0);
     }
 }
 
 #[test]
 fn gpu_and_cpu_draw_the_same_colors_by_age() {
-    type Change = fn(&mut TestScene);
     let changes: &[(&str, Change)] = &[
         ("raster", |_| {}),
         ("forward", |s| s.settings.path = RenderPath::Forward),
@@ -98,13 +103,7 @@ fn gpu_and_cpu_draw_the_same_colors_by_age() {
         if scene.settings.path == RenderPath::Tiled && !is_tiled_available() {
             continue;
         }
-        let (seen, reference) = (drawn(&scene), scene.on_cpu());
-        let same = psnr(&seen, &reference);
-        scene.settings.sprite.age_color = 0.0;
-        let effect = psnr(&drawn(&scene), &seen);
-        println!("{name}: {same:.1} dB, without colors {effect:.1} dB");
-        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-        assert!(effect < 40.0, "{name}: without colors {effect:.1} dB");
+        assert_agreement_and_effect(name, scene, |s| s.settings.sprite.age_color = 0.0, 40.0);
     }
 }
 

@@ -220,6 +220,7 @@ const INDIRECT: &[(&str, &str)] = &[
     ("heat_by_age", "calls painted_share with a ramp lookup; whole frames with fire cover it"),
     ("fragment_heat", "calls heat_at with a fragment"),
     ("fire_light", "calls emission with fire_from_moments"),
+    ("has_values", "decides only whether a buffer is read; tests of the tiled path cover it"),
     ("tint_by_age", "calls sample_ramp; whole frames with colors by age cover it"),
     ("values_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
     ("values_of", "reads a buffer; tests of the tiled path with shadow cover it"),

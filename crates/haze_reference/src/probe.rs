@@ -55,8 +55,7 @@ pub struct SystemProbe {
     pub six_way: Option<SixWay>,
     /// Lights that reach the system.
     pub lights: Vec<LightProbe>,
-    /// Light from sky and ground, times the intensity of diffuse light, of which it is a part. In modes that bake light it is
-    /// not known.
+    /// Part of `diffuse` that comes from sky and ground; not known in modes that bake light.
     pub ambient: Option<Vec3>,
     /// Diffuse light by the system's mode, times its intensity.
     pub diffuse: Vec3,
