@@ -1,0 +1,289 @@
+//! Work of a view ahead of Bevy's transparent pass: copies the opaque depth, gathers lights and systems, and accumulates the
+//! smoke. In views that are composited, draws its light too.
+
+use bevy::camera::MainPassResolutionOverride;
+use bevy::camera::visibility::RenderLayers;
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::ecs::prelude::*;
+use bevy::light::{AmbientLight, GlobalAmbientLight};
+use bevy::log::error_once;
+use bevy::math::Vec2;
+use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight};
+use bevy::render::camera::{ExtractedCamera, TemporalJitter};
+use bevy::render::diagnostic::RecordDiagnostics;
+use bevy::render::render_asset::RenderAssets;
+use bevy::render::render_resource::{
+    CommandEncoder, LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+    RenderPassDescriptor, StoreOp,
+};
+use bevy::render::renderer::{RenderContext, ViewQuery};
+use bevy::render::sync_world::MainEntity;
+use bevy::render::view::{ExtractedView, Msaa, ViewDepthStencilTexture, ViewTarget};
+use haze::frame::MAX_LIGHTS;
+use haze::settings::Ambient;
+use haze::{EmitterSnapshot, Error, FrameInput, ParticleSystem, Particles, SceneDepth, Settings, View, glam, wgpu};
+
+use crate::composite::CompositeResources;
+use crate::convert;
+use crate::extract::{ExtractedSmoke, ExtractedSmokes};
+use crate::gpu_asset::{GpuSmoke, GpuSystem};
+use crate::lights::{ambient_light, scene_lights};
+use crate::renderers::{PassFormat, SmokeRenderers, ViewRenderer, smokes_in_view, system_key};
+use crate::targets::{LIGHT_FORMAT, LightTarget, SmokeTargets, draws_directly};
+
+/// One particle system of one entity.
+struct ViewSystem<'a> {
+    smoke: &'a ExtractedSmoke,
+    system: &'a GpuSystem,
+    key: u64,
+    /// Emitter at the entity's time; not used if the entity has particles.
+    snapshot: EmitterSnapshot,
+    /// With the scene's ambient light.
+    settings: Settings,
+}
+
+pub(crate) fn prepare_smoke(
+    view: ViewQuery<(
+        &MainEntity,
+        &ExtractedCamera,
+        &ExtractedView,
+        &ViewTarget,
+        &ViewDepthStencilTexture,
+        &Msaa,
+        &SmokeTargets,
+        Option<&Tonemapping>,
+        Option<&RenderLayers>,
+        Option<&TemporalJitter>,
+        Option<&MainPassResolutionOverride>,
+        Option<&AmbientLight>,
+    )>,
+    (smokes, presets): (Res<ExtractedSmokes>, Res<RenderAssets<GpuSmoke>>),
+    points: Query<(Entity, &ExtractedPointLight, Option<&RenderLayers>)>,
+    suns: Query<(Entity, &ExtractedDirectionalLight, Option<&RenderLayers>)>,
+    global_ambient: Option<Res<GlobalAmbientLight>>,
+    composites: CompositeResources,
+    mut renderers: ResMut<SmokeRenderers>,
+    mut context: RenderContext,
+) {
+    let entity = view.entity();
+    let (camera_entity, camera, view, target, depth, msaa, targets, tonemapping, layers, jitter, resolution, ambient) =
+        view.into_inner();
+    let global_ambient = global_ambient.as_deref().cloned().unwrap_or_default();
+    let ambient = ambient_light(ambient, &global_ambient, camera.exposure);
+    let systems: Vec<_> = smokes_in_view(&smokes, layers)
+        .filter_map(|smoke| Some((smoke, presets.get(smoke.asset)?)))
+        .flat_map(|(smoke, preset)| view_systems(smoke, preset, ambient))
+        .collect();
+    if systems.is_empty() {
+        return;
+    }
+
+    let pass = pass_format(target, depth, *msaa, draws_directly(camera, tonemapping));
+    let kept = match renderers.ensure(entity, pass) {
+        Ok(kept) => kept,
+        Err(error) => {
+            error_once!("smoke in camera {}: {error}", camera_entity.id());
+            return;
+        }
+    };
+    let layers = layers.unwrap_or_default();
+    let origins: Vec<_> = systems.iter().map(|system| system.smoke.origin).collect();
+    let mut lights: Vec<_> = systems.iter().filter_map(fire_light).collect();
+    let scene = scene_lights(&points, &suns, (layers, camera.exposure), &origins);
+    lights.extend(scene.into_iter().map(|scene| scene.light));
+    lights.truncate(MAX_LIGHTS);
+
+    let recorder = context.diagnostic_recorder();
+    let recorder = recorder.as_deref();
+    let encoder = context.command_encoder();
+    let span = recorder.time_span(encoder, "smoke");
+    let attached: &wgpu::TextureView = &depth.attachment.texture.default_view;
+    // The copy is read while the original is attached.
+    let scene_depth = match &targets.depth_copy {
+        Some(copy) => {
+            let size = copy.texture.size();
+            encoder.copy_texture_to_texture(depth.texture().as_image_copy(), copy.texture.as_image_copy(), size);
+            SceneDepth::Buffer(&copy.default_view)
+        }
+        None => SceneDepth::Multisampled(attached),
+    };
+    let frame = FrameInput {
+        lights: &lights,
+        time: smokes.seconds as f32,
+        ..FrameInput::new(haze_view(view, jitter, resolution), scene_depth)
+    };
+    prepare_systems(kept, *camera_entity, encoder, &frame, systems);
+    match &targets.light {
+        Some(light) => {
+            let tonemapping = tonemapping.copied().unwrap_or(Tonemapping::None);
+            kept.composite = composites.bind(kept.composite.take(), light, &tonemapping);
+            draw_light(kept, encoder, light, attached);
+        }
+        None => kept.composite = None,
+    }
+    span.end(encoder);
+}
+
+/// Systems of an entity. Particles of its own replace the emitter of the first and hide the others.
+fn view_systems<'a>(
+    smoke: &'a ExtractedSmoke,
+    preset: &'a GpuSmoke,
+    ambient: glam::Vec3,
+) -> impl Iterator<Item = ViewSystem<'a>> {
+    let count = if smoke.particles.is_some() { 1 } else { preset.systems.len() };
+    preset.systems.iter().take(count).enumerate().map(move |(index, system)| {
+        // Up and down are alike: Bevy's ambient light has no direction.
+        let intensity = if ambient == glam::Vec3::ZERO { 0.0 } else { 1.0 };
+        let ambient = Ambient { intensity, sky_color: ambient, ground_color: ambient };
+        ViewSystem {
+            smoke,
+            system,
+            key: system_key(smoke.entity, index),
+            snapshot: system.preset.emitter_snapshot(smoke.seconds as f32),
+            settings: Settings { ambient, ..system.preset.settings },
+        }
+    })
+}
+
+impl ViewSystem<'_> {
+    fn input(&self) -> ParticleSystem<'_> {
+        let particles = match &self.smoke.particles {
+            Some(particles) => Particles::Slice(particles),
+            None => Particles::Emitter(&self.snapshot),
+        };
+        ParticleSystem {
+            world_from_particles: self.smoke.world_from_smoke,
+            ..ParticleSystem::new(self.key, particles, &self.settings, &self.system.material)
+        }
+    }
+}
+
+/// Light that the fire of a system casts on smoke.
+fn fire_light(system: &ViewSystem<'_>) -> Option<haze::Light> {
+    if !system.settings.burns() {
+        return None;
+    }
+    let ViewSystem { smoke, settings, .. } = system;
+    let mut sample = Vec::new();
+    let (particles, step) = match &smoke.particles {
+        Some(particles) => (particles.as_slice(), 1),
+        None => {
+            system.snapshot.sample(&mut sample);
+            (sample.as_slice(), system.snapshot.step)
+        }
+    };
+    let seed = system.key as u32;
+    let light = haze::fire::light(particles, step, settings, &system.system.images, (smoke.seconds as f32, seed))?;
+    let scale = smoke.world_from_smoke.x_axis.length();
+    Some(haze::Light {
+        position: smoke.world_from_smoke.transform_point3(light.position),
+        intensity: light.intensity * scale * scale,
+        range: (light.range * scale).max(0.01),
+        radius: light.radius * scale,
+        ..light
+    })
+}
+
+fn pass_format(target: &ViewTarget, depth: &ViewDepthStencilTexture, msaa: Msaa, direct: bool) -> PassFormat {
+    PassFormat {
+        color: if direct { target.main_texture_format() } else { LIGHT_FORMAT },
+        depth: depth.texture().format(),
+        samples: msaa.samples(),
+        composited: !direct,
+    }
+}
+
+fn haze_view(
+    view: &ExtractedView,
+    jitter: Option<&TemporalJitter>,
+    resolution: Option<&MainPassResolutionOverride>,
+) -> View {
+    let [x, y, width, height] = view.viewport.to_array();
+    let size = resolution.map_or(glam::UVec2::new(width, height), |size| glam::UVec2::from_array(size.0.to_array()));
+    let mut clip_from_view = view.clip_from_view;
+    if let Some(jitter) = jitter {
+        jitter.jitter_projection(&mut clip_from_view, Vec2::new(width as f32, height as f32));
+    }
+    let (view_from_world, clip_from_view) = convert::rigid_view(view.world_from_view.affine(), clip_from_view);
+    View {
+        origin: glam::UVec2::new(x, y),
+        ..View::new(convert::mat4(view_from_world), convert::mat4(clip_from_view), size)
+    }
+}
+
+/// Prepares the renderer. Leaves out systems that haze refuses, and logs why.
+fn prepare_systems(
+    kept: &mut ViewRenderer,
+    camera: MainEntity,
+    encoder: &mut CommandEncoder,
+    frame: &FrameInput<'_>,
+    mut systems: Vec<ViewSystem<'_>>,
+) {
+    kept.drawn.values_mut().for_each(Vec::clear);
+    let mut is_complete = true;
+    loop {
+        let inputs: Vec<_> = systems.iter().map(ViewSystem::input).collect();
+        let Err(error) = kept.renderer.prepare(encoder, &FrameInput { systems: &inputs, ..*frame }) else { break };
+        kept.report(camera, &error);
+        is_complete = false;
+        match refused_system(&error).filter(|index| *index < systems.len()) {
+            Some(index) => drop(systems.remove(index)),
+            None => return,
+        }
+    }
+    if is_complete {
+        kept.report_success();
+    }
+    for system in &systems {
+        if kept.renderer.depth_of(system.key).is_some() {
+            kept.drawn.entry(system.smoke.entity).or_default().push(system.key);
+        }
+    }
+    kept.drawn.retain(|_, keys| !keys.is_empty());
+    let depth = |key: &u64| kept.renderer.depth_of(*key).unwrap_or(0.0);
+    kept.drawn.values_mut().for_each(|keys| keys.sort_by(|a, b| depth(b).total_cmp(&depth(a))));
+}
+
+/// Index of the system that an error is about: its field is `systems[INDEX].…`.
+fn refused_system(error: &Error) -> Option<usize> {
+    let Error::Field(error) = error else { return None };
+    error.field.strip_prefix("systems[")?.split(']').next()?.parse().ok()
+}
+
+/// Draws the light of the smoke into its own target, tested by the view's depth.
+fn draw_light(kept: &ViewRenderer, encoder: &mut CommandEncoder, light: &LightTarget, depth: &wgpu::TextureView) {
+    let resolve_target = light.resolved.as_ref().map(|resolved| &*resolved.default_view);
+    let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some("smoke_light"),
+        color_attachments: &[Some(RenderPassColorAttachment {
+            view: &light.color.default_view,
+            depth_slice: None,
+            resolve_target,
+            ops: Operations {
+                load: LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: if resolve_target.is_some() { StoreOp::Discard } else { StoreOp::Store },
+            },
+        })],
+        depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: None,
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    kept.renderer.render(&mut pass);
+}
+
+#[cfg(test)]
+mod tests {
+    use haze::FieldError;
+
+    use super::*;
+
+    #[test]
+    fn errors_name_their_system() {
+        let error = |field: &str| Error::Field(FieldError::new(field, 1, "another"));
+        assert_eq!(refused_system(&error("systems[12].settings.path")), Some(12));
+        assert_eq!(refused_system(&error("lights[1].range")), None);
+    }
+}
