@@ -11,8 +11,10 @@ use bevy::log::LogPlugin;
 use bevy::prelude::*;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages};
+use bevy::render::renderer::RenderAdapter;
+use bevy::render::view::Msaa;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
-use bevy::render::{RenderPlugin, view::Msaa};
+use bevy::render::{RenderApp, RenderPlugin};
 use bevy::time::TimeUpdateStrategy;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
@@ -78,6 +80,11 @@ fn half_image() -> Image {
 }
 
 impl Host {
+    /// Another image to draw into.
+    pub fn new_target(&mut self) -> Handle<Image> {
+        self.app.world_mut().resource_mut::<Assets<Image>>().add(half_image())
+    }
+
     /// Camera of the scene, HDR and not tonemapped.
     pub fn camera(&mut self) -> Entity {
         let target = RenderTarget::Image(self.target.clone().into());
@@ -127,6 +134,13 @@ impl Host {
         self.boxes();
         self.lights();
         [camera, self.smoke()]
+    }
+
+    /// True if the device can draw with so many samples. Mesa's lavapipe has 1 and 4.
+    pub fn supports(&self, msaa: Msaa) -> bool {
+        let adapter = self.app.sub_app(RenderApp).world().resource::<RenderAdapter>();
+        let flags = adapter.get_texture_format_features(TextureFormat::Rgba16Float).flags;
+        flags.sample_count_supported(msaa.samples())
     }
 
     pub fn update(&mut self, frames: u32) {

@@ -15,7 +15,7 @@ fn smoke_in_bevy_is_smoke_by_haze_alone() {
     let all = vec![true; mask.len()];
     let (inside, everywhere) = (bevy.psnr(&alone, &mask), bevy.psnr(&alone, &all));
     println!("{inside:.1} dB in smoke, {everywhere:.1} dB everywhere");
-    // Smoke hides a tenth of the picture. Both draw with the same shaders; they differ in the edges of boxes.
+    // Both draw with the same shaders and nearly the same numbers: 94 dB with lavapipe.
     assert!(mask.iter().filter(|inside| **inside).count() > mask.len() / 20);
-    assert!(inside > 40.0 && everywhere > 40.0);
+    assert!(inside > 60.0 && everywhere > 60.0);
 }

@@ -35,10 +35,6 @@ impl Picture {
         image.try_into_dynamic().unwrap().save(file).unwrap();
     }
 
-    pub fn at(&self, x: u32, y: u32) -> [f32; 4] {
-        self.pixels[(y * self.width + x) as usize]
-    }
-
     /// Pixels that differ visibly from those of another picture.
     pub fn mask_of_difference(&self, other: &Self) -> Vec<bool> {
         let pairs = self.pixels.iter().zip(&other.pixels);
