@@ -32,8 +32,8 @@ fn setup(
 ) -> Result {
     yard::spawn_yard(&mut commands, &mut meshes, &mut materials);
     commands.spawn((Camera3d::default(), Hdr, Msaa::Sample4, Side::Left, yard::look_from(1.5, 2.0, 6.5)));
-    // The left camera has cleared the target.
-    let second = Camera { order: 1, clear_color: ClearColorConfig::None, ..default() };
+    // Each camera clears: with and without Hdr, they draw into textures of their own first.
+    let second = Camera { order: 1, ..default() };
     commands.spawn((Camera3d::default(), second, Msaa::Off, Side::Right, yard::look_from(-4.5, 2.4, 4.5)));
     commands.spawn(Smoke::from(smokes.add(SmokeAsset::builtin("campfire")?)));
     let lamp = PointLight { intensity: 300_000.0, color: Color::srgb(0.5, 0.65, 1.0), range: 30.0, ..default() };

@@ -6,6 +6,7 @@ use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use bevy::render::view::Msaa;
+use bevy_haze::{Smoke, SmokeAsset};
 
 use crate::host::{CAMERA, Host, SIZE, TARGET, host};
 use crate::picture::{Picture, count};
@@ -188,4 +189,20 @@ fn two_cameras_draw_into_images_of_their_own() {
     let again = host.picture();
     let decibels = again.psnr(&plain, &mask);
     assert!(decibels > 60.0, "{decibels}");
+}
+
+/// A campfire has two systems: flames and smoke.
+#[test]
+fn all_systems_of_a_preset_are_drawn_in_both_ways() {
+    let mut host = host("assets".as_ref());
+    let camera = host.camera();
+    host.boxes();
+    let smoke = host.smoke();
+    let fire = host.app.world_mut().resource_mut::<Assets<SmokeAsset>>().add(SmokeAsset::builtin("campfire").unwrap());
+    host.app.world_mut().entity_mut(smoke).insert(Smoke::from(fire));
+    let (direct, mask) = smoke_and_mask(&mut host, smoke);
+    host.app.world_mut().entity_mut(camera).remove::<Hdr>().insert(Tonemapping::Linear);
+    let decibels = host.picture().psnr(&direct, &mask);
+    println!("{decibels:.1} dB");
+    assert!(decibels > 50.0, "{decibels}");
 }
