@@ -41,6 +41,7 @@ mod lights;
 mod prepare;
 mod queue;
 mod renderers;
+mod shadow_maps;
 mod targets;
 
 pub use asset::{SmokeAsset, SmokeAssetError, SmokeSystem};

@@ -8,7 +8,7 @@ use bevy::ecs::prelude::*;
 use bevy::light::{AmbientLight, GlobalAmbientLight};
 use bevy::log::error_once;
 use bevy::math::Vec2;
-use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight};
+use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight, ViewLightEntities, ViewShadowBindings};
 use bevy::render::camera::{ExtractedCamera, TemporalJitter};
 use bevy::render::diagnostic::RecordDiagnostics;
 use bevy::render::render_asset::RenderAssets;
@@ -29,6 +29,7 @@ use crate::extract::{ExtractedSmoke, ExtractedSmokes};
 use crate::gpu_asset::{GpuSmoke, GpuSystem};
 use crate::lights::{ambient_light, scene_lights};
 use crate::renderers::{PassFormat, SmokeRenderers, ViewRenderer, smokes_in_view, system_key};
+use crate::shadow_maps::{LightShadow, ShadowViews};
 use crate::targets::{LIGHT_FORMAT, LightTarget, SmokeTargets, draws_directly};
 
 /// One particle system of one entity.
@@ -56,18 +57,35 @@ pub(crate) fn prepare_smoke(
         Option<&TemporalJitter>,
         Option<&MainPassResolutionOverride>,
         Option<&AmbientLight>,
+        Option<&ViewLightEntities>,
+        Option<&ViewShadowBindings>,
     )>,
     (smokes, presets): (Res<ExtractedSmokes>, Res<RenderAssets<GpuSmoke>>),
     points: Query<(Entity, &ExtractedPointLight, Option<&RenderLayers>)>,
     suns: Query<(Entity, &ExtractedDirectionalLight, Option<&RenderLayers>)>,
+    shadow_views: ShadowViews,
     global_ambient: Option<Res<GlobalAmbientLight>>,
     composites: CompositeResources,
     mut renderers: ResMut<SmokeRenderers>,
     mut context: RenderContext,
 ) {
     let entity = view.entity();
-    let (camera_entity, camera, view, target, depth, msaa, targets, tonemapping, layers, jitter, resolution, ambient) =
-        view.into_inner();
+    let (
+        camera_entity,
+        camera,
+        view,
+        target,
+        depth,
+        msaa,
+        targets,
+        tonemapping,
+        layers,
+        jitter,
+        resolution,
+        ambient,
+        view_lights,
+        shadow_bindings,
+    ) = view.into_inner();
     let global_ambient = global_ambient.as_deref().cloned().unwrap_or_default();
     let ambient = ambient_light(ambient, &global_ambient, camera.exposure);
     let systems: Vec<_> = smokes_in_view(&smokes, layers)
@@ -88,10 +106,17 @@ pub(crate) fn prepare_smoke(
     };
     let layers = layers.unwrap_or_default();
     let origins: Vec<_> = systems.iter().map(|system| system.smoke.origin).collect();
-    let mut lights: Vec<_> = systems.iter().filter_map(fire_light).collect();
-    let scene = scene_lights(&points, &suns, (layers, camera.exposure), &origins);
-    lights.extend(scene.into_iter().map(|scene| scene.light));
-    lights.truncate(MAX_LIGHTS);
+    let mut lights: Vec<_> = systems.iter().filter_map(fire_light).take(MAX_LIGHTS).collect();
+    let mut scene = scene_lights(&points, &suns, (layers, camera.exposure), &origins);
+    scene.truncate(MAX_LIGHTS - lights.len());
+    let shadows = match view_lights.zip(shadow_bindings) {
+        Some(shadowed) if systems.iter().any(|system| system.settings.shadow.by_depth) => {
+            shadow_views.maps(&scene, lights.len(), shadowed, origins[0])
+        }
+        _ => Vec::new(),
+    };
+    let shadow_maps: Vec<_> = shadows.iter().map(LightShadow::map).collect();
+    lights.extend(scene.iter().map(|scene| scene.light));
 
     let recorder = context.diagnostic_recorder();
     let recorder = recorder.as_deref();
@@ -109,6 +134,7 @@ pub(crate) fn prepare_smoke(
     };
     let frame = FrameInput {
         lights: &lights,
+        shadow_maps: &shadow_maps,
         time: smokes.seconds as f32,
         ..FrameInput::new(haze_view(view, jitter, resolution), scene_depth)
     };

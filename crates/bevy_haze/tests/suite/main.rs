@@ -6,4 +6,5 @@ mod host;
 mod parity;
 mod picture;
 mod reload;
+mod shadows;
 mod views;

@@ -1,0 +1,69 @@
+//! Shadows of meshes on smoke, by the shadow maps of every kind of light.
+
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+
+use crate::host::{Host, SIZE, host};
+use crate::picture::Picture;
+
+/// Light from the left over the top of a wall: the lower part of the smoke is in its shadow.
+fn light(host: &mut Host, kind: usize) -> Entity {
+    let at = Transform::from_xyz(-6.0, 2.2, 0.0).looking_at(Vec3::new(0.0, 1.6, 0.0), Vec3::Y);
+    let (intensity, range, shadow_maps_enabled) = (400_000.0, 40.0, true);
+    let world = host.app.world_mut();
+    match kind {
+        0 => world.spawn((PointLight { intensity, range, shadow_maps_enabled, ..default() }, at)).id(),
+        1 => world.spawn((SpotLight { intensity, range, shadow_maps_enabled, ..default() }, at)).id(),
+        _ => world.spawn((DirectionalLight { illuminance: 900.0, shadow_maps_enabled, ..default() }, at)).id(),
+    }
+}
+
+/// Mean light of the smoke in the upper and in the lower half of the picture.
+fn halves(picture: &Picture, mask: &[bool]) -> [f32; 2] {
+    let row = |index: usize| index as u32 / SIZE.x;
+    let upper: Vec<_> = mask.iter().enumerate().map(|(index, seen)| *seen && row(index) < SIZE.y * 2 / 5).collect();
+    let lower: Vec<_> = mask.iter().enumerate().map(|(index, seen)| *seen && row(index) > SIZE.y / 2).collect();
+    [picture.mean(&upper), picture.mean(&lower)]
+}
+
+#[test]
+fn a_wall_shades_smoke_under_every_kind_of_light() {
+    let mut host = host("assets".as_ref());
+    host.camera();
+    host.app.insert_resource(GlobalAmbientLight { brightness: 0.0, ..default() });
+    let world = host.app.world_mut();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::new(0.2, 4.0, 12.0));
+    let black = StandardMaterial { base_color: Color::BLACK, unlit: true, ..default() };
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(black);
+    let wall = (Mesh3d(mesh), MeshMaterial3d(material), Transform::from_xyz(-4.2, 0.05, 0.0), NotShadowCaster);
+    let wall = world.spawn(wall).id();
+    let empty = host.picture();
+    host.smoke();
+    // Faint lights that come first take the first layers.
+    for kind in 0..3 {
+        let other = light(&mut host, kind);
+        let mut other = host.app.world_mut().entity_mut(other);
+        other.insert(Transform::from_xyz(2.0, 4.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y));
+        if let Some(mut point) = other.get_mut::<PointLight>() {
+            point.intensity = 1.0;
+        }
+        if let Some(mut spot) = other.get_mut::<SpotLight>() {
+            spot.intensity = 1.0;
+        }
+        if let Some(mut sun) = other.get_mut::<DirectionalLight>() {
+            sun.illuminance = 0.001;
+        }
+    }
+    for (kind, name) in ["point", "spot", "directional"].into_iter().enumerate() {
+        let lamp = light(&mut host, kind);
+        host.app.world_mut().entity_mut(wall).insert(NotShadowCaster);
+        let lit = host.picture();
+        host.app.world_mut().entity_mut(wall).remove::<NotShadowCaster>();
+        let shaded = host.picture();
+        let mask = lit.mask_of_difference(&empty);
+        let ([upper_lit, lower_lit], [upper, lower]) = (halves(&lit, &mask), halves(&shaded, &mask));
+        println!("{name}: above the wall's shadow {upper_lit} {upper}, in it {lower_lit} {lower}");
+        assert!(upper > 0.9 * upper_lit && lower < 0.6 * lower_lit, "{name}");
+        host.app.world_mut().despawn(lamp);
+    }
+}
