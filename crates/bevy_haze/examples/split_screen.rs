@@ -7,7 +7,7 @@ mod yard;
 use bevy::camera::{Hdr, Viewport};
 use bevy::prelude::*;
 use bevy::render::view::Msaa;
-use bevy_haze::{Smoke, SmokeAsset, SmokePlugin};
+use bevy_haze::{Smoke, SmokeAsset, SmokeFireLight, SmokePlugin};
 
 #[derive(Component, Clone, Copy, PartialEq)]
 enum Side {
@@ -35,7 +35,9 @@ fn setup(
     // Each camera clears: with and without Hdr, they draw into textures of their own first.
     let second = Camera { order: 1, ..default() };
     commands.spawn((Camera3d::default(), second, Msaa::Off, Side::Right, yard::look_from(-4.5, 2.4, 4.5)));
-    commands.spawn(Smoke::from(smokes.add(SmokeAsset::builtin("campfire")?)));
+    let fire = Smoke::from(smokes.add(SmokeAsset::builtin("campfire")?));
+    let fire_light = PointLight { shadow_maps_enabled: true, ..default() };
+    commands.spawn((fire, children![(SmokeFireLight::default(), fire_light)]));
     let lamp = PointLight { intensity: 300_000.0, color: Color::srgb(0.5, 0.65, 1.0), range: 30.0, ..default() };
     commands.spawn((lamp, Transform::from_xyz(-3.5, 4.0, 3.0)));
     Ok(())

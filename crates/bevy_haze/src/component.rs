@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use bevy::asset::AssetEvent;
+use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
+use bevy::render::storage::ShaderBuffer;
 
 use crate::asset::SmokeAsset;
 use crate::convert;
@@ -97,7 +99,7 @@ impl SmokeParticles {
         }
         if let Some(list) = Arc::get_mut(&mut self.0) {
             list.clear();
-            list.extend(particles.into_iter().map(|particle| particle.to_haze()).filter(haze::Particle::is_valid));
+            list.extend(particles.into_iter().map(SmokeParticle::to_haze).filter(haze::Particle::is_valid));
         }
     }
 
@@ -135,7 +137,29 @@ impl Default for SmokeParticle {
     }
 }
 
+/// Particles of a simulation on the GPU, in the entity's local space. On an entity with [`Smoke`], they take the place that
+/// [`SmokeParticles`] have; those win if an entity has both.
+///
+/// Each particle is 8 `f32`, as [`SmokeParticle::to_array`] lists them. The buffer needs the usages `VERTEX` and `STORAGE`. A
+/// compute pass of the program writes it before the main pass of the first camera.
+#[derive(Component, Clone, Debug)]
+pub struct SmokeBuffer {
+    /// Buffer of the particles.
+    pub buffer: Handle<ShaderBuffer>,
+    /// Number of particles to draw, from the start of the buffer on. Dead ones among them have the radius 0.
+    pub count: u32,
+    /// Box that holds all particles with their radii, in the entity's local space. The CPU cannot see them: what is outside
+    /// may be cut off, and a box that is much too large costs time.
+    pub bounds: Aabb,
+}
+
 impl SmokeParticle {
+    /// Layout of a particle in a [`SmokeBuffer`]: x, y, z, radius, rotation, amount, frame, age.
+    pub const fn to_array(self) -> [f32; 8] {
+        let Self { position: Vec3 { x, y, z }, radius, rotation, amount, frame, age } = self;
+        [x, y, z, radius, rotation, amount, frame, age]
+    }
+
     fn to_haze(self) -> haze::Particle {
         let Self { position, radius, rotation, amount, frame, age } = self;
         haze::Particle { position: convert::vec3(position), radius, rotation, amount, frame, age }

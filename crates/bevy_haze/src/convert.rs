@@ -32,7 +32,7 @@ pub(crate) fn rigid_view(world_from_view: Affine3A, clip_from_view: Mat4) -> (Ma
         return (Mat4::from(world_from_view.inverse()), clip_from_view);
     }
     let mut rigid = world_from_view;
-    rigid.matrix3 = rigid.matrix3 * scale.recip();
+    rigid.matrix3 *= scale.recip();
     (Mat4::from(rigid.inverse()), clip_from_view * Mat4::from_scale(Vec3::splat(scale.recip())))
 }
 

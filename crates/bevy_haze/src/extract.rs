@@ -6,14 +6,16 @@ use bevy::asset::AssetId;
 use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::prelude::*;
 use bevy::math::Vec3;
-use bevy::prelude::{GlobalTransform, InheritedVisibility, Time, warn_once};
+use bevy::prelude::{ChildOf, GlobalTransform, InheritedVisibility, Time, warn_once};
 use bevy::render::Extract;
+use bevy::render::storage::ShaderBuffer;
 use bevy::render::sync_world::MainEntity;
-use haze::Particle;
+use haze::{Bounds, Particle};
 
 use crate::asset::SmokeAsset;
-use crate::component::{Smoke, SmokeClock, SmokeParticles};
+use crate::component::{Smoke, SmokeBuffer, SmokeClock, SmokeParticles};
 use crate::convert;
+use crate::fire_light::SmokeFireLight;
 
 /// Visible smoke of this frame.
 #[derive(Resource, Default)]
@@ -31,8 +33,21 @@ pub(crate) struct ExtractedSmoke {
     pub origin: Vec3,
     pub layers: RenderLayers,
     pub seconds: f64,
-    /// Particles in place of the emitter's.
-    pub particles: Option<Arc<Vec<Particle>>>,
+    pub source: Source,
+    /// True if its fire is a light of the scene.
+    pub has_fire_light: bool,
+}
+
+/// Source of the particles of an entity's smoke.
+pub(crate) enum Source {
+    /// The emitters of the preset.
+    Preset,
+    Particles(Arc<Vec<Particle>>),
+    Buffer {
+        buffer: AssetId<ShaderBuffer>,
+        count: u32,
+        bounds: Bounds,
+    },
 }
 
 pub(crate) fn extract_smoke(
@@ -47,12 +62,15 @@ pub(crate) fn extract_smoke(
             &InheritedVisibility,
             Option<&RenderLayers>,
             Option<&SmokeParticles>,
+            Option<&SmokeBuffer>,
         )>,
     >,
+    fire_lights: Extract<Query<&ChildOf, With<SmokeFireLight>>>,
 ) {
     extracted.seconds = time.elapsed_secs_f64();
     extracted.smokes.clear();
-    for (entity, smoke, clock, transform, visibility, layers, particles) in &smokes {
+    let burning: Vec<_> = fire_lights.iter().map(ChildOf::parent).collect();
+    for (entity, smoke, clock, transform, visibility, layers, particles, buffer) in &smokes {
         if !visibility.get() {
             continue;
         }
@@ -67,7 +85,15 @@ pub(crate) fn extract_smoke(
             origin: transform.translation(),
             layers: layers.cloned().unwrap_or_default(),
             seconds: clock.seconds,
-            particles: particles.map(|particles| particles.0.clone()),
+            source: match (particles, buffer) {
+                (Some(particles), _) => Source::Particles(particles.0.clone()),
+                (None, Some(SmokeBuffer { buffer, count, bounds })) => {
+                    let [min, max] = [bounds.min(), bounds.max()].map(|corner| convert::vec3(corner.into()));
+                    Source::Buffer { buffer: buffer.id(), count: *count, bounds: Bounds { min, max } }
+                }
+                (None, None) => Source::Preset,
+            },
+            has_fire_light: burning.contains(&entity),
         });
     }
 }

@@ -36,6 +36,7 @@ mod component;
 mod composite;
 mod convert;
 mod extract;
+mod fire_light;
 mod gpu_asset;
 mod lights;
 mod prepare;
@@ -45,7 +46,8 @@ mod shadow_maps;
 mod targets;
 
 pub use asset::{SmokeAsset, SmokeAssetError, SmokeSystem};
-pub use component::{Smoke, SmokeClock, SmokeParticle, SmokeParticles};
+pub use component::{Smoke, SmokeBuffer, SmokeClock, SmokeParticle, SmokeParticles};
+pub use fire_light::SmokeFireLight;
 pub use haze;
 
 use bevy::asset::embedded_asset;
@@ -76,8 +78,10 @@ impl Plugin for SmokePlugin {
         app.init_asset::<SmokeAsset>()
             .init_asset_loader::<asset::SmokeLoader>()
             .register_type::<SmokeClock>()
+            .register_type::<SmokeFireLight>()
             .add_plugins(RenderAssetPlugin::<GpuSmoke>::default())
-            .add_systems(PreUpdate, (component::advance_clocks, component::log_reloads));
+            .add_systems(PreUpdate, (component::advance_clocks, component::log_reloads))
+            .add_systems(PostUpdate, fire_light::update_fire_lights.before(TransformSystems::Propagate));
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_resource::<ExtractedSmokes>()

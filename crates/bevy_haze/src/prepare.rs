@@ -17,15 +17,19 @@ use bevy::render::render_resource::{
     RenderPassDescriptor, StoreOp,
 };
 use bevy::render::renderer::{RenderContext, ViewQuery};
+use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::sync_world::MainEntity;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthStencilTexture, ViewTarget};
 use haze::frame::MAX_LIGHTS;
 use haze::settings::Ambient;
-use haze::{EmitterSnapshot, Error, FrameInput, ParticleSystem, Particles, SceneDepth, Settings, View, glam, wgpu};
+use haze::{
+    EmitterSnapshot, Error, FrameInput, ParticleBuffer, ParticleSystem, Particles, SceneDepth, Settings, View, glam,
+    wgpu,
+};
 
 use crate::composite::CompositeResources;
 use crate::convert;
-use crate::extract::{ExtractedSmoke, ExtractedSmokes};
+use crate::extract::{ExtractedSmoke, ExtractedSmokes, Source};
 use crate::gpu_asset::{GpuSmoke, GpuSystem};
 use crate::lights::{ambient_light, scene_lights};
 use crate::renderers::{PassFormat, SmokeRenderers, ViewRenderer, smokes_in_view, system_key};
@@ -37,8 +41,10 @@ struct ViewSystem<'a> {
     smoke: &'a ExtractedSmoke,
     system: &'a GpuSystem,
     key: u64,
-    /// Emitter at the entity's time; not used if the entity has particles.
+    /// Emitter at the entity's time; not used if the entity has particles of its own.
     snapshot: EmitterSnapshot,
+    /// Particles on the GPU.
+    buffer: Option<&'a wgpu::Buffer>,
     /// With the scene's ambient light.
     settings: Settings,
 }
@@ -61,6 +67,7 @@ pub(crate) fn prepare_smoke(
         Option<&ViewShadowBindings>,
     )>,
     (smokes, presets): (Res<ExtractedSmokes>, Res<RenderAssets<GpuSmoke>>),
+    buffers: Res<RenderAssets<GpuShaderBuffer>>,
     points: Query<(Entity, &ExtractedPointLight, Option<&RenderLayers>)>,
     suns: Query<(Entity, &ExtractedDirectionalLight, Option<&RenderLayers>)>,
     shadow_views: ShadowViews,
@@ -90,7 +97,7 @@ pub(crate) fn prepare_smoke(
     let ambient = ambient_light(ambient, &global_ambient, camera.exposure);
     let systems: Vec<_> = smokes_in_view(&smokes, layers)
         .filter_map(|smoke| Some((smoke, presets.get(smoke.asset)?)))
-        .flat_map(|(smoke, preset)| view_systems(smoke, preset, ambient))
+        .flat_map(|(smoke, preset)| view_systems(smoke, preset, &buffers, ambient))
         .collect();
     if systems.is_empty() {
         return;
@@ -150,13 +157,22 @@ pub(crate) fn prepare_smoke(
     span.end(encoder);
 }
 
-/// Systems of an entity. Particles of its own replace the emitter of the first and hide the others.
+/// Systems of an entity. Particles of its own replace the emitter of the first and hide the others; a buffer that is not
+/// there yet shows nothing.
 fn view_systems<'a>(
     smoke: &'a ExtractedSmoke,
     preset: &'a GpuSmoke,
+    buffers: &'a RenderAssets<GpuShaderBuffer>,
     ambient: glam::Vec3,
 ) -> impl Iterator<Item = ViewSystem<'a>> {
-    let count = if smoke.particles.is_some() { 1 } else { preset.systems.len() };
+    let (count, buffer) = match &smoke.source {
+        Source::Preset => (preset.systems.len(), None),
+        Source::Particles(_) => (1, None),
+        Source::Buffer { buffer, .. } => {
+            let buffer: Option<&wgpu::Buffer> = buffers.get(*buffer).map(|buffer| &*buffer.buffer);
+            (usize::from(buffer.is_some()), buffer)
+        }
+    };
     preset.systems.iter().take(count).enumerate().map(move |(index, system)| {
         // Up and down are alike: Bevy's ambient light has no direction.
         let intensity = if ambient == glam::Vec3::ZERO { 0.0 } else { 1.0 };
@@ -166,6 +182,7 @@ fn view_systems<'a>(
             system,
             key: system_key(smoke.entity, index),
             snapshot: system.preset.emitter_snapshot(smoke.seconds as f32),
+            buffer,
             settings: Settings { ambient, ..system.preset.settings },
         }
     })
@@ -173,30 +190,36 @@ fn view_systems<'a>(
 
 impl ViewSystem<'_> {
     fn input(&self) -> ParticleSystem<'_> {
-        let particles = match &self.smoke.particles {
-            Some(particles) => Particles::Slice(particles),
-            None => Particles::Emitter(&self.snapshot),
+        let (particles, bounds) = match (&self.smoke.source, self.buffer) {
+            (Source::Particles(particles), _) => (Particles::Slice(particles), None),
+            (Source::Buffer { count, bounds, .. }, Some(buffer)) => {
+                (Particles::Buffer(ParticleBuffer::new(buffer, *count)), Some(*bounds))
+            }
+            _ => (Particles::Emitter(&self.snapshot), None),
         };
         ParticleSystem {
             world_from_particles: self.smoke.world_from_smoke,
+            bounds,
             ..ParticleSystem::new(self.key, particles, &self.settings, &self.system.material)
         }
     }
 }
 
-/// Light that the fire of a system casts on smoke.
+/// Light that the fire of a system casts on smoke, unless it is a light of the scene.
 fn fire_light(system: &ViewSystem<'_>) -> Option<haze::Light> {
-    if !system.settings.burns() {
+    if !system.settings.burns() || system.smoke.has_fire_light {
         return None;
     }
     let ViewSystem { smoke, settings, .. } = system;
     let mut sample = Vec::new();
-    let (particles, step) = match &smoke.particles {
-        Some(particles) => (particles.as_slice(), 1),
-        None => {
+    let (particles, step) = match &smoke.source {
+        Source::Particles(particles) => (particles.as_slice(), 1),
+        Source::Preset => {
             system.snapshot.sample(&mut sample);
             (sample.as_slice(), system.snapshot.step)
         }
+        // The CPU cannot see these.
+        Source::Buffer { .. } => return None,
     };
     let seed = system.key as u32;
     let light = haze::fire::light(particles, step, settings, &system.system.images, (smoke.seconds as f32, seed))?;

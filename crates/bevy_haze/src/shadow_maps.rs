@@ -77,7 +77,7 @@ impl ShadowViews<'_, '_> {
             let last = first_layer + clip_from_world.len() as u32;
             let fits = (1..=MAX_LAYERS).contains(&clip_from_world.len())
                 && last <= texture.size().depth_or_array_layers
-                && clip_from_world.iter().all(|matrix| matrix.is_finite());
+                && clip_from_world.iter().all(Mat4::is_finite);
             let bias = clip_from_world.first().map_or(0.0, |clip| bias(clip, smoke));
             fits.then(|| {
                 let clip_from_world = clip_from_world.iter().copied().map(convert::mat4).collect();

@@ -228,6 +228,5 @@ fn read(
     queue.submit([encoder.finish()]);
     buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
     device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let picture = Picture::from_half(SIZE.x, SIZE.y, &buffer.slice(..).get_mapped_range().unwrap());
-    picture
+    Picture::from_half(SIZE.x, SIZE.y, &buffer.slice(..).get_mapped_range().unwrap())
 }

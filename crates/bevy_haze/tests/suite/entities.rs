@@ -1,10 +1,13 @@
 //! Components on the entities of smoke and of lights.
 
 use bevy::camera::Hdr;
+use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::RenderLayers;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
-use bevy_haze::{Smoke, SmokeAsset, SmokeClock, SmokeParticle, SmokeParticles};
+use bevy::render::render_resource::BufferUsages;
+use bevy::render::storage::ShaderBuffer;
+use bevy_haze::{Smoke, SmokeAsset, SmokeBuffer, SmokeClock, SmokeFireLight, SmokeParticle, SmokeParticles};
 
 use crate::host::{Host, SECONDS, host};
 use crate::picture::{Picture, count};
@@ -72,6 +75,60 @@ fn own_particles_replace_the_emitter() {
     host.app.world_mut().get_mut::<SmokeParticles>(smoke).unwrap().set([]);
     let empty = mask(&mut host, smoke).1;
     assert_eq!(count(&empty), 0);
+}
+
+#[test]
+fn particles_in_a_buffer_look_like_those_of_the_cpu() {
+    let mut host = host("assets".as_ref());
+    let [_, smoke] = host.scene();
+    let puffs: Vec<_> = (0..40_u8)
+        .map(|index| {
+            let t = f32::from(index) / 40.0;
+            let position = Vec3::new(2.0 * t - 1.5, 1.5 + (7.0 * t).sin(), (5.0 * t).cos());
+            SmokeParticle { position, rotation: 9.0 * t, frame: 20.0 * t, ..default() }
+        })
+        .collect();
+    host.app.world_mut().entity_mut(smoke).insert(SmokeParticles::new(puffs.iter().copied()));
+    let (slice, seen) = mask(&mut host, smoke);
+    let floats: Vec<f32> = puffs.iter().flat_map(|puff| puff.to_array()).collect();
+    let mut buffer = ShaderBuffer::from(floats);
+    buffer.buffer_usage |= BufferUsages::VERTEX;
+    let buffer = host.app.world_mut().resource_mut::<Assets<ShaderBuffer>>().add(buffer);
+    let bounds = Aabb::from_min_max(Vec3::new(-2.5, -0.5, -2.0), Vec3::new(2.0, 3.5, 2.0));
+    let buffer = SmokeBuffer { buffer, count: 40, bounds };
+    host.app.world_mut().entity_mut(smoke).remove::<SmokeParticles>().insert(buffer);
+    let decibels = host.picture().psnr(&slice, &seen);
+    println!("{decibels:.1} dB");
+    assert!(count(&seen) > 1000 && decibels > 35.0, "{decibels}");
+}
+
+#[test]
+fn a_fire_lights_meshes() {
+    let mut host = host("assets".as_ref());
+    let camera = host.camera();
+    host.app.world_mut().entity_mut(camera).insert(bevy::camera::Exposure::default());
+    let smoke = host.smoke();
+    let fire = host.app.world_mut().resource_mut::<Assets<SmokeAsset>>().add(SmokeAsset::builtin("campfire").unwrap());
+    let world = host.app.world_mut();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::new(12.0, 0.2, 12.0));
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
+    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), Transform::from_xyz(0.0, -0.2, 0.0)));
+    world.entity_mut(smoke).insert(Smoke::from(fire));
+    let dark = host.picture();
+    let light = host.app.world_mut().spawn((SmokeFireLight::default(), ChildOf(smoke))).id();
+    let lit = host.picture();
+    // Ground at the lower edge, in front of the flames.
+    let ground: Vec<_> = (0..dark.pixels.len()).map(|index| index > dark.pixels.len() * 9 / 10).collect();
+    println!("{} {}", dark.mean(&ground), lit.mean(&ground));
+    assert!(lit.mean(&ground) > 2.0 * dark.mean(&ground));
+    // The flames are as bright as before: their light is not counted twice. The upper half shows no ground.
+    let flames = |picture: &Picture| picture.pixels[..dark.pixels.len() / 2].to_vec();
+    let brightest = |picture: &Picture| flames(picture).iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
+    println!("{} {}", brightest(&dark), brightest(&lit));
+    assert!((brightest(&lit) / brightest(&dark) - 1.0).abs() < 0.1);
+    host.app.world_mut().entity_mut(smoke).remove::<Smoke>();
+    host.update(2);
+    assert!(host.app.world().get::<PointLight>(light).unwrap().intensity < 1e-3);
 }
 
 #[test]

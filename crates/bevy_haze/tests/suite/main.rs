@@ -1,5 +1,7 @@
 //! Draws smoke in Bevy without a window, and compares the pictures.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
+
 mod alone;
 mod entities;
 mod host;
