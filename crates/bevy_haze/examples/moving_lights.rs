@@ -4,6 +4,7 @@ mod common;
 #[path = "common/yard.rs"]
 mod yard;
 
+use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 use bevy_haze::{Smoke, SmokePlugin};
 
@@ -33,15 +34,16 @@ fn setup(
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     yard::spawn_yard(&mut commands, &mut meshes, &mut materials);
-    commands.spawn((Camera3d::default(), yard::look_from(1.5, 2.2, 8.0)));
+    commands.spawn((Camera3d::default(), yard::look_from(1.6, 2.0, 9.0)));
     commands.spawn(Smoke::from(assets.load("column.smoke.json")));
 
-    let lamp = |color, height, start| {
+    let bulb = meshes.add(Sphere::new(0.06));
+    for (color, height, start) in [(Color::srgb(1.0, 0.6, 0.3), 2.4, 2.5), (Color::srgb(0.35, 0.55, 1.0), 1.5, 5.6)] {
         let light = PointLight { color, intensity: 400_000.0, range: 20.0, shadow_maps_enabled: true, ..default() };
-        (light, Transform::default(), Circling { height, start })
-    };
-    commands.spawn(lamp(Color::srgb(1.0, 0.6, 0.3), 2.4, 2.6));
-    commands.spawn(lamp(Color::srgb(0.35, 0.55, 1.0), 1.6, 5.6));
+        let material = materials.add(StandardMaterial { base_color: color, unlit: true, ..default() });
+        let body = (Mesh3d(bulb.clone()), MeshMaterial3d(material), NotShadowCaster);
+        commands.spawn((light, Transform::default(), Circling { height, start }, children![body]));
+    }
     let spot = SpotLight { intensity: 2_000_000.0, range: 30.0, outer_angle: 0.35, inner_angle: 0.2, ..default() };
     commands.spawn((spot, Swinging, Transform::default()));
 }

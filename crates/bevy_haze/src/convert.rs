@@ -11,7 +11,8 @@ pub(crate) fn mat4(m: Mat4) -> glam::Mat4 {
     glam::Mat4::from_cols_array(&m.to_cols_array())
 }
 
-/// Placement without shear and with one scale, and whether it had to be changed. `None` if it is flat or not finite.
+/// Placement without shear and with one scale, and whether it had to be changed. It may mirror. `None` if it is flat or not
+/// finite.
 pub(crate) fn placement(world_from_smoke: Affine3A) -> Option<(glam::Mat4, bool)> {
     let (scale, rotation, translation) = world_from_smoke.to_scale_rotation_translation();
     // The geometric mean keeps the volume.
@@ -19,7 +20,7 @@ pub(crate) fn placement(world_from_smoke: Affine3A) -> Option<(glam::Mat4, bool)
     if !world_from_smoke.is_finite() || mean <= 0.0 || !rotation.is_finite() {
         return None;
     }
-    let placed = Mat4::from_scale_rotation_translation(Vec3::splat(mean), rotation, translation);
+    let placed = Mat4::from_scale_rotation_translation(scale.signum() * mean, rotation, translation);
     let changed = !placed.abs_diff_eq(Mat4::from(world_from_smoke), 1.0e-3 * mean);
     Some((mat4(placed), changed))
 }
@@ -62,6 +63,20 @@ mod tests {
         assert!(!changed && (even.determinant() - 8.0).abs() < 1e-4);
         let (uneven, changed) = at(Vec3::new(1.0, 2.0, 4.0)).unwrap();
         assert!(changed && (uneven.x_axis.x - 2.0).abs() < 1e-4);
+        let (mirrored, changed) = at(Vec3::splat(-2.0)).unwrap();
+        assert!(
+            !changed
+                && mirrored.abs_diff_eq(
+                    glam::Mat4::from_cols_array_2d(&[
+                        [-2.0, 0.0, 0.0, 0.0],
+                        [0.0, -2.0, 0.0, 0.0],
+                        [0.0, 0.0, -2.0, 0.0],
+                        [1.0, 0.0, 0.0, 1.0],
+                    ]),
+                    1e-4
+                ),
+            "{mirrored}"
+        );
         assert!(at(Vec3::new(1.0, 0.0, 1.0)).is_none());
     }
 }

@@ -5,6 +5,8 @@ use bevy::camera::MainPassResolutionOverride;
 use bevy::camera::visibility::RenderLayers;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::ecs::prelude::*;
+use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemParam;
 use bevy::light::{AmbientLight, GlobalAmbientLight};
 use bevy::log::error_once;
 use bevy::math::Vec2;
@@ -49,112 +51,118 @@ struct ViewSystem<'a> {
     settings: Settings,
 }
 
+/// Camera in the render world.
+#[derive(QueryData)]
+pub(crate) struct CameraView {
+    camera_entity: &'static MainEntity,
+    camera: &'static ExtractedCamera,
+    view: &'static ExtractedView,
+    target: &'static ViewTarget,
+    depth: &'static ViewDepthStencilTexture,
+    msaa: &'static Msaa,
+    targets: &'static SmokeTargets,
+    tonemapping: Option<&'static Tonemapping>,
+    layers: Option<&'static RenderLayers>,
+    jitter: Option<&'static TemporalJitter>,
+    resolution: Option<&'static MainPassResolutionOverride>,
+    ambient: Option<&'static AmbientLight>,
+    shadows: Option<(&'static ViewLightEntities, &'static ViewShadowBindings)>,
+}
+
+/// Lights of the scene.
+#[derive(SystemParam)]
+pub(crate) struct LightSources<'w, 's> {
+    points: Query<'w, 's, (Entity, &'static ExtractedPointLight, Option<&'static RenderLayers>)>,
+    suns: Query<'w, 's, (Entity, &'static ExtractedDirectionalLight, Option<&'static RenderLayers>)>,
+    ambient: Option<Res<'w, GlobalAmbientLight>>,
+    shadow_views: ShadowViews<'w, 's>,
+}
+
+/// Lights of a frame, and the shadow maps of some of them.
+struct FrameLights<'a> {
+    lights: Vec<haze::Light>,
+    shadows: Vec<LightShadow<'a>>,
+}
+
 pub(crate) fn prepare_smoke(
-    view: ViewQuery<(
-        &MainEntity,
-        &ExtractedCamera,
-        &ExtractedView,
-        &ViewTarget,
-        &ViewDepthStencilTexture,
-        &Msaa,
-        &SmokeTargets,
-        Option<&Tonemapping>,
-        Option<&RenderLayers>,
-        Option<&TemporalJitter>,
-        Option<&MainPassResolutionOverride>,
-        Option<&AmbientLight>,
-        Option<&ViewLightEntities>,
-        Option<&ViewShadowBindings>,
-    )>,
+    view: ViewQuery<CameraView>,
     (smokes, presets): (Res<ExtractedSmokes>, Res<RenderAssets<GpuSmoke>>),
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
-    points: Query<(Entity, &ExtractedPointLight, Option<&RenderLayers>)>,
-    suns: Query<(Entity, &ExtractedDirectionalLight, Option<&RenderLayers>)>,
-    shadow_views: ShadowViews,
-    global_ambient: Option<Res<GlobalAmbientLight>>,
+    sources: LightSources,
     composites: CompositeResources,
     mut renderers: ResMut<SmokeRenderers>,
     mut context: RenderContext,
 ) {
     let entity = view.entity();
-    let (
-        camera_entity,
-        camera,
-        view,
-        target,
-        depth,
-        msaa,
-        targets,
-        tonemapping,
-        layers,
-        jitter,
-        resolution,
-        ambient,
-        view_lights,
-        shadow_bindings,
-    ) = view.into_inner();
-    let global_ambient = global_ambient.as_deref().cloned().unwrap_or_default();
-    let ambient = ambient_light(ambient, &global_ambient, camera.exposure);
-    let systems: Vec<_> = smokes_in_view(&smokes, layers)
+    let view = view.into_inner();
+    let global_ambient = sources.ambient.as_deref().cloned().unwrap_or_default();
+    let ambient = ambient_light(view.ambient, &global_ambient, view.camera.exposure);
+    let systems: Vec<_> = smokes_in_view(&smokes, view.layers)
         .filter_map(|smoke| Some((smoke, presets.get(smoke.asset)?)))
         .flat_map(|(smoke, preset)| view_systems(smoke, preset, &buffers, ambient))
         .collect();
     if systems.is_empty() {
+        renderers.clear_drawn(entity);
         return;
     }
-
-    let pass = pass_format(target, depth, *msaa, draws_directly(camera, tonemapping));
-    let kept = match renderers.ensure(entity, pass) {
+    let kept = match renderers.ensure(entity, pass_format(&view)) {
         Ok(kept) => kept,
         Err(error) => {
-            error_once!("smoke in camera {}: {error}", camera_entity.id());
+            error_once!("smoke in camera {}: {error}", view.camera_entity.id());
             return;
         }
     };
-    let layers = layers.unwrap_or_default();
-    let origins: Vec<_> = systems.iter().map(|system| system.smoke.origin).collect();
-    let mut lights: Vec<_> = systems.iter().filter_map(fire_light).take(MAX_LIGHTS).collect();
-    let mut scene = scene_lights(&points, &suns, (layers, camera.exposure), &origins);
-    scene.truncate(MAX_LIGHTS - lights.len());
-    let shadows = match view_lights.zip(shadow_bindings) {
-        Some(shadowed) if systems.iter().any(|system| system.settings.shadow.by_depth) => {
-            shadow_views.maps(&scene, lights.len(), shadowed, origins[0])
-        }
-        _ => Vec::new(),
-    };
-    let shadow_maps: Vec<_> = shadows.iter().map(LightShadow::map).collect();
-    lights.extend(scene.iter().map(|scene| scene.light));
 
     let recorder = context.diagnostic_recorder();
     let recorder = recorder.as_deref();
     let encoder = context.command_encoder();
     let span = recorder.time_span(encoder, "smoke");
-    let attached: &wgpu::TextureView = &depth.attachment.texture.default_view;
-    // The copy is read while the original is attached.
-    let scene_depth = match &targets.depth_copy {
-        Some(copy) => {
-            let size = copy.texture.size();
-            encoder.copy_texture_to_texture(depth.texture().as_image_copy(), copy.texture.as_image_copy(), size);
-            SceneDepth::Buffer(&copy.default_view)
-        }
-        None => SceneDepth::Multisampled(attached),
-    };
+    let frame_lights = sources.of_frame(&view, &systems);
+    let shadow_maps: Vec<_> = frame_lights.shadows.iter().map(LightShadow::map).collect();
     let frame = FrameInput {
-        lights: &lights,
+        lights: &frame_lights.lights,
         shadow_maps: &shadow_maps,
         time: smokes.seconds as f32,
-        ..FrameInput::new(haze_view(view, jitter, resolution), scene_depth)
+        ..FrameInput::new(haze_view(&view), read_depth(&view, encoder))
     };
-    prepare_systems(kept, *camera_entity, encoder, &frame, systems);
-    match &targets.light {
-        Some(light) => {
-            let tonemapping = tonemapping.copied().unwrap_or(Tonemapping::None);
-            kept.composite = composites.bind(kept.composite.take(), light, &tonemapping);
-            draw_light(kept, encoder, light, attached);
-        }
-        None => kept.composite = None,
-    }
+    prepare_systems(kept, *view.camera_entity, encoder, &frame, systems);
+    kept.composite = view.targets.light.as_ref().and_then(|light| {
+        draw_light(kept, encoder, light, view.depth);
+        let tonemapping = view.tonemapping.copied().unwrap_or(Tonemapping::None);
+        composites.bind(kept.composite.take(), light, &tonemapping)
+    });
     span.end(encoder);
+}
+
+impl LightSources<'_, '_> {
+    /// Lights of fires, which are not exposed, and those of the scene.
+    fn of_frame<'a>(&self, view: &CameraViewItem<'a, '_>, systems: &[ViewSystem<'_>]) -> FrameLights<'a> {
+        let origins: Vec<_> = systems.iter().map(|system| system.smoke.origin).collect();
+        let mut lights: Vec<_> = systems.iter().filter_map(fire_light).take(MAX_LIGHTS).collect();
+        let layers = view.layers.unwrap_or_default();
+        let mut scene = scene_lights(&self.points, &self.suns, (layers, view.camera.exposure), &origins);
+        scene.truncate(MAX_LIGHTS - lights.len());
+        let is_shaded = systems.iter().any(|system| system.settings.shadow.by_depth);
+        let shadows = match (view.shadows.filter(|_| is_shaded), origins.first()) {
+            (Some(views), Some(origin)) => self.shadow_views.maps(&scene, lights.len(), views, *origin),
+            _ => Vec::new(),
+        };
+        lights.extend(scene.iter().map(|scene| scene.light));
+        FrameLights { lights, shadows }
+    }
+}
+
+/// Depth that haze reads: a copy, because Bevy's pass is attached to the original, or the multisampled original, which haze
+/// resolves first.
+fn read_depth<'a>(view: &CameraViewItem<'a, '_>, encoder: &mut CommandEncoder) -> SceneDepth<'a> {
+    match &view.targets.depth_copy {
+        Some(copy) => {
+            let size = copy.texture.size();
+            encoder.copy_texture_to_texture(view.depth.texture().as_image_copy(), copy.texture.as_image_copy(), size);
+            SceneDepth::Buffer(&copy.default_view)
+        }
+        None => SceneDepth::Multisampled(&view.depth.attachment.texture.default_view),
+    }
 }
 
 /// Systems of an entity. Particles of its own replace the emitter of the first and hide the others; a buffer that is not
@@ -233,24 +241,25 @@ fn fire_light(system: &ViewSystem<'_>) -> Option<haze::Light> {
     })
 }
 
-fn pass_format(target: &ViewTarget, depth: &ViewDepthStencilTexture, msaa: Msaa, direct: bool) -> PassFormat {
+fn pass_format(view: &CameraViewItem<'_, '_>) -> PassFormat {
+    let direct = draws_directly(view.camera, view.tonemapping);
     PassFormat {
-        color: if direct { target.main_texture_format() } else { LIGHT_FORMAT },
-        depth: depth.texture().format(),
-        samples: msaa.samples(),
+        color: if direct { view.target.main_texture_format() } else { LIGHT_FORMAT },
+        depth: view.depth.texture().format(),
+        samples: view.msaa.samples(),
         composited: !direct,
     }
 }
 
-fn haze_view(
-    view: &ExtractedView,
-    jitter: Option<&TemporalJitter>,
-    resolution: Option<&MainPassResolutionOverride>,
-) -> View {
+fn haze_view(camera: &CameraViewItem<'_, '_>) -> View {
+    let view = camera.view;
     let [x, y, width, height] = view.viewport.to_array();
-    let size = resolution.map_or(glam::UVec2::new(width, height), |size| glam::UVec2::from_array(size.0.to_array()));
+    let size = match camera.resolution {
+        Some(size) => glam::UVec2::from_array(size.0.to_array()),
+        None => glam::UVec2::new(width, height),
+    };
     let mut clip_from_view = view.clip_from_view;
-    if let Some(jitter) = jitter {
+    if let Some(jitter) = camera.jitter {
         jitter.jitter_projection(&mut clip_from_view, Vec2::new(width as f32, height as f32));
     }
     let (view_from_world, clip_from_view) = convert::rigid_view(view.world_from_view.affine(), clip_from_view);
@@ -300,7 +309,7 @@ fn refused_system(error: &Error) -> Option<usize> {
 }
 
 /// Draws the light of the smoke into its own target, tested by the view's depth.
-fn draw_light(kept: &ViewRenderer, encoder: &mut CommandEncoder, light: &LightTarget, depth: &wgpu::TextureView) {
+fn draw_light(kept: &ViewRenderer, encoder: &mut CommandEncoder, light: &LightTarget, depth: &ViewDepthStencilTexture) {
     let resolve_target = light.resolved.as_ref().map(|resolved| &*resolved.default_view);
     let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
         label: Some("smoke_light"),
@@ -314,7 +323,7 @@ fn draw_light(kept: &ViewRenderer, encoder: &mut CommandEncoder, light: &LightTa
             },
         })],
         depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
-            view: depth,
+            view: &depth.attachment.texture.default_view,
             depth_ops: None,
             stencil_ops: None,
         }),

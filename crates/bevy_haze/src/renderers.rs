@@ -31,8 +31,8 @@ pub(crate) struct ViewRenderer {
     pub drawn: HashMap<MainEntity, Vec<u64>>,
     /// Bindings of the composite, for views that are tonemapped in the shader of each mesh.
     pub composite: Option<CompositeBinding>,
-    /// Error of the last frame, which is logged once.
-    reported: Option<String>,
+    /// Errors since the last frame without one, which have been logged.
+    reported: Vec<String>,
 }
 
 /// Pass that a renderer draws in.
@@ -65,11 +65,19 @@ impl SmokeRenderers {
             };
             let renderer = Renderer::new(&self.context, &descriptor)?;
             let drawn = HashMap::new();
-            let made = ViewRenderer { pass, renderer, drawn, composite: None, reported: None };
+            let made = ViewRenderer { pass, renderer, drawn, composite: None, reported: Vec::new() };
             self.views.insert(view, made);
         }
         // The entry was made above if it was missing.
         self.views.get_mut(&view).ok_or_else(|| Error::Device("the renderer of a view is missing".into()))
+    }
+
+    /// Lets a view show nothing in this frame.
+    pub fn clear_drawn(&mut self, view: Entity) {
+        if let Some(kept) = self.views.get_mut(&view) {
+            kept.drawn.clear();
+            kept.composite = None;
+        }
     }
 
     pub fn get(&self, view: Entity) -> Option<&ViewRenderer> {
@@ -78,21 +86,21 @@ impl SmokeRenderers {
 }
 
 impl ViewRenderer {
-    /// Logs an error unless it is that of the last frame. `field` is what identifies it: its numbers may change.
+    /// Logs an error unless it has been logged. Its field identifies it: its numbers may change.
     pub fn report(&mut self, view: MainEntity, error: &Error) {
         let identity = match error {
             Error::Field(error) => error.field.clone(),
             other => other.to_string(),
         };
-        if self.reported.as_ref() != Some(&identity) {
+        if !self.reported.contains(&identity) {
             error!("smoke in camera {}: {error}", view.id());
-            self.reported = Some(identity);
+            self.reported.push(identity);
         }
     }
 
-    /// Allows the next error to be logged.
+    /// Lets errors be logged again.
     pub fn report_success(&mut self) {
-        self.reported = None;
+        self.reported.clear();
     }
 }
 

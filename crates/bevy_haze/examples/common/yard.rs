@@ -15,5 +15,5 @@ pub fn spawn_yard(commands: &mut Commands, meshes: &mut Assets<Mesh>, materials:
 }
 
 pub fn look_from(x: f32, y: f32, z: f32) -> Transform {
-    Transform::from_xyz(x, y, z).looking_at(Vec3::new(0.2, 1.5, 0.0), Vec3::Y)
+    Transform::from_xyz(x, y, z).looking_at(Vec3::new(0.3, 1.7, 0.0), Vec3::Y)
 }

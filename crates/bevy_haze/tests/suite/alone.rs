@@ -1,5 +1,7 @@
 //! The scene drawn by haze and wgpu alone, on the device of a Bevy app.
 
+use std::time::{Duration, Instant};
+
 use bevy::camera::{CameraProjection, PerspectiveProjection};
 use bevy::math::{Mat4, Vec3};
 use bevy::prelude::Transform;
@@ -68,6 +70,11 @@ fn lights() -> [Light; 3] {
 
 /// Picture of the scene, as [`Host::scene`] draws it.
 pub fn picture(host: &Host) -> Picture {
+    draw(host, 1).0
+}
+
+/// Picture of the scene after some frames, and the time that `prepare` took in each.
+pub fn draw(host: &Host, frames: u32) -> (Picture, Vec<Duration>) {
     let world = host.app.sub_app(RenderApp).world();
     let device = world.resource::<RenderDevice>().wgpu_device().clone();
     let queue: &wgpu::Queue = world.resource::<RenderQueue>();
@@ -82,9 +89,6 @@ pub fn picture(host: &Host) -> Picture {
     let color = texture(&device, wgpu::TextureFormat::Rgba16Float, usage | wgpu::TextureUsages::COPY_SRC);
     let depth = texture(&device, wgpu::TextureFormat::Depth32Float, usage | wgpu::TextureUsages::TEXTURE_BINDING);
     let (color_view, depth_view) = (color.create_view(&Default::default()), depth.create_view(&Default::default()));
-
-    let mut encoder = device.create_command_encoder(&Default::default());
-    draw_boxes(&device, &mut encoder, clip_from_view * view_from_world, &color_view, &depth_view);
 
     let context = Context::new(&device, queue, None);
     let mut renderer = Renderer::new(&context, &Descriptor::default()).unwrap();
@@ -101,19 +105,29 @@ pub fn picture(host: &Host) -> Picture {
         systems: &[ParticleSystem::new(0, Particles::Emitter(&snapshot), &settings, &material)],
         ..FrameInput::new(View::new(mat4(view_from_world), mat4(clip_from_view), size), SceneDepth::Buffer(&depth_view))
     };
-    renderer.prepare(&mut encoder, &frame).unwrap();
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[attachment(&color_view, wgpu::LoadOp::Load)],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &depth_view,
-            depth_ops: None,
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    });
-    renderer.render(&mut pass);
-    drop(pass);
-    read(&device, queue, encoder, &color)
+    let mut times = Vec::new();
+    loop {
+        let mut encoder = device.create_command_encoder(&Default::default());
+        draw_boxes(&device, &mut encoder, clip_from_view * view_from_world, &color_view, &depth_view);
+        let started = Instant::now();
+        renderer.prepare(&mut encoder, &frame).unwrap();
+        times.push(started.elapsed());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[attachment(&color_view, wgpu::LoadOp::Load)],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth_view,
+                depth_ops: None,
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        renderer.render(&mut pass);
+        drop(pass);
+        let picture = read(&device, queue, encoder, &color);
+        if times.len() as u32 == frames {
+            return (picture, times);
+        }
+    }
 }
 
 fn texture(device: &wgpu::Device, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {

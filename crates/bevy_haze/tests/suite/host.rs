@@ -9,6 +9,7 @@ use bevy::camera::{Exposure, Hdr, RenderTarget};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::log::LogPlugin;
 use bevy::prelude::*;
+use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages};
 use bevy::render::renderer::RenderAdapter;
@@ -56,7 +57,7 @@ pub fn host(assets: &std::path::Path) -> Host {
             .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
             .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() }),
     );
-    app.add_plugins(SmokePlugin);
+    app.add_plugins((SmokePlugin, RenderDiagnosticsPlugin));
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     let [r, g, b] = BACKGROUND;
     app.insert_resource(ClearColor(Color::linear_rgb(r, g, b)));

@@ -2,9 +2,11 @@
 
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Hdr, RenderTarget, ScalingMode, Viewport};
+use bevy::core_pipeline::oit::OrderIndependentTransparencySettings;
 use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
+use bevy::render::camera::TemporalJitter;
 use bevy::render::view::Msaa;
 use bevy_haze::{Smoke, SmokeAsset};
 
@@ -191,9 +193,31 @@ fn two_cameras_draw_into_images_of_their_own() {
     assert!(decibels > 60.0, "{decibels}");
 }
 
-/// A campfire has two systems: flames and smoke.
 #[test]
-fn all_systems_of_a_preset_are_drawn_in_both_ways() {
+fn order_independent_transparency_and_jitter_keep_smoke() {
+    let mut host = host("assets".as_ref());
+    let [camera, smoke] = host.scene();
+    let (plain, mask) = smoke_and_mask(&mut host, smoke);
+    host.app.world_mut().entity_mut(camera).insert(OrderIndependentTransparencySettings::default());
+    let decibels = host.picture().psnr(&plain, &mask);
+    println!("{decibels:.1} dB");
+    assert!(decibels > 50.0, "order-independent: {decibels}");
+    host.app.world_mut().entity_mut(camera).remove::<OrderIndependentTransparencySettings>();
+    // A jitter of a whole pixel shifts smoke and boxes alike.
+    host.app.world_mut().entity_mut(camera).insert(TemporalJitter { offset: Vec2::new(1.0, 0.0) });
+    let mut jittered = host.picture();
+    let pixels = jittered.pixels.clone();
+    let decibels = [-1, 1].map(|shift| {
+        let from = |index: usize| (index as i64 + shift).clamp(0, pixels.len() as i64 - 1) as usize;
+        jittered.pixels = (0..pixels.len()).map(|index| pixels[from(index)]).collect();
+        jittered.psnr(&plain, &mask)
+    });
+    println!("jitter: {decibels:?}");
+    assert!(decibels[0].max(decibels[1]) > 40.0);
+}
+
+#[test]
+fn fire_is_drawn_alike_in_both_ways() {
     let mut host = host("assets".as_ref());
     let camera = host.camera();
     host.boxes();
