@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use bevy::asset::AssetEvent;
 use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy::render::storage::ShaderBuffer;
@@ -176,17 +175,6 @@ pub(crate) fn advance_clocks(
     for (smoke, mut clock) in &mut smokes {
         if !clock.paused && step > 0.0 && assets.contains(smoke.id()) {
             clock.seconds += step * clock.speed;
-        }
-    }
-}
-
-/// Logs presets that have been read again.
-pub(crate) fn log_reloads(mut events: MessageReader<AssetEvent<SmokeAsset>>, server: Res<AssetServer>) {
-    for event in events.read() {
-        if let AssetEvent::Modified { id } = event
-            && let Some(path) = server.get_path(*id)
-        {
-            info!("{path}: smoke reloaded");
         }
     }
 }

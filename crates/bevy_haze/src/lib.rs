@@ -55,7 +55,7 @@ use bevy::core_pipeline::core_3d::{
     Transparent3d, main_opaque_pass_3d, main_transparent_pass_3d, prepare_core_3d_depth_textures,
 };
 use bevy::core_pipeline::{Core3d, Core3dSystems};
-use bevy::pbr::main_transmissive_pass_3d;
+use bevy::pbr::{PbrPlugin, main_transmissive_pass_3d};
 use bevy::prelude::*;
 use bevy::render::render_asset::RenderAssetPlugin;
 use bevy::render::render_phase::DrawFunctions;
@@ -67,21 +67,28 @@ use extract::ExtractedSmokes;
 use gpu_asset::GpuSmoke;
 use renderers::SmokeRenderers;
 
-/// Draws entities with [`Smoke`] in every 3D camera. Add it after `DefaultPlugins`. Without a graphics device, assets load
-/// and clocks run, and nothing is drawn.
+/// Draws entities with [`Smoke`] in every 3D camera. Add it after `DefaultPlugins`; without them, it logs an error and does
+/// nothing. Without a graphics device or `PbrPlugin`, assets load and clocks run, and nothing is drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SmokePlugin;
 
 impl Plugin for SmokePlugin {
     fn build(&self, app: &mut App) {
+        if !app.is_plugin_added::<AssetPlugin>() {
+            error!("SmokePlugin comes before AssetPlugin, or without it; expected (DefaultPlugins, SmokePlugin)");
+            return;
+        }
         embedded_asset!(app, "composite.wesl");
         app.init_asset::<SmokeAsset>()
             .init_asset_loader::<asset::SmokeLoader>()
             .register_type::<SmokeClock>()
             .register_type::<SmokeFireLight>()
             .add_plugins(RenderAssetPlugin::<GpuSmoke>::default())
-            .add_systems(PreUpdate, (component::advance_clocks, component::log_reloads))
+            .add_systems(PreUpdate, component::advance_clocks.run_if(resource_exists::<Time>))
             .add_systems(PostUpdate, fire_light::update_fire_lights.before(TransformSystems::Propagate));
+        if !app.is_plugin_added::<PbrPlugin>() {
+            return;
+        }
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_resource::<ExtractedSmokes>()

@@ -9,5 +9,6 @@ mod host;
 mod parity;
 mod picture;
 mod reload;
+mod setups;
 mod shadows;
 mod views;
