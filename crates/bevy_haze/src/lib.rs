@@ -44,6 +44,7 @@ mod queue;
 mod renderers;
 mod shadow_maps;
 mod targets;
+mod view_system;
 
 pub use asset::{SmokeAsset, SmokeAssetError, SmokeSystem};
 pub use component::{Smoke, SmokeBuffer, SmokeClock, SmokeParticle, SmokeParticles};

@@ -23,33 +23,17 @@ use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::sync_world::MainEntity;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthStencilTexture, ViewTarget};
 use haze::frame::MAX_LIGHTS;
-use haze::settings::Ambient;
-use haze::{
-    EmitterSnapshot, Error, FrameInput, ParticleBuffer, ParticleSystem, Particles, SceneDepth, Settings, View, glam,
-    wgpu,
-};
+use haze::{Error, FrameInput, SceneDepth, View, glam, wgpu};
 
 use crate::composite::CompositeResources;
 use crate::convert;
-use crate::extract::{ExtractedSmoke, ExtractedSmokes, Source};
-use crate::gpu_asset::{GpuSmoke, GpuSystem};
+use crate::extract::ExtractedSmokes;
+use crate::gpu_asset::GpuSmoke;
 use crate::lights::{ambient_light, scene_lights};
-use crate::renderers::{PassFormat, SmokeRenderers, ViewRenderer, smokes_in_view, system_key};
+use crate::renderers::{PassFormat, SmokeRenderers, ViewRenderer, smokes_in_view};
 use crate::shadow_maps::{LightShadow, ShadowViews};
 use crate::targets::{LIGHT_FORMAT, LightTarget, SmokeTargets, draws_directly};
-
-/// One particle system of one entity.
-struct ViewSystem<'a> {
-    smoke: &'a ExtractedSmoke,
-    system: &'a GpuSystem,
-    key: u64,
-    /// Emitter at the entity's time; not used if the entity has particles of its own.
-    snapshot: EmitterSnapshot,
-    /// Particles on the GPU.
-    buffer: Option<&'a wgpu::Buffer>,
-    /// With the scene's ambient light.
-    settings: Settings,
-}
+use crate::view_system::{ViewSystem, fire_light, view_systems};
 
 /// Camera in the render world.
 #[derive(QueryData)]
@@ -163,82 +147,6 @@ fn read_depth<'a>(view: &CameraViewItem<'a, '_>, encoder: &mut CommandEncoder) -
         }
         None => SceneDepth::Multisampled(&view.depth.attachment.texture.default_view),
     }
-}
-
-/// Systems of an entity. Particles of its own replace the emitter of the first and hide the others; a buffer that is not
-/// there yet shows nothing.
-fn view_systems<'a>(
-    smoke: &'a ExtractedSmoke,
-    preset: &'a GpuSmoke,
-    buffers: &'a RenderAssets<GpuShaderBuffer>,
-    ambient: glam::Vec3,
-) -> impl Iterator<Item = ViewSystem<'a>> {
-    let (count, buffer) = match &smoke.source {
-        Source::Preset => (preset.systems.len(), None),
-        Source::Particles(_) => (1, None),
-        Source::Buffer { buffer, .. } => {
-            let buffer: Option<&wgpu::Buffer> = buffers.get(*buffer).map(|buffer| &*buffer.buffer);
-            (usize::from(buffer.is_some()), buffer)
-        }
-    };
-    preset.systems.iter().take(count).enumerate().map(move |(index, system)| {
-        // Up and down are alike: Bevy's ambient light has no direction.
-        let intensity = if ambient == glam::Vec3::ZERO { 0.0 } else { 1.0 };
-        let ambient = Ambient { intensity, sky_color: ambient, ground_color: ambient };
-        ViewSystem {
-            smoke,
-            system,
-            key: system_key(smoke.entity, index),
-            snapshot: system.preset.emitter_snapshot(smoke.seconds as f32),
-            buffer,
-            settings: Settings { ambient, ..system.preset.settings },
-        }
-    })
-}
-
-impl ViewSystem<'_> {
-    fn input(&self) -> ParticleSystem<'_> {
-        let (particles, bounds) = match (&self.smoke.source, self.buffer) {
-            (Source::Particles(particles), _) => (Particles::Slice(particles), None),
-            (Source::Buffer { count, bounds, .. }, Some(buffer)) => {
-                (Particles::Buffer(ParticleBuffer::new(buffer, *count)), Some(*bounds))
-            }
-            _ => (Particles::Emitter(&self.snapshot), None),
-        };
-        ParticleSystem {
-            world_from_particles: self.smoke.world_from_smoke,
-            bounds,
-            ..ParticleSystem::new(self.key, particles, &self.settings, &self.system.material)
-        }
-    }
-}
-
-/// Light that the fire of a system casts on smoke, unless it is a light of the scene.
-fn fire_light(system: &ViewSystem<'_>) -> Option<haze::Light> {
-    if !system.settings.burns() || system.smoke.has_fire_light {
-        return None;
-    }
-    let ViewSystem { smoke, settings, .. } = system;
-    let mut sample = Vec::new();
-    let (particles, step) = match &smoke.source {
-        Source::Particles(particles) => (particles.as_slice(), 1),
-        Source::Preset => {
-            system.snapshot.sample(&mut sample);
-            (sample.as_slice(), system.snapshot.step)
-        }
-        // The CPU cannot see these.
-        Source::Buffer { .. } => return None,
-    };
-    let seed = system.key as u32;
-    let light = haze::fire::light(particles, step, settings, &system.system.images, (smoke.seconds as f32, seed))?;
-    let scale = smoke.world_from_smoke.x_axis.length();
-    Some(haze::Light {
-        position: smoke.world_from_smoke.transform_point3(light.position),
-        intensity: light.intensity * scale * scale,
-        range: (light.range * scale).max(0.01),
-        radius: light.radius * scale,
-        ..light
-    })
 }
 
 fn pass_format(view: &CameraViewItem<'_, '_>) -> PassFormat {
