@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use bevy::diagnostic::DiagnosticsStore;
+use bevy::diagnostic::{Diagnostic, DiagnosticsStore};
 
 use crate::alone;
 use crate::host::host;
@@ -21,7 +21,7 @@ fn cpu_time_of_a_view() {
         host.update(1);
         let store = host.app.world().resource::<DiagnosticsStore>();
         let spans = store.iter().filter(|span| span.path().as_str().ends_with("smoke/elapsed_cpu"));
-        plugin.extend(spans.filter_map(|span| span.value()).map(|milliseconds| milliseconds / 1e3));
+        plugin.extend(spans.filter_map(Diagnostic::value).map(|milliseconds| milliseconds / 1e3));
     }
     for (name, times) in [("haze alone", &mut alone), ("plugin with haze", &mut plugin)] {
         times.drain(..WARM_UP.min(times.len()));
