@@ -19,9 +19,11 @@ use haze::{Light, LightKind, glam};
 use crate::convert;
 
 /// Largest coordinate of a light that haze accepts, metres.
-const MAX_POSITION: f32 = 1.0e5;
+pub(crate) const MAX_POSITION: f32 = 1.0e5;
 /// Largest intensity of a light that haze accepts.
-const MAX_INTENSITY: f32 = 1.0e9;
+pub(crate) const MAX_INTENSITY: f32 = 1.0e9;
+/// Largest radius of a light that haze accepts, metres.
+pub(crate) const MAX_RADIUS: f32 = 1.0e4;
 /// Largest half angle of a spot light that haze accepts, degrees, and of its core.
 const MAX_ANGLES: [f32; 2] = [89.9, 89.0];
 
@@ -71,7 +73,7 @@ fn point_light(point: &ExtractedPointLight, exposure: f32) -> Option<Light> {
     (point.range > 0.0).then_some(Light {
         kind,
         range: point.range.max(0.01),
-        radius: if point.radius.is_finite() { point.radius.clamp(0.0, 1.0e4) } else { 0.0 },
+        radius: if point.radius.is_finite() { point.radius.clamp(0.0, MAX_RADIUS) } else { 0.0 },
         inner_angle,
         outer_angle,
         ..light

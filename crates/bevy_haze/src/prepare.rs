@@ -68,6 +68,7 @@ struct FrameLights<'a> {
     shadows: Vec<LightShadow<'a>>,
 }
 
+/// Records the work of a view.
 pub(crate) fn prepare_smoke(
     view: ViewQuery<CameraView>,
     (smokes, presets): (Res<ExtractedSmokes>, Res<RenderAssets<GpuSmoke>>),

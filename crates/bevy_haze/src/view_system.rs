@@ -7,6 +7,7 @@ use haze::{EmitterSnapshot, ParticleBuffer, ParticleSystem, Particles, Settings,
 
 use crate::extract::{ExtractedSmoke, Source};
 use crate::gpu_asset::{GpuSmoke, GpuSystem};
+use crate::lights::{MAX_INTENSITY, MAX_POSITION, MAX_RADIUS};
 use crate::renderers::system_key;
 
 /// One particle system of one entity.
@@ -54,6 +55,7 @@ pub(crate) fn view_systems<'a>(
 }
 
 impl ViewSystem<'_> {
+    /// The system as haze takes it.
     pub fn input(&self) -> ParticleSystem<'_> {
         let (particles, bounds) = match (&self.smoke.source, self.buffer) {
             (Source::Particles(particles), _) => (Particles::Slice(particles), None),
@@ -89,11 +91,12 @@ pub(crate) fn fire_light(system: &ViewSystem<'_>) -> Option<haze::Light> {
     let seed = system.key as u32;
     let light = haze::fire::light(particles, step, settings, &system.system.images, (smoke.seconds as f32, seed))?;
     let scale = smoke.world_from_smoke.x_axis.length();
-    Some(haze::Light {
-        position: smoke.world_from_smoke.transform_point3(light.position),
-        intensity: light.intensity * scale * scale,
+    let position = smoke.world_from_smoke.transform_point3(light.position);
+    (position.abs().max_element() <= MAX_POSITION).then(|| haze::Light {
+        position,
+        intensity: (light.intensity * scale * scale).min(MAX_INTENSITY),
         range: (light.range * scale).max(0.01),
-        radius: light.radius * scale,
+        radius: (light.radius * scale).min(MAX_RADIUS),
         ..light
     })
 }

@@ -189,6 +189,21 @@ fn smoke_is_sorted_among_transparent_meshes() {
     }
 }
 
+#[test]
+fn invalid_settings_hide_their_own_smoke_only() {
+    let mut host = host("assets".as_ref());
+    let [_, smoke] = host.scene();
+    let (plain, seen) = mask(&mut host, smoke);
+    let mut invalid = SmokeAsset::builtin("column").unwrap();
+    invalid.systems[0].preset.settings.boost = -1.0;
+    let invalid = host.app.world_mut().resource_mut::<Assets<SmokeAsset>>().add(invalid);
+    for _ in 0..2 {
+        host.app.world_mut().spawn((Smoke::from(invalid.clone()), Transform::from_xyz(-1.0, 0.0, 0.0)));
+    }
+    let decibels = host.picture().psnr(&plain, &seen);
+    assert!(decibels > 60.0, "{decibels}");
+}
+
 /// Errors of one entity leave the others alone.
 #[test]
 fn odd_transforms_do_no_harm() {
