@@ -121,3 +121,10 @@ impl Plugin for SmokePlugin {
         }
     }
 }
+
+/// Compiles the code in the README as a test.
+#[cfg(doctest)]
+mod documents {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+}
