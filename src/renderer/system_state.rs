@@ -221,6 +221,7 @@ impl SystemState {
             scale: setup.rect.scale,
             depth_limit: setup.uniform.depth_limit,
             lit_depth: setup.lit_depth,
+            smoke_depths: self.measure().is_none().then_some([setup.uniform.smoke_near, setup.uniform.smoke_far]),
         })
     }
 

@@ -4,7 +4,7 @@ use glam::camera::rh;
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
 use haze::image::Image;
 use haze::settings::*;
-use haze::{Bounds, Light, LightKind, Particle};
+use haze::{AttachmentRole, Bounds, Light, LightKind, Particle};
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
@@ -472,5 +472,32 @@ fn smoke_out_of_sight_casts_shadow() {
         let effect = psnr(&drawn(&scene), &seen);
         println!("{}: {same:.1} dB, without {effect:.1} dB", path.name());
         assert!(same >= MIN_PSNR && effect < 45.0, "{}: {same:.1} dB, without {effect:.1} dB", path.name());
+    }
+}
+
+#[test]
+fn mean_depth_of_the_smoke_is_in_a_texture_of_the_target() {
+    if !is_tiled_available() {
+        return;
+    }
+    for path in [RenderPath::Raster, RenderPath::Tiled] {
+        let mut scene = shaded();
+        (scene.settings.path, scene.settings.shadow.by_depth, scene.wall_everywhere) = (path, true, true);
+        let puff = |x: f32, z: f32| Particle { position: vec3(x, 0.0, z), radius: 0.8, ..scene.particles[0] };
+        scene.particles = vec![puff(-1.5, -6.0), puff(1.5, -4.0)];
+        let frame = scene.on_gpu(gpu());
+        let targets = frame.renderer.targets(0).unwrap();
+        let slot = targets.roles.slot(AttachmentRole::Depth).unwrap();
+        let texels = gpu().read_rgba16float(targets.accumulation[slot].texture()).unwrap();
+        let width = targets.accumulation[slot].texture().width();
+        let [near, far] = targets.smoke_depths.unwrap();
+        for particle in &scene.particles {
+            let ndc = scene.view.clip_from_view.project_point3(particle.position).truncate();
+            let pixel = (ndc * glam::vec2(0.5, -0.5) + 0.5) * SIZE.as_vec2();
+            let texel = (pixel / targets.scale as f32).floor().as_ivec2() - targets.origin;
+            let depth = texels[texel.y as usize * width as usize + texel.x as usize];
+            let mean = near + (far - near) * depth.x / depth.w;
+            assert!((mean + particle.position.z).abs() < 0.05, "{path:?}: {mean} at {}", particle.position);
+        }
     }
 }

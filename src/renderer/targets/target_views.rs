@@ -29,4 +29,7 @@ pub struct TargetViews<'a> {
     pub depth_limit: f32,
     /// View depth of the plane on which light is evaluated, metres. See [`ParticleSystem::depth`](crate::ParticleSystem::depth).
     pub lit_depth: f32,
+    /// View depths, metres, that the texture of [`AttachmentRole::Depth`](crate::AttachmentRole::Depth) has as 0 and 1. `None`
+    /// for particles in a host's buffer, whose depths only the GPU has measured.
+    pub smoke_depths: Option<[f32; 2]>,
 }
