@@ -77,7 +77,8 @@ fn fragment(in: SpriteVertex) -> Accumulated {
         return accumulated_from(vec4f(OVERDRAW_STEP), none);
     }
     let weight = fragment.amount * in.weight;
-    let values = SpriteValues(in.depths_and_heat, in.tint);
+    // The stretch comes with the vertex.
+    let values = SpriteValues(in.depths_and_heat, in.tint, 0u);
     let attachments = attachments_from_fragment(fragment, weight, values, in.centre_radius);
     if SIX_WAY {
         // Saves blending two targets: six of ten texels of a sprite are clear.

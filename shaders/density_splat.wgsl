@@ -21,8 +21,8 @@ struct Splat {
 const WORKGROUP: u32 = 64u;
 
 @group(3) @binding(0) var<uniform> splat: Splat;
-// Two per particle, as in Particle.
-@group(3) @binding(1) var<storage, read> particles: array<vec4f>;
+// PARTICLE_VECTORS per particle.
+@group(3) @binding(1) var<storage, read> particles: array<vec4u>;
 // Two words per cell, the lower one first.
 @group(3) @binding(2) var<storage, read_write> density: array<atomic<u32>>;
 
@@ -32,13 +32,14 @@ fn add_sprite(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     if index >= min(splat.count, system.alive_count) {
         return;
     }
-    let at = splat.first + 2u * index;
-    let particle = Particle(particles[at], particles[at + 1u]);
+    let at = splat.first + PARTICLE_VECTORS * index;
+    let particle = particle_from_words(particles[at], particles[at + 1u], particles[at + 2u]);
     let in_view = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     let centre = (system.grid_from_view * vec4f(in_view, 1.0)).xyz;
     let radius = density_radius(particle);
     let depth = sprite_optical_depth(particle);
-    let magnitude = dot(abs(in_view), vec3f(1.0)) + abs(radius) + dot(abs(particle.rotation_amount_frame_age), vec4f(1.0));
+    let other = dot(abs(particle.rotation_amount_frame_age), vec4f(1.0)) + dot(abs(particle.velocity), vec3f(1.0));
+    let magnitude = dot(abs(in_view), vec3f(1.0)) + abs(radius) + other;
     // False for NaN too.
     if !(magnitude < MAX_MAGNITUDE && radius > 0.0 && depth > 0.0) {
         return;

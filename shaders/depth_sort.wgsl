@@ -7,14 +7,15 @@
 // Space   View space.
 
 #import "lib/bindings.wgsl"
+#import "lib/particle.wgsl"
 #import "lib/tiles.wgsl"
 
 @group(3) @binding(0) var<uniform> tiles: Tiles;
-// Two per particle, as in Particle.
-@group(3) @binding(1) var<storage, read> particles: array<vec4f>;
+// PARTICLE_VECTORS per particle.
+@group(3) @binding(1) var<storage, read> particles: array<vec4u>;
 @group(3) @binding(2) var<storage, read_write> keys: array<u32>;
 @group(3) @binding(3) var<storage, read_write> indices: array<u32>;
-@group(3) @binding(4) var<storage, read_write> sorted_particles: array<vec4f>;
+@group(3) @binding(4) var<storage, read_write> sorted_particles: array<vec4u>;
 
 @compute @workgroup_size(64)
 fn depth_keys(@builtin(global_invocation_id) invocation: vec3u) {
@@ -22,7 +23,7 @@ fn depth_keys(@builtin(global_invocation_id) invocation: vec3u) {
     if index >= tiles.count {
         return;
     }
-    let position = particles[tiles.first + 2u * index].xyz;
+    let position = bitcast<vec3f>(particles[tiles.first + PARTICLE_VECTORS * index].xyz);
     let view_z = (system.view_from_particles * vec4f(position, 1.0)).z;
     // Particles that are not drawn come last: their indices are higher than those of drawn ones with the same key.
     keys[index] = select(0xffffffffu, ~front_to_back_bits(view_z), index < system.alive_count);
@@ -35,7 +36,8 @@ fn gather_particles(@builtin(global_invocation_id) invocation: vec3u) {
     if place >= tiles.count {
         return;
     }
-    let at = tiles.first + 2u * indices[place];
-    sorted_particles[2u * place] = particles[at];
-    sorted_particles[2u * place + 1u] = particles[at + 1u];
+    let at = tiles.first + PARTICLE_VECTORS * indices[place];
+    for (var i = 0u; i < PARTICLE_VECTORS; i++) {
+        sorted_particles[PARTICLE_VECTORS * place + i] = particles[at + i];
+    }
 }

@@ -45,8 +45,8 @@ struct MeasuredExtent {
 }
 
 @group(3) @binding(0) var<uniform> measure: Measure;
-// Two per particle, as in Particle.
-@group(3) @binding(1) var<storage, read> particles: array<vec4f>;
+// PARTICLE_VECTORS per particle.
+@group(3) @binding(1) var<storage, read> particles: array<vec4u>;
 @group(3) @binding(2) var<storage, read_write> sums: array<ExtentSums>;
 @group(3) @binding(3) var<storage, read_write> measured: MeasuredExtent;
 
@@ -65,19 +65,24 @@ fn add_up(local: u32, value: ExtentSums) {
     }
 }
 
+fn load_particle(index: u32) -> Particle {
+    let at = measure.first + PARTICLE_VECTORS * index;
+    return particle_from_words(particles[at], particles[at + 1u], particles[at + 2u]);
+}
+
 // Particle at `index` in view space, its radius in metres; radius 0 if it is not drawn.
 fn sized_particle(index: u32) -> vec4f {
-    let at = measure.first + 2u * index;
-    let particle = particles[at];
-    let other = particles[at + 1u];
-    let centre = (system.view_from_particles * vec4f(particle.xyz, 1.0)).xyz;
-    let radius = particle.w * system.size;
-    let finite = dot(abs(centre), vec3f(1.0)) + radius + dot(abs(other), vec4f(1.0)) < MAX_MAGNITUDE;
+    let particle = load_particle(index);
+    let other = particle.rotation_amount_frame_age;
+    let centre = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
+    let radius = particle.position_radius.w * system.size;
+    let motion = dot(abs(particle.velocity), vec3f(1.0));
+    let finite = dot(abs(centre), vec3f(1.0)) + radius + dot(abs(other), vec4f(1.0)) + motion < MAX_MAGNITUDE;
     return vec4f(centre, select(0.0, radius, finite && other.y > 0.0 && radius > 0.0));
 }
 
 fn amount_of(index: u32) -> f32 {
-    return particles[measure.first + 2u * index + 1u].y;
+    return load_particle(index).rotation_amount_frame_age.y;
 }
 
 @compute @workgroup_size(256)

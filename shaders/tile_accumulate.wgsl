@@ -65,7 +65,10 @@ fn init_texel(place: vec2u) -> Texel {
 // Returns the texel with one more sprite, behind all accumulated ones. `values`: those of the sprite. `uv`: position in its
 // square.
 fn accumulate_sprite(texel: Texel, sprite: TileSprite, values: SpriteValues, uv: vec2f, is_touched: bool) -> Texel {
-    let in = fragment_of(sprite, texel.place, texel.ray, uv);
+    var in = fragment_of(sprite, texel.place, texel.ray, uv);
+    if STRETCH {
+        in.stretch = unpack2x16snorm(values.stretch);
+    }
     let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
     let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
     let seen = select(texel.transmittance, 1.0, WEIGHTED);

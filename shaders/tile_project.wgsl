@@ -12,8 +12,8 @@
 #import "lib/order.wgsl"
 
 @group(3) @binding(0) var<uniform> tiles: Tiles;
-// Two per particle, as in Particle.
-@group(3) @binding(1) var<storage, read> particles: array<vec4f>;
+// PARTICLE_VECTORS per particle.
+@group(3) @binding(1) var<storage, read> particles: array<vec4u>;
 @group(3) @binding(2) var<storage, read_write> sprites: array<TileSprite>;
 @group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
 @group(3) @binding(4) var<storage, read_write> keys: array<u32>;
@@ -30,8 +30,8 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     if index >= tiles.count {
         return;
     }
-    let at = tiles.first + 2u * index;
-    let particle = Particle(particles[at], particles[at + 1u]);
+    let at = tiles.first + PARTICLE_VECTORS * index;
+    let particle = particle_from_words(particles[at], particles[at + 1u], particles[at + 2u]);
     let placed = project_sprite(particle, 1.0 / f32(system.scale));
     let centre = placed.centre_radius.xyz;
     let radius = placed.centre_radius.w;
@@ -56,20 +56,29 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         let middle = texel_of_ray(centre.xy / plane);
         // Size of a texel in view space, metres; the y of texels points down.
         let metres = view.ray_scale * vec2f(2.0, -2.0) * (plane * f32(system.scale)) / view.size;
-        let cosine = placed.rotation.x;
-        let sine = placed.rotation.y;
+        // Axes of the sprite on the screen, and the rows of the inverse matrix.
+        var across = placed.rotation;
+        var up = vec2f(-across.y, across.x);
+        var to_across = across;
+        var to_up = up;
+        if STRETCH {
+            across = stretched(across, placed.stretch);
+            up = stretched(up, placed.stretch);
+            to_across = unstretched(to_across, placed.stretch);
+            to_up = unstretched(to_up, placed.stretch);
+        }
         // v points down.
-        sprite.uv_from_texels = vec4f(metres * vec2f(cosine, sine), metres * vec2f(sine, -cosine)) * (0.5 / radius);
+        sprite.uv_from_texels = vec4f(metres * to_across, metres * -to_up) * (0.5 / radius);
         sprite.centre_radius = vec4f(middle, centre.z, radius);
         // Filled part of the square: its centre, and half its sides.
         let reach = trimmed_extent(frames, lod);
         let texels = radius / metres;
         let place = 0.5 * (reach.zw - reach.xy);
         let half_size = 0.5 * (reach.xy + reach.zw);
-        let filled = middle + vec2f(dot(place, vec2f(cosine, -sine)), dot(place, vec2f(sine, cosine))) * texels;
-        let across = vec2f(dot(half_size, abs(vec2f(cosine, sine))), dot(half_size, abs(vec2f(sine, cosine)))) * abs(texels);
-        low = filled - across;
-        high = filled + across;
+        let filled = middle + (across * place.x + up * place.y) * texels;
+        let extent = (abs(across) * half_size.x + abs(up) * half_size.y) * abs(texels);
+        low = filled - extent;
+        high = filled + extent;
     }
     // Texels whose centres lie inside, with a margin of 0.01 texels for rounding.
     let first = clamp(floor(low - 0.01), vec2f(0.0), system.target_size);

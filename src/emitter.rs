@@ -42,6 +42,9 @@ settings! {
         rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
         /// Seconds of emission, from time 0. 0: emission has no beginning and no end.
         duration: f32 = 0.0, number(0.0..=3600.0, "s");
+        /// Seconds from the beginning of one emission to the next: puffs of a chimney, shots. At least `duration`. 0: one
+        /// emission only.
+        period: f32 = 0.0, number(0.0..=3600.0, "s");
         /// Seconds that a particle lives. Higher: the smoke gets further before it disappears.
         lifetime: f32 = 6.0, number(0.01..=600.0, "s");
         /// Random variation of the lifetime, up and down, as a share of it. At 0 the smoke ends along a line.
@@ -69,6 +72,11 @@ settings! {
         /// Up direction, along which hot smoke rises and across which a disc lies; need not be unit length.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         up: Vec3 = Vec3::Y, vector(-1.0e3..=1.0e3, "");
+        /// Share of their speed that particles keep when they hit the floor, three times at most: sparks, embers, hail. 0:
+        /// there is no floor.
+        bounce: f32 = 0.0, number(0.0..=0.95, "");
+        /// Height of the floor along `up`, from the origin of the world.
+        floor: f32 = 0.0, number(-1.0e5..=1.0e5, "m");
         /// Velocity of the air. Leans the smoke over.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
@@ -99,7 +107,26 @@ settings! {
         fade_out: f32 = 0.5, number(0.0..=1.0, "");
         /// Flipbook frames per second. Higher: puffs boil faster. 0: still.
         frame_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");
+        /// Linear RGB color of the particles. Each has one at random between this and `other_tint`. Read if `sprite.tint` is
+        /// above 0.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        tint: Vec3 = Vec3::ONE, color(0.0..=1.0);
+        /// The other end of the particles' colors: dust of red ground in grey smoke.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        other_tint: Vec3 = Vec3::ONE, color(0.0..=1.0);
+        /// Share by which the coldest particles of the same age are colder than the hottest. Higher: sooty puffs between the
+        /// flames. Read if the system burns.
+        heat_spread: f32 = 0.0, number(0.0..=1.0, "");
     }
+}
+
+/// An emission that repeats.
+#[derive(Clone, Copy)]
+struct Pulses {
+    /// Of each pulse.
+    births: i64,
+    /// Seconds from pulse to pulse.
+    period: f64,
 }
 
 impl Emitter {
@@ -111,6 +138,10 @@ impl Emitter {
         validate(self, &path)?;
         if self.up.normalize_or_zero() == Vec3::ZERO {
             return Err(FieldError::new(format!("{}.up", path()), self.up, "a direction that is not zero"));
+        }
+        if self.period > 0.0 && self.period < self.duration {
+            let expected = format!("0, or at least the duration of {} s", self.duration);
+            return Err(FieldError::new(format!("{}.period", path()), self.period, expected));
         }
         let most = self.max_alive();
         if most > f64::from(MAX_PARTICLES) {
@@ -126,8 +157,25 @@ impl Emitter {
 
     /// Maximum number of particles that live at once.
     pub fn max_alive(&self) -> f64 {
-        let longest = f64::from(self.lifetime * (1.0 + self.lifetime_spread));
-        f64::from(self.rate) * if self.duration > 0.0 { longest.min(f64::from(self.duration)) } else { longest }
+        let (longest, duration) = (self.longest(), f64::from(self.duration));
+        let emitting = match self.pulses() {
+            Some(Pulses { period, .. }) => (longest / period).floor() * duration + (longest % period).min(duration),
+            None if duration > 0.0 => longest.min(duration),
+            None => longest,
+        };
+        f64::from(self.rate) * emitting
+    }
+
+    /// Longest life of a particle, seconds.
+    fn longest(&self) -> f64 {
+        f64::from(self.lifetime * (1.0 + self.lifetime_spread))
+    }
+
+    /// Returns the pulses of an emission that repeats.
+    fn pulses(&self) -> Option<Pulses> {
+        // Less the rounding of f32, which would add a birth.
+        let births = (f64::from(self.duration) * f64::from(self.rate) - 1.0e-3).ceil() as i64;
+        (births > 0 && self.period > 0.0).then_some(Pulses { births, period: f64::from(self.period) })
     }
 
     /// Replaces `particles` with those alive at `time`, seconds. The same input gives the same output, to the bit.
@@ -138,6 +186,13 @@ impl Emitter {
     /// Particles alive at `time`, seconds, not evaluated, for [`Particles::Emitter`](crate::Particles::Emitter).
     pub fn snapshot(&self, time: f32) -> EmitterSnapshot {
         let (first, last) = self.birth_range(time);
+        let pulses = self.pulses();
+        let Pulses { births, period } = pulses.unwrap_or(Pulses { births: i64::from(u32::MAX), period: 0.0 });
+        let first_in_pulse = if pulses.is_some() { first.rem_euclid(births) } else { 0 };
+        let born = match pulses {
+            Some(_) => first.div_euclid(births) as f64 * period + first_in_pulse as f64 / f64::from(self.rate),
+            None => first as f64 / f64::from(self.rate),
+        };
         let up = self.up.normalize_or(Vec3::Y);
         let disc = Quat::from_rotation_arc(Vec3::Y, up);
         let uniform = EmitterUniform {
@@ -146,7 +201,7 @@ impl Emitter {
             seed: self.seed,
             shape: self.shape as u32,
             // f64, because at 100 000 births a second f32 could not tell two births apart after three minutes.
-            since_first: (f64::from(time) - first as f64 / f64::from(self.rate)) as f32,
+            since_first: (f64::from(time) - born) as f32,
             rate: self.rate,
             lifetime: self.lifetime,
             lifetime_spread: self.lifetime_spread,
@@ -171,19 +226,38 @@ impl Emitter {
             fade_in: self.fade_in,
             fade_out: self.fade_out,
             frame_rate: self.frame_rate,
+            tint: self.tint,
+            heat_spread: self.heat_spread,
+            other_tint: self.other_tint,
+            bounce: self.bounce,
+            up,
+            floor: self.floor,
+            per_pulse: births as u32,
+            first_in_pulse: first_in_pulse as u32,
+            period: period as f32,
+            padding: 0.0,
         };
         let step = (self.max_alive() / SAMPLE).ceil().max(1.0) as u32;
         let first_sample = (-first).rem_euclid(i64::from(step)) as u32;
         EmitterSnapshot { uniform, step, first_sample }
     }
 
-    /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate.
+    /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate, in pulses at so much after the
+    /// beginning of its pulse.
     fn birth_range(&self, time: f32) -> (i64, i64) {
         if self.rate <= 0.0 {
             return (0, 0);
         }
-        let (time, rate) = (f64::from(time), f64::from(self.rate));
-        let longest = f64::from(self.lifetime * (1.0 + self.lifetime_spread));
+        let (time, rate, longest) = (f64::from(time), f64::from(self.rate), self.longest());
+        if let Some(Pulses { births, period }) = self.pulses() {
+            let index = |time: f64, more: i64| {
+                let pulse = (time / period).floor();
+                let in_pulse = ((time - pulse * period) * rate).floor() as i64 + more;
+                pulse as i64 * births + in_pulse.min(births)
+            };
+            let first = index(time - longest, 0).max(0);
+            return (first, index(time, 1).max(first));
+        }
         let mut first = ((time - longest) * rate).floor() as i64;
         let mut last = (time * rate).floor() as i64 + 1;
         if self.duration > 0.0 {
@@ -198,7 +272,8 @@ impl Emitter {
 mod tests {
     use super::*;
     use crate::formula::emitter::{drag_integrals, smoothstep_unit};
-    use crate::frame::particle_bounds;
+    use crate::frame::{SpriteExtent, particle_bounds};
+    use crate::settings::Settings;
 
     fn at(emitter: &Emitter, time: f32) -> Vec<Particle> {
         let mut particles = Vec::new();
@@ -293,22 +368,108 @@ mod tests {
             Emitter { burst: 8.0, duration: 0.1, drag: 2.0, velocity: Vec3::ZERO, ..base },
             Emitter { burst: -3.0, turbulence: 4.0, turbulence_scale: 0.3, drag: 0.0, buoyancy: -2.0, ..base },
             Emitter { radius_start: 2.0, radius_end: 0.1, lifetime_spread: 0.9, velocity_spread: 5.0, ..base },
+            Emitter { duration: 0.3, period: 0.7, ..base },
+            Emitter {
+                bounce: 0.6,
+                floor: -0.4,
+                velocity: Vec3::new(-1.0, 3.0, 0.5),
+                wind: Vec3::new(2.0, 0.0, 0.0),
+                buoyancy: -9.8,
+                drag: 0.3,
+                ..base
+            },
         ]
         .into_iter()
     }
 
     #[test]
+    fn velocity_is_the_change_of_position() {
+        // Without turbulence, whose change from place to place does not count, and between bounces.
+        for emitter in emitters().filter(|emitter| emitter.bounce <= 0.0) {
+            let emitter = Emitter { turbulence: 0.0, frame_rate: 0.0, ..emitter };
+            let step = 1.0e-3;
+            let (before, now) = (at(&emitter, 0.08), at(&emitter, 0.08 + step));
+            // A still flipbook frame is another in each particle.
+            let pairs =
+                before.iter().filter_map(|a| Some((a, now.iter().find(|b| b.frame.to_bits() == a.frame.to_bits())?)));
+            let mut count = 0;
+            for (a, b) in pairs {
+                let error = ((b.position - a.position) / step - a.velocity).length();
+                assert!(error < 0.02 * (1.0 + a.velocity.length()), "{emitter:?}: {error} of {}", a.velocity);
+                count += 1;
+            }
+            assert!(count > 20, "{emitter:?}: {count}");
+        }
+    }
+
+    #[test]
+    fn pulses_repeat_and_each_is_born_in_its_turn() {
+        let emitter = Emitter { rate: 100.0, duration: 0.2, period: 1.0, lifetime: 0.5, ..Emitter::default() };
+        let emitter = Emitter { lifetime_spread: 0.0, ..emitter };
+        let count = |time| at(&emitter, time).len();
+        assert_eq!((count(-0.1), count(0.9), count(7.8)), (0, 0, 0));
+        assert!((18..=20).contains(&count(0.3)) && (18..=20).contains(&count(7.3)), "{} {}", count(0.3), count(7.3));
+        assert!((8..=12).contains(&count(3.1)), "{}", count(3.1));
+        // Other random numbers in each pulse.
+        assert_ne!(at(&emitter, 0.3)[3].position, at(&emitter, 1.3)[3].position);
+        // Long lives: particles of several pulses.
+        let long = Emitter { lifetime: 2.7, ..emitter };
+        let alive = at(&long, 9.5).len() as f64;
+        assert!((54.0..=60.0).contains(&alive) && alive <= long.max_alive(), "{alive} of {}", long.max_alive());
+        let error = Emitter { period: 0.1, ..emitter }.validate(|| "e".into()).unwrap_err().to_string();
+        assert_eq!(error, "e.period: 0.1 is not valid; expected 0, or at least the duration of 0.2 s");
+    }
+
+    #[test]
+    fn particles_bounce_off_the_floor_and_come_to_rest() {
+        let emitter = Emitter {
+            bounce: 0.5,
+            buoyancy: -9.81,
+            drag: 0.0,
+            extent: Vec3::ZERO,
+            velocity: Vec3::new(1.0, 0.0, 0.0),
+            velocity_spread: 0.0,
+            turbulence: 0.0,
+            position: Vec3::new(0.0, 1.0, 0.0),
+            lifetime: 5.0,
+            lifetime_spread: 0.0,
+            fade_in: 0.0,
+            fade_out: 0.0,
+            rate: 1000.0,
+            ..Emitter::default()
+        };
+        let mut tops = [0.0_f32; 4];
+        for particle in at(&emitter, 20.0) {
+            assert!(particle.position.y > -1.0e-3, "{particle:?}");
+            let seconds = particle.age * 5.0;
+            // A fall of 1 m takes 0.45 s; each further arc has half the speed of the one before.
+            let bounces = [0.452, 0.904, 1.13, 1.243].iter().filter(|time| seconds > **time).count();
+            if let Some(top) = tops.get_mut(bounces) {
+                *top = top.max(particle.position.y);
+            } else {
+                assert_eq!(particle.velocity, Vec3::ZERO, "{seconds}");
+            }
+        }
+        for (top, expected) in tops.iter().zip([1.0, 0.25, 0.0625, 0.0156]) {
+            assert!((top - expected).abs() < 0.01 * expected + 1.0e-3, "{tops:?}");
+        }
+    }
+
+    #[test]
     fn box_of_an_emission_contains_its_particles() {
-        for emitter in emitters() {
-            for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
-                let reach = std::f32::consts::SQRT_2;
-                let (measured, promised) =
-                    (particle_bounds(&at(&emitter, time), reach), emitter.snapshot(time).bounds(reach));
-                if at(&emitter, time).is_empty() {
-                    continue;
+        let mut stretched = Settings::default();
+        (stretched.sprite.stretch, stretched.sprite.stretch_limit) = (0.2, 20.0);
+        for extent in [Settings::default(), stretched].map(|settings| SpriteExtent::of(&settings)) {
+            for emitter in emitters() {
+                for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
+                    let (measured, promised) =
+                        (particle_bounds(&at(&emitter, time), extent), emitter.snapshot(time).bounds(extent));
+                    if at(&emitter, time).is_empty() {
+                        continue;
+                    }
+                    let holds = promised.min.cmple(measured.min).all() && promised.max.cmpge(measured.max).all();
+                    assert!(holds, "{emitter:?} at {time}: {measured:?} in {promised:?}");
                 }
-                let holds = promised.min.cmple(measured.min).all() && promised.max.cmpge(measured.max).all();
-                assert!(holds, "{emitter:?} at {time}: {measured:?} in {promised:?}");
             }
         }
     }

@@ -90,7 +90,7 @@ pub use assets::{builtin, image, noise, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{
     AliveCount, Bounds, EmitterSnapshot, FrameInput, Light, LightKind, Material, Particle, ParticleBuffer,
-    ParticleSystem, Particles, SceneDepth, ShadowMap, ShadowProjection, View,
+    ParticleSystem, Particles, SceneDepth, ShadowMap, ShadowProjection, SpriteExtent, View,
 };
 pub use renderer::{
     Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,

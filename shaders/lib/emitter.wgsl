@@ -39,6 +39,20 @@ struct Emitter {
     fade_in: f32,
     fade_out: f32,
     frame_rate: f32,
+    // Colors between which those of the particles lie.
+    tint: vec3f,
+    heat_spread: f32,
+    other_tint: vec3f,
+    // Share of the speed that a particle keeps on the floor; 0 for no floor.
+    bounce: f32,
+    up: vec3f,
+    // Height along `up`, world space.
+    floor: f32,
+    // Births of a pulse, the place of the first birth among those of its pulse, and seconds from pulse to pulse.
+    per_pulse: u32,
+    first_in_pulse: u32,
+    period: f32,
+    padding: f32,
 }
 
 const EMITTER_SHAPE_SPHERE: u32 = 0u;
@@ -51,6 +65,9 @@ const TURN: f32 = 6.283185307179586;
 struct EmittedParticle {
     position_radius: vec4f,
     rotation_amount_frame_age: vec4f,
+    velocity: vec3f,
+    // pack4x8unorm() of tint and heat.
+    tint_heat: u32,
 }
 
 // Returns a uniformly distributed direction. Uses y and z, so that x is free for a distance.
@@ -97,6 +114,68 @@ fn birth_offset(emitter: Emitter, random: vec3f) -> vec3f {
     }
 }
 
+// Position and velocity at a time.
+struct Flight {
+    position: vec3f,
+    velocity: vec3f,
+}
+
+// Solution of v' = drag·(wind − v) + buoyancy: position and velocity approach their limits as 1 − e^(−drag·t).
+fn flight(emitter: Emitter, start: vec3f, velocity: vec3f, seconds: f32) -> Flight {
+    let integrals = drag_integrals(emitter.drag, seconds);
+    let reached = integrals.x;
+    let kept = 1.0 - emitter.drag * reached;
+    return Flight(
+        start + velocity * reached + emitter.wind * (seconds - reached) + emitter.rise * integrals.y,
+        velocity * kept + emitter.wind * (1.0 - kept) + emitter.rise * reached,
+    );
+}
+
+// After so many bounces a particle lies still.
+const MAX_BOUNCES: u32 = 3u;
+const IMPACT_STEPS: u32 = 20u;
+
+// Flight that bounces off the floor.
+fn bouncing_flight(emitter: Emitter, start: vec3f, velocity: vec3f, seconds: f32) -> Flight {
+    var now = flight(emitter, start, velocity, seconds);
+    if emitter.bounce <= 0.0 {
+        return now;
+    }
+    var last = Flight(start, velocity);
+    var left = seconds;
+    for (var i = 0u; i < MAX_BOUNCES && dot(now.position, emitter.up) < emitter.floor; i++) {
+        // The last time above the floor.
+        var above = 0.0;
+        var below = left;
+        for (var step = 0u; step < IMPACT_STEPS; step++) {
+            let middle = 0.5 * (above + below);
+            let place = flight(emitter, last.position, last.velocity, middle).position;
+            if dot(place, emitter.up) < emitter.floor {
+                below = middle;
+            } else {
+                above = middle;
+            }
+        }
+        let impact = flight(emitter, last.position, last.velocity, above);
+        let reflected = impact.velocity - emitter.up * (2.0 * dot(impact.velocity, emitter.up));
+        last = Flight(impact.position, reflected * emitter.bounce);
+        left -= above;
+        now = flight(emitter, last.position, last.velocity, left);
+    }
+    if dot(now.position, emitter.up) < emitter.floor {
+        return Flight(last.position, vec3f(0.0));
+    }
+    return now;
+}
+
+// Seconds from the interval of the first birth to that of another.
+fn birth_delay(emitter: Emitter, number: u32) -> f32 {
+    let place = emitter.first_in_pulse + number;
+    let pulse = place / emitter.per_pulse;
+    let in_pulse = f32(place - pulse * emitter.per_pulse) - f32(emitter.first_in_pulse);
+    return f32(pulse) * emitter.period + in_pulse / emitter.rate;
+}
+
 // Returns three random numbers, 0..1, for a birth and a salt.
 fn birth_random(index: u32, salt: u32, seed: u32) -> vec3f {
     let hash = pcg3d(vec3u(index, salt, seed));
@@ -110,11 +189,12 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let place = birth_random(index, 1u, emitter.seed);
     let motion = birth_random(index, 2u, emitter.seed);
     let look = birth_random(index, 3u, emitter.seed);
+    let color = birth_random(index, 4u, emitter.seed);
     // Births are jittered within their interval, or a fast emitter would pulse.
-    let seconds = emitter.since_first - (f32(number) + life.y) / emitter.rate;
+    let seconds = emitter.since_first - birth_delay(emitter, number) - life.y / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
     if !(seconds >= 0.0 && seconds < lifetime) {
-        return EmittedParticle(vec4f(0.0), vec4f(0.0));
+        return EmittedParticle();
     }
     let age = seconds / lifetime;
 
@@ -122,28 +202,31 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let distance = length(offset);
     let outward = select(vec3f(0.0), offset / distance, distance > 0.0);
     let velocity = emitter.velocity + outward * emitter.burst + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    // Solution of v' = drag·(wind − v) + buoyancy: position and spin approach their limits as 1 − e^(−drag·t).
-    let integrals = drag_integrals(emitter.drag, seconds);
-    let reached = integrals.x;
-    let path = velocity * reached + emitter.wind * (seconds - reached) + emitter.rise * integrals.y;
-    let base = emitter.position + offset + path;
+    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, seconds);
+    let base = moved.position;
 
     // Turbulence grows with age: smoke leaves the source smoothly and breaks up later.
     let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, emitter.seed * 977u);
     let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, emitter.seed * 977u + 5u);
-    let position = base + (large + small * 0.4) * (emitter.turbulence * age);
+    let swirl = (large + small * 0.4) * emitter.turbulence;
+    let position = base + swirl * age;
 
     // Growth like diffusion: fast at first.
     let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * sqrt(age);
     let fade_in = smoothstep_unit(age / max(emitter.fade_in, 1.0e-4));
+    // Drag slows the spin.
+    let turned = drag_integrals(emitter.drag, seconds).x;
     let fade_out = smoothstep_unit((1.0 - age) / max(emitter.fade_out, 1.0e-4));
     return EmittedParticle(
         vec4f(position, radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
         vec4f(
-            look.y * TURN + emitter.spin * (2.0 * look.z - 1.0) * reached,
+            look.y * TURN + emitter.spin * (2.0 * look.z - 1.0) * turned,
             emitter.amount * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
+        // Of a swirl that grows, too.
+        moved.velocity + swirl / lifetime,
+        pack4x8unorm(vec4f(mix(emitter.tint, emitter.other_tint, color.x), 1.0 - emitter.heat_spread * color.y)),
     );
 }

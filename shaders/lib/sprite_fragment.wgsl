@@ -153,7 +153,11 @@ fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec
     if !DEBUG_SPRITE {
         texel = sample_sprite(sprite, linear_sampler, uv, frames, motion, lod);
     }
-    return SpriteFragment(rotate_normal(texel.xyz, in.rotation), NO_LIGHT, texel.w, texel.w, false);
+    var normal = rotate_normal(texel.xyz, in.rotation);
+    if STRETCH {
+        normal = stretched_normal(normal, in.stretch);
+    }
+    return SpriteFragment(normal, NO_LIGHT, texel.w, texel.w, false);
 }
 
 fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {

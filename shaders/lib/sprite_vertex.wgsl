@@ -4,20 +4,14 @@
 
 #import "lib/bindings.wgsl"
 #import "lib/density_grid.wgsl"
+#import "lib/particle.wgsl"
 #import "lib/ramp.wgsl"
 #import "lib/shadow.wgsl"
 #import "lib/shadow_volume.wgsl"
 #import "lib/sprite.wgsl"
 #import "lib/soft_fade.wgsl"
+#import "lib/stretch.wgsl"
 #import "lib/technique.wgsl"
-
-// One instance, in the layout of `Particle` in src/frame/particle.rs.
-struct Particle {
-    // World space; radius in w.
-    @location(0) position_radius: vec4f,
-    // Rotation, amount, frame, age.
-    @location(1) rotation_amount_frame_age: vec4f,
-}
 
 // Largest magnitude of a particle's numbers that is drawn. MAX_MAGNITUDE in src/frame/particle.rs.
 const MAX_MAGNITUDE: f32 = 1.0e9;
@@ -39,6 +33,8 @@ struct SpriteVertex {
     // As in SpriteValues.
     @location(6) @interpolate(flat, either) depths_and_heat: vec4f,
     @location(7) @interpolate(flat, either) tint: vec3f,
+    // As in sprite_stretch().
+    @location(8) @interpolate(flat, either) stretch: vec2f,
 }
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
@@ -50,8 +46,10 @@ override SIX_WAY: bool = false;
 override MOTION: bool = false;
 // True if the smoke gives light of its own.
 override FIRE: bool = false;
-// True if sprite.age_color is not 0.
+// True if sprite.age_color or sprite.tint is not 0.
 override TINT: bool = false;
+// True if sprites are stretched along their motion.
+override STRETCH: bool = false;
 
 // True for techniques whose sprites are spheres.
 fn is_sphere() -> bool {
@@ -97,11 +95,13 @@ struct SpriteValues {
     depths_and_heat: vec4f,
     // Color by which the light on it is multiplied.
     tint: vec3f,
+    // pack2x16snorm() of its stretch.
+    stretch: u32,
 }
 
 // True if the path tiled stores SpriteValues of sprites.
 fn has_values() -> bool {
-    return SHADOW || FIRE || TINT;
+    return SHADOW || FIRE || TINT || STRETCH;
 }
 
 // Particle in view space, with the values that all fragments of its sprite share, as in SpriteVertex.
@@ -110,6 +110,7 @@ struct ProjectedSprite {
     centre_radius: vec4f,
     amount_lod_frame_age: vec4f,
     rotation: vec2f,
+    stretch: vec2f,
     values: SpriteValues,
 }
 
@@ -135,19 +136,31 @@ fn optical_depths_of(particle: Particle, centre: vec3f) -> vec3f {
 }
 
 // Heat of a particle, 0 to 1.
-fn heat_by_age(age: f32) -> f32 {
+fn heat_of(particle: Particle) -> f32 {
     if !FIRE {
         return 0.0;
     }
-    return painted_share(sample_ramp(heat_ramp, linear_sampler, age));
+    let by_age = painted_share(sample_ramp(heat_ramp, linear_sampler, particle.rotation_amount_frame_age.w));
+    return by_age * particle.tint_heat.w;
 }
 
 // Color of a particle.
-fn tint_by_age(age: f32) -> vec3f {
+fn tint_of(particle: Particle) -> vec3f {
     if !TINT {
         return vec3f(1.0);
     }
-    return mix(vec3f(1.0), sample_ramp(age_ramp, linear_sampler, age), system.age_color);
+    let by_age = sample_ramp(age_ramp, linear_sampler, particle.rotation_amount_frame_age.w);
+    return mix(vec3f(1.0), by_age, system.age_color) * mix(vec3f(1.0), particle.tint_heat.rgb, system.tint);
+}
+
+// Stretch of a particle's sprite; zero for spheres. `centre_radius`: of the sprite, view space.
+fn stretch_of(particle: Particle, centre_radius: vec4f) -> vec2f {
+    if !STRETCH {
+        return vec2f(0.0);
+    }
+    let velocity = (system.view_from_particles * vec4f(particle.velocity, 0.0)).xyz;
+    let radius = centre_radius.w;
+    return sprite_stretch(centre_radius.xyz, velocity, system.stretch, radius, system.stretch_limit, view.orthographic);
 }
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.
@@ -162,18 +175,27 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
     // A sprite is visible until its far side has passed the near plane, so the near fade uses that side.
     let half_depth = sprite_thickness(radius);
     let back = view_depth + half_depth;
-    let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity
+    var amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity
         * near_fade(back, system.near_fade_start, system.near_fade_end);
     let frame = particle.rotation_amount_frame_age.z;
     let age = particle.rotation_amount_frame_age.w;
 
     // A host's own buffer may contain anything. The comparisons are false for NaN, and numbers beyond MAX_MAGNITUDE are
     // not drawn.
-    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) < MAX_MAGNITUDE;
+    let motion = dot(abs(particle.velocity), vec3f(1.0));
+    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) + motion < MAX_MAGNITUDE;
     let in_view = back > view.near && view_depth - half_depth < view.far;
     let shown = finite && in_view && radius > 0.0 && amount > 0.0;
 
     let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, max(view_depth, view.near), view.orthographic);
+    var stretch = vec2f(0.0);
+    if STRETCH {
+        let thin = stretch_of(particle, vec4f(centre, radius));
+        let wide = max(radius, MIN_RADIUS / (pixels * texels_per_pixel));
+        stretch = stretch_of(particle, vec4f(centre, wide));
+        amount *= widened_share(radius, wide, thin, stretch);
+        radius = wide;
+    }
     let diameter = 2.0 * radius * pixels * texels_per_pixel;
     let lod = sprite_lod(system.sprite_size, diameter);
     let shown_frame = sprite_frame(SPRITE_ANIMATION, frame, age, system.frame_count);
@@ -182,7 +204,12 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
         vec4f(centre, radius),
         vec4f(amount, lod, shown_frame, age),
         vec2f(cos(angle), sin(angle)),
-        SpriteValues(vec4f(optical_depths_of(particle, centre), heat_by_age(age)), tint_by_age(age)),
+        stretch,
+        SpriteValues(
+            vec4f(optical_depths_of(particle, centre), heat_of(particle)),
+            tint_of(particle),
+            pack2x16snorm(stretch),
+        ),
     );
 }
 
@@ -228,6 +255,7 @@ fn sprite_vertex(
     out.weight = 1.0;
     out.depths_and_heat = sprite.values.depths_and_heat;
     out.tint = sprite.values.tint;
+    out.stretch = sprite.stretch;
     let centre = sprite.centre_radius.xyz;
     let corner = sprite_corner(corner_index);
     var clip: vec4f;
@@ -238,10 +266,13 @@ fn sprite_vertex(
     } else {
         let frames = animation_frames(SPRITE_ANIMATION, out.amount_lod_frame_age.z, system.frame_count);
         let place = trimmed_corner(corner, trimmed_extent(frames, out.amount_lod_frame_age.y));
-        let turned = vec2f(
+        var turned = vec2f(
             place.x * out.rotation.x - place.y * out.rotation.y,
             place.x * out.rotation.y + place.y * out.rotation.x,
         );
+        if STRETCH {
+            turned = stretched(turned, out.stretch);
+        }
         // A slab whose centre has passed the near plane is drawn on the near plane.
         out.view_position = vec3f(centre.xy + turned * sprite.centre_radius.w, min(centre.z, -view.near));
         clip = view.clip_from_view * vec4f(out.view_position, 1.0);

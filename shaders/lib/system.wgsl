@@ -94,6 +94,9 @@ struct System {
     fire_intensity: f32,
     fire_core: f32,
     fire_crust: f32,
-    padding_0: f32,
-    padding_1: vec2f,
+    // Weight of the particles' own colors.
+    tint: f32,
+    // Time for which the shutter is open, seconds, and the largest length, in lengths of the sprite at rest.
+    stretch: f32,
+    stretch_limit: f32,
 }

@@ -4,6 +4,7 @@ use glam::{UVec3, Vec2, Vec3, Vec3Swizzles, Vec4};
 
 use super::gradient_noise::curl_noise;
 use super::hash::{pcg3d, unit};
+use super::saturate;
 use super::uniforms::EmitterUniform;
 
 /// Numbers of the birth shapes. Any other number is a sphere.
@@ -16,6 +17,8 @@ const EMITTER_SHAPE_DISC: u32 = 2;
 pub struct EmittedParticle {
     pub position_radius: Vec4,
     pub rotation_amount_frame_age: Vec4,
+    pub velocity: Vec3,
+    pub tint_heat: [u8; 4],
 }
 
 /// Uniformly distributed direction. Uses y and z only, so that x is free for a distance.
@@ -58,6 +61,66 @@ pub fn birth_offset(emitter: &EmitterUniform, random: Vec3) -> Vec3 {
     }
 }
 
+/// Position and velocity at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight {
+    /// World space, metres.
+    pub position: Vec3,
+    /// Metres per second.
+    pub velocity: Vec3,
+}
+
+/// Solution of v' = drag·(wind − v) + buoyancy: position and velocity approach their limits as 1 − e^(−drag·t).
+pub fn flight(emitter: &EmitterUniform, start: Vec3, velocity: Vec3, seconds: f32) -> Flight {
+    let Vec2 { x: reached, y: approached } = drag_integrals(emitter.drag, seconds);
+    let kept = 1.0 - emitter.drag * reached;
+    Flight {
+        position: start + velocity * reached + emitter.wind * (seconds - reached) + emitter.rise * approached,
+        velocity: velocity * kept + emitter.wind * (1.0 - kept) + emitter.rise * reached,
+    }
+}
+
+/// After so many bounces a particle lies still.
+const MAX_BOUNCES: u32 = 3;
+const IMPACT_STEPS: u32 = 20;
+
+/// Flight that bounces off the floor.
+pub fn bouncing_flight(emitter: &EmitterUniform, start: Vec3, velocity: Vec3, seconds: f32) -> Flight {
+    let mut now = flight(emitter, start, velocity, seconds);
+    if emitter.bounce <= 0.0 {
+        return now;
+    }
+    let is_below = |position: Vec3| position.dot(emitter.up) < emitter.floor;
+    let (mut last, mut left) = (Flight { position: start, velocity }, seconds);
+    for _ in 0..MAX_BOUNCES {
+        if !is_below(now.position) {
+            return now;
+        }
+        // The last time above the floor.
+        let (mut above, mut below) = (0.0, left);
+        for _ in 0..IMPACT_STEPS {
+            let middle = 0.5 * (above + below);
+            match is_below(flight(emitter, last.position, last.velocity, middle).position) {
+                true => below = middle,
+                false => above = middle,
+            }
+        }
+        let impact = flight(emitter, last.position, last.velocity, above);
+        let reflected = impact.velocity - emitter.up * (2.0 * impact.velocity.dot(emitter.up));
+        last = Flight { position: impact.position, velocity: reflected * emitter.bounce };
+        left -= above;
+        now = flight(emitter, last.position, last.velocity, left);
+    }
+    if is_below(now.position) { Flight { velocity: Vec3::ZERO, ..last } } else { now }
+}
+
+/// Seconds from the interval of the first birth to that of another.
+pub fn birth_delay(emitter: &EmitterUniform, number: u32) -> f32 {
+    let place = emitter.first_in_pulse + number;
+    let (pulse, in_pulse) = (place / emitter.per_pulse, place % emitter.per_pulse);
+    pulse as f32 * emitter.period + (in_pulse as f32 - emitter.first_in_pulse as f32) / emitter.rate
+}
+
 /// Three random numbers 0..1 for a birth and a salt.
 pub fn birth_random(index: u32, salt: u32, seed: u32) -> Vec3 {
     let hash = pcg3d(UVec3::new(index, salt, seed));
@@ -68,9 +131,9 @@ pub fn birth_random(index: u32, salt: u32, seed: u32) -> Vec3 {
 pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticle {
     let index = emitter.first.wrapping_add(number);
     let random = |salt| birth_random(index, salt, emitter.seed);
-    let (life, place, motion, look) = (random(0), random(1), random(2), random(3));
+    let (life, place, motion, look, color) = (random(0), random(1), random(2), random(3), random(4));
     // Births are jittered within their interval. Without that a fast emitter would pulse.
-    let seconds = emitter.since_first - (number as f32 + life.y) / emitter.rate;
+    let seconds = emitter.since_first - birth_delay(emitter, number) - life.y / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
     if !(0.0..lifetime).contains(&seconds) {
         return EmittedParticle::default();
@@ -81,28 +144,37 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
     let velocity = emitter.velocity
         + offset.normalize_or_zero() * emitter.burst
         + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    // Solution of v' = drag·(wind − v) + buoyancy. Position and spin approach their limits as 1 − e^(−drag·t).
-    let Vec2 { x: reached, y: approached } = drag_integrals(emitter.drag, seconds);
-    let path = velocity * reached + emitter.wind * (seconds - reached) + emitter.rise * approached;
-    let base = emitter.position + offset + path;
+    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, seconds);
+    let base = moved.position;
 
     // Swirls grow with age: smoke leaves the source smooth and breaks up later.
     let seed = emitter.seed.wrapping_mul(977);
     let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, seed);
     let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, seed.wrapping_add(5));
-    let position = base + (large + small * 0.4) * (emitter.turbulence * age);
+    let swirl = (large + small * 0.4) * emitter.turbulence;
+    let position = base + swirl * age;
 
     // Grows with the square root of age, like diffusion.
     let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * age.sqrt();
     let fade_in = smoothstep_unit(age / emitter.fade_in.max(1.0e-4));
+    // Drag slows the spin.
+    let turned = drag_integrals(emitter.drag, seconds).x;
     let fade_out = smoothstep_unit((1.0 - age) / emitter.fade_out.max(1.0e-4));
     EmittedParticle {
         position_radius: position.extend(radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
         rotation_amount_frame_age: Vec4::new(
-            look.y * std::f32::consts::TAU + emitter.spin * (2.0 * look.z - 1.0) * reached,
+            look.y * std::f32::consts::TAU + emitter.spin * (2.0 * look.z - 1.0) * turned,
             emitter.amount * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
+        // Of a swirl that grows, too.
+        velocity: moved.velocity + swirl / lifetime,
+        tint_heat: unorm8(emitter.tint.lerp(emitter.other_tint, color.x).extend(1.0 - emitter.heat_spread * color.y)),
     }
+}
+
+/// WGSL's `pack4x8unorm()`.
+fn unorm8(value: Vec4) -> [u8; 4] {
+    value.to_array().map(|value| (saturate(value) * 255.0 + 0.5) as u8)
 }

@@ -24,6 +24,7 @@ pub mod six_way;
 pub mod smoke_extent;
 pub mod soft_fade;
 pub mod sprite;
+pub mod stretch;
 pub mod technique;
 pub mod texture;
 pub mod tile_sprite;

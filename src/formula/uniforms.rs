@@ -126,8 +126,9 @@ uniform! {
         fire_intensity: f32,
         fire_core: f32,
         fire_crust: f32,
-        padding_0: f32,
-        padding_1: Vec2,
+        tint: f32,
+        stretch: f32,
+        stretch_limit: f32,
     }
 }
 
@@ -244,5 +245,15 @@ uniform! {
         fade_in: f32,
         fade_out: f32,
         frame_rate: f32,
+        tint: Vec3,
+        heat_spread: f32,
+        other_tint: Vec3,
+        bounce: f32,
+        up: Vec3,
+        floor: f32,
+        per_pulse: u32,
+        first_in_pulse: u32,
+        period: f32,
+        padding: f32,
     }
 }

@@ -4,7 +4,8 @@ use glam::Vec3;
 
 use super::bounds::Bounds;
 use super::particle::Particle;
-use crate::formula::emitter::{drag_integrals, emitted_particle};
+use super::sprite_extent::SpriteExtent;
+use crate::formula::emitter::{birth_delay, drag_integrals, emitted_particle};
 use crate::formula::uniforms::EmitterUniform;
 
 /// Particles of an emitter at one time, not yet evaluated. [`Emitter::snapshot`](crate::emitter::Emitter::snapshot)
@@ -50,20 +51,24 @@ impl EmitterSnapshot {
             let position = emitted.position_radius.truncate();
             // Particles that are not alive have an amount of 0 and no position. They are dropped, as are those that
             // have faded out.
-            (amount > 0.0).then_some(Particle { position, radius, rotation, amount, frame, age })
+            let [r, g, b, heat] = emitted.tint_heat;
+            let (velocity, tint) = (emitted.velocity, [r, g, b]);
+            (amount > 0.0).then_some(Particle { position, radius, rotation, amount, frame, age, velocity, tint, heat })
         };
         particles.clear();
         particles.extend((first..self.uniform.count).step_by(step as usize).filter_map(alive));
     }
 
     /// Box that contains every sprite, from the emitter's settings alone. It is larger than that of the particles.
-    /// `reach` is as in [`particle_bounds`](super::particle_bounds).
-    pub fn bounds(&self, reach: f32) -> Bounds {
+    /// `extent` is as in [`particle_bounds`](super::particle_bounds).
+    pub fn bounds(&self, extent: SpriteExtent) -> Bounds {
         let e = &self.uniform;
         let mut bounds = Bounds::EMPTY;
         let (longest, shortest) = (e.lifetime * (1.0 + e.lifetime_spread), e.lifetime * (1.0 - e.lifetime_spread));
         let oldest = e.since_first.min(longest);
-        let youngest = (e.since_first - e.count as f32 / e.rate).max(0.0);
+        // A particle that bounces comes back to where younger ones are.
+        let bounces = e.bounce > 0.0;
+        let youngest = if bounces { 0.0 } else { (e.since_first - birth_delay(e, e.count)).max(0.0) };
         if e.count == 0 || oldest < youngest {
             return bounds;
         }
@@ -81,14 +86,19 @@ impl EmitterSnapshot {
                 (e.rise, reached_early.y, reached_late.y),
             ];
             let (low, high) = ways.into_iter().fold((e.position, e.position), |(low, high), (way, from, to)| {
-                let (from, to) = (way * from, way * to);
+                let (from, to) = (if bounces { Vec3::ZERO } else { way * from }, way * to);
                 (low + from.min(to), high + from.max(to))
             });
             let age = (late / shortest).min(1.0);
             let scattered =
                 (e.burst.abs() + e.velocity_spread) * reached_late.x + TURBULENCE_BOUND * e.turbulence * age;
             let radius = e.radius_start.max(e.radius_start + (e.radius_end - e.radius_start) * age.sqrt());
-            let margin = scattered + radius * (1.0 + e.radius_spread) * reach;
+            let kept = 1.0 - e.drag * reached_early.x;
+            let speed = (e.velocity.length() + e.burst.abs() + e.velocity_spread) * kept
+                + e.wind.length()
+                + e.rise.length() * reached_late.x
+                + TURBULENCE_BOUND * 3.0_f32.sqrt() * e.turbulence / shortest;
+            let margin = scattered + extent.reach(radius * (1.0 + e.radius_spread), speed);
             bounds.include(low - born, margin);
             bounds.include(high + born, margin);
         }

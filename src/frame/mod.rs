@@ -7,6 +7,7 @@ mod light;
 mod material;
 mod particle;
 mod shadow_map;
+mod sprite_extent;
 #[doc(hidden)]
 pub mod validate_input;
 mod view;
@@ -18,4 +19,5 @@ pub use light::{Light, LightKind, MAX_LIGHTS};
 pub use material::Material;
 pub use particle::{MAX_MAGNITUDE, Particle, particle_bounds};
 pub use shadow_map::{ShadowMap, ShadowProjection};
+pub use sprite_extent::SpriteExtent;
 pub use view::View;

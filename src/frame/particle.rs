@@ -3,8 +3,12 @@
 use glam::Vec3;
 
 use super::bounds::Bounds;
+use super::sprite_extent::SpriteExtent;
 
-/// Camera-facing sprite, in the layout of the instance buffer: 32 bytes, tightly packed.
+/// Camera-facing sprite, in the layout of the instance buffer: 48 bytes, tightly packed.
+///
+/// In WGSL: `vec4f` position and radius, `vec4f` rotation, amount, frame and age, `vec3f` velocity, and a `u32` that is
+/// `pack4x8unorm(vec4f(tint, heat))`. Its bits may be those of a NaN, so copy it as `u32`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Particle {
@@ -20,6 +24,12 @@ pub struct Particle {
     pub frame: f32,
     /// Share of the particle's life that has passed, 0..=1.
     pub age: f32,
+    /// Velocity in world space, metres per second. Read if `sprite.stretch` is above 0.
+    pub velocity: Vec3,
+    /// Color by which the light on the sprite is multiplied, linear, 255 for 1. Read if `sprite.tint` is above 0.
+    pub tint: [u8; 3],
+    /// Multiplies the heat that the heat ramp has for its age, 255 for 1. Read if the system burns.
+    pub heat: u8,
 }
 
 /// Largest magnitude of a particle's numbers that is drawn: far beyond any scene, and far below the limits of f32.
@@ -27,7 +37,17 @@ pub const MAX_MAGNITUDE: f32 = 1.0e9;
 
 impl Default for Particle {
     fn default() -> Self {
-        Self { position: Vec3::ZERO, radius: 1.0, rotation: 0.0, amount: 1.0, frame: 0.0, age: 0.0 }
+        Self {
+            position: Vec3::ZERO,
+            radius: 1.0,
+            rotation: 0.0,
+            amount: 1.0,
+            frame: 0.0,
+            age: 0.0,
+            velocity: Vec3::ZERO,
+            tint: [255; 3],
+            heat: 255,
+        }
     }
 }
 
@@ -35,7 +55,8 @@ impl Particle {
     /// True if every number is finite, in range and at most [`MAX_MAGNITUDE`]. Sprites that are not valid are skipped.
     pub fn is_valid(&self) -> bool {
         let [x, y, z] = self.position.to_array();
-        let numbers = [x, y, z, self.rotation, self.amount, self.frame, self.age];
+        let [u, v, w] = self.velocity.to_array();
+        let numbers = [x, y, z, u, v, w, self.rotation, self.amount, self.frame, self.age];
         // Both comparisons are false for NaN.
         numbers.iter().all(|number| number.abs() <= MAX_MAGNITUDE) && (0.0..=MAX_MAGNITUDE).contains(&self.radius)
     }
@@ -51,12 +72,11 @@ impl Particle {
     }
 }
 
-/// Box that contains the sprites of all visible particles. `reach` is the distance of a sprite's corners from its
-/// centre, in radii; see [`Settings::sprite_extent`](crate::Settings::sprite_extent).
-pub fn particle_bounds(particles: &[Particle], reach: f32) -> Bounds {
+/// Box that contains the sprites of all visible particles. `extent` is that of the sprites.
+pub fn particle_bounds(particles: &[Particle], extent: SpriteExtent) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
-        bounds.include(particle.position, particle.radius * reach);
+        bounds.include(particle.position, extent.reach(particle.radius, particle.velocity.length()));
     }
     bounds
 }

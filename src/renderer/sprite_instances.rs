@@ -9,7 +9,7 @@ use crate::settings::{FadeCurve, RampFilter, Settings, SpriteAnimation, Techniqu
 pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<Particle>() as u64,
     step_mode: wgpu::VertexStepMode::Instance,
-    attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
+    attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x3, 3 => Unorm8x4],
 };
 
 /// Sprite options that select a pipeline.
@@ -27,6 +27,7 @@ pub(crate) struct SpriteKey {
     by_depth: bool,
     fire: bool,
     tint: bool,
+    stretch: bool,
     ramp_filter: RampFilter,
 }
 
@@ -46,6 +47,7 @@ impl SpriteKey {
             by_depth: settings.lights_by_depth(),
             fire: settings.burns(),
             tint: settings.is_tinted(),
+            stretch: settings.is_stretched(),
             ramp_filter: settings.ramp_filter,
         }
     }
@@ -64,7 +66,7 @@ impl SpriteKey {
 
     /// Returns true if the path tiled stores `SpriteValues` of sprites.
     pub fn has_values(&self) -> bool {
-        self.shadow || self.fire || self.tint
+        self.shadow || self.fire || self.tint || self.stretch
     }
 
     /// Returns the override constants of the shared files, followed by the pass's own.
@@ -81,6 +83,7 @@ impl SpriteKey {
             bool_constant("SHADOW", self.shadow),
             bool_constant("FIRE", self.fire),
             bool_constant("TINT", self.tint),
+            bool_constant("STRETCH", self.stretch),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
         ];
         shared.into_iter().chain(of_pass).collect()

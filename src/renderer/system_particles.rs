@@ -11,7 +11,7 @@ use super::sprite_instances::Sprites;
 use super::system_passes::ParticlePass;
 use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
 use super::validate_frame::is_readable_by_compute;
-use crate::frame::{Bounds, Particle, ParticleSystem, Particles};
+use crate::frame::{Bounds, Particle, ParticleSystem, Particles, SpriteExtent};
 use crate::settings::{RenderPath, Settings};
 use crate::view_setup::{ParticleMeasures, ParticleSpace, ViewGeometry};
 
@@ -52,7 +52,7 @@ impl SystemParticles {
         match (system.bounds, system.particles) {
             (Some(bounds), _) => space.world_bounds(&bounds),
             (None, Particles::Emitter(emission)) => {
-                space.world_bounds(&emission.bounds(system.settings.sprite_extent()))
+                space.world_bounds(&emission.bounds(SpriteExtent::of(system.settings)))
             }
             // `validate` refuses a buffer without bounds.
             (None, Particles::Slice(_) | Particles::Buffer(_)) => self.measures.bounds,

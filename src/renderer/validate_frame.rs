@@ -14,10 +14,10 @@ use crate::frame::validate_input::{
     validate_world_from_particles,
 };
 use crate::frame::{
-    AliveCount, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, ShadowMap, View,
+    AliveCount, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, ShadowMap, SpriteExtent,
+    View,
 };
 use crate::settings::{DepthSource, RenderPath, Technique};
-use crate::view_setup::AttachmentSet;
 
 /// Validates everything except the view's matrices.
 ///
@@ -164,7 +164,7 @@ fn validate_system(
 ) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
     if !system.settings.is_forward() {
-        validate_attachments(index, AttachmentSet::of(system.settings), system.settings.accumulate.format)?;
+        validate_attachments(index, system.settings)?;
     }
     if system.settings.path == RenderPath::Tiled && shared.tiles().is_none() {
         let expected =
@@ -260,7 +260,7 @@ fn validate_particles(
         Particles::Slice(particles) => validate_count(particles.len() as u64, max_count, field)?,
         Particles::Emitter(emission) => {
             validate_count(u64::from(emission.count()), max_count, field)?;
-            let bounds = emission.bounds(system.settings.sprite_extent());
+            let bounds = emission.bounds(SpriteExtent::of(system.settings));
             let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
             if !bounds.is_empty() && !is_finite {
                 let expected = "an emission of an emitter that Emitter::validate accepts";

@@ -218,7 +218,12 @@ impl Settings {
 
     /// True if particles have colors of their own.
     pub fn is_tinted(&self) -> bool {
-        self.sprite.age_color > 0.0
+        self.sprite.age_color > 0.0 || self.sprite.tint > 0.0
+    }
+
+    /// True if sprites are stretched along their motion.
+    pub fn is_stretched(&self) -> bool {
+        self.sprite.stretch > 0.0 && self.sprite.stretch_limit > 1.0 && !self.technique.is_sphere()
     }
 
     /// `fire.crust`, or 0 with six-way maps, which have no normals.
@@ -235,16 +240,6 @@ impl Settings {
     pub fn show_through_distance(&self) -> f32 {
         let shows_through = self.soft_fade.curve == FadeCurve::Always && self.technique.is_soft();
         if shows_through { 1.0 / self.soft_fade.fade_scale } else { 0.0 }
-    }
-
-    /// Distance of a sprite's corners from its centre, at any rotation, in radii of its particle.
-    pub fn sprite_extent(&self) -> f32 {
-        let of_technique = match self.technique {
-            Technique::SphericalBillboard => self.spherical_billboard.radius,
-            Technique::VolumetricHard | Technique::VolumetricSoft => 1.0,
-            _ => std::f32::consts::SQRT_2,
-        };
-        self.sprite.size * of_technique
     }
 
     /// Checks ranges, and settings that exclude each other.

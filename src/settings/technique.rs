@@ -89,6 +89,15 @@ settings! {
         motion: f32 = 0.0, number(0.0..=1.0, "");
         /// Strength of the age ramp's color, by which the light on particles is multiplied. 0: none, and no cost. 1: full. (MS)
         age_color: f32 = 0.0, number(0.0..=1.0, "");
+        /// Strength of the particles' own colors, by which the light on them is multiplied: those of the emitter, of a
+        /// particle file, or of a host. 0: none, and no cost. 1: full.
+        tint: f32 = 0.0, number(0.0..=1.0, "");
+        /// Stretches sprites along their motion, by the way that they move in this time: as with a shutter that is open so
+        /// long. Thin ones are at least a texel wide, and fainter in return. Higher: longer sparks and tongues of flame. 0: none, and
+        /// no cost. Spheres are not stretched.
+        stretch: f32 = 0.0, number(0.0..=10.0, "s");
+        /// Largest length of a stretched sprite, in lengths of the sprite at rest. Lower: fast sprites stay compact.
+        stretch_limit: f32 = 4.0, number(1.0..=64.0, "");
         /// Shows a checkerboard instead of the sprite. (NV)
         debug_sprite: bool = false, flag;
         /// Draws all sprites this many times, to measure the cost of fragments. (NV)

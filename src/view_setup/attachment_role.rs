@@ -47,8 +47,8 @@ impl AttachmentRole {
         }
     }
 
-    /// Setting that adds the texture, and its value, for messages.
-    pub fn setting(self) -> (&'static str, &'static str) {
+    /// Setting of these `settings` that adds the texture, and its value, for messages.
+    pub fn setting(self, settings: &Settings) -> (&'static str, &'static str) {
         match self {
             Self::NormalAndAmount => ("path", "raster"),
             Self::SixWay => ("lighting", "six_way"),
@@ -56,7 +56,8 @@ impl AttachmentRole {
             Self::OpticalDepths => ("shadow.strength", "1"),
             Self::Depth => ("shadow.by_depth", "true"),
             Self::Heat => ("fire.intensity", "1"),
-            Self::Tint => ("sprite.age_color", "1"),
+            Self::Tint if settings.sprite.age_color > 0.0 => ("sprite.age_color", "1"),
+            Self::Tint => ("sprite.tint", "1"),
         }
     }
 }
@@ -81,7 +82,7 @@ impl AttachmentSet {
     pub fn validate(settings: &Settings, path: impl Fn() -> String) -> Result<(), FieldError> {
         let excess = Self::of(settings).iter().nth(MAX_TARGET_ATTACHMENTS).filter(|_| !settings.is_forward());
         excess.map_or(Ok(()), |role| {
-            let (setting, value) = role.setting();
+            let (setting, value) = role.setting(settings);
             let expected = format!(
                 "another value, or fewer settings that add textures to the accumulation target: at most \
                  {MAX_TARGET_ATTACHMENTS} fit"

@@ -113,13 +113,14 @@ mod tests {
     use glam::{Mat4, UVec2, vec3};
 
     use super::*;
-    use crate::frame::{View, particle_bounds};
+    use crate::frame::{SpriteExtent, View, particle_bounds};
+    use crate::settings::Settings;
     use crate::view_setup::projected_bounds::project_bounds;
 
     fn extent(particles: &[Particle], depth: Option<f32>) -> SmokeExtent {
         let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));
         let view = ViewGeometry::new(&view).unwrap();
-        let bounds = particle_bounds(particles, 1.5);
+        let bounds = particle_bounds(particles, SpriteExtent::of(&Settings::default()));
         let mut sums = ExtentSums::default();
         sums.clear();
         particles

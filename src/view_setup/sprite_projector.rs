@@ -11,6 +11,7 @@ use crate::formula::soft_fade::near_fade;
 use crate::formula::sprite::{
     FlipbookFrames, animation_frames, offset_frames, sprite_frame, sprite_lod, trimmed_corner,
 };
+use crate::formula::stretch::{MIN_RADIUS, sprite_stretch, stretched, widened_share};
 use crate::formula::technique::sphere_axis_bounds;
 use crate::formula::uniforms::{SystemUniform, ViewUniform};
 use crate::formula::view::{pixel_from_ndc, pixels_per_metre};
@@ -34,6 +35,8 @@ pub struct ProjectedSprite {
     pub amount: f32,
     pub frames: FlipbookFrames,
     pub lod: f32,
+    /// As in [`sprite_stretch`].
+    pub stretch: Vec2,
 }
 
 /// Area that a sprite covers on a grid.
@@ -93,13 +96,21 @@ impl SpriteProjector<'_> {
         let half_depth = self.sprite_thickness(radius);
         let (front, back) = (-centre.z - half_depth, -centre.z + half_depth);
         let fade = near_fade(back, system.near_fade_start, system.near_fade_end);
-        let amount = particle.shown_amount() * system.opacity * fade;
+        let mut amount = particle.shown_amount() * system.opacity * fade;
         let is_seen = back > view.near && front < view.far && radius > 0.0 && amount > 0.0;
         if !is_seen {
             return None;
         }
         let depth = (-centre.z).max(view.near);
         let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic);
+        let mut stretch = Vec2::ZERO;
+        if self.stretches() {
+            let thin = self.stretch(particle, centre, radius);
+            let wide = radius.max(MIN_RADIUS / (pixels * texels_per_pixel));
+            stretch = self.stretch(particle, centre, wide);
+            amount *= widened_share(radius, wide, thin, stretch);
+            radius = wide;
+        }
         let diameter = 2.0 * radius * pixels * texels_per_pixel;
         let frame = sprite_frame(trim.animation, particle.frame, particle.age, system.frame_count);
         Some(ProjectedSprite {
@@ -108,7 +119,19 @@ impl SpriteProjector<'_> {
             amount,
             frames: animation_frames(trim.animation, frame, system.frame_count),
             lod: sprite_lod(system.sprite_size, diameter),
+            stretch,
         })
+    }
+
+    fn stretches(&self) -> bool {
+        self.system.stretch > 0.0
+    }
+
+    /// Same as `stretch_of()` in the shader.
+    fn stretch(&self, particle: &Particle, centre: Vec3, radius: f32) -> Vec2 {
+        let Self { view, system, .. } = *self;
+        let velocity = system.view_from_particles.transform_vector3(particle.velocity);
+        sprite_stretch(centre, velocity, system.stretch, radius, system.stretch_limit, view.orthographic)
     }
 
     /// Returns the extent of a flat sprite from its centre, as fractions of half a side: left, down, right, up.
@@ -181,13 +204,13 @@ impl SpriteProjector<'_> {
     }
 
     /// Returns the corners of the trimmed square of a flat sprite, in pixels, in order around it.
-    /// Returns the corners of a flat sprite, NDC.
     pub fn corners(&self, sprite: &ProjectedSprite, reach: Vec4, rotation: f32) -> [Vec2; 4] {
         let centre = self.clamped_to_near_plane(sprite.centre);
         let along = if self.view.orthographic > 0.5 { 1.0 } else { -centre.z };
         let turn = Vec2::from_angle(rotation) * sprite.radius;
         [Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)].map(|corner| {
-            let ray = (centre.xy() + turn.rotate(trimmed_corner(corner, reach))) / along;
+            let place = stretched(turn.rotate(trimmed_corner(corner, reach)), sprite.stretch);
+            let ray = (centre.xy() + place) / along;
             pixel_from_ndc(self.ndc(ray), self.view.size)
         })
     }

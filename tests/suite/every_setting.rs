@@ -127,8 +127,10 @@ fn stages() -> Vec<TestScene> {
         (scene.settings.volumetric.noise_size, scene.settings.specular_scatter.size) = (1.5, 260.0);
         scene.settings.boost = 1.0;
         // Particles of every age and flipbook frame.
-        for (index, particle) in (0..).zip(&mut scene.particles) {
-            (particle.age, particle.frame) = (index as f32 / 59.0, index as f32 * 0.37);
+        for (index, particle) in (0u8..).zip(&mut scene.particles) {
+            (particle.age, particle.frame) = (f32::from(index) / 59.0, f32::from(index) * 0.37);
+            particle.velocity = Vec3::new(1.5, 0.05 * f32::from(index) - 1.5, 0.5);
+            (particle.tint, particle.heat) = ([255, 4 * index, 100], 255 - 2 * index);
         }
         (scene.material.sprite, scene.material.detail, scene.material.six_way) = flipbook.clone();
         scene.time = 1.3;
@@ -145,6 +147,7 @@ fn stages() -> Vec<TestScene> {
     let under_a_sky: fn(&mut Settings) =
         |s| (s.shadow.strength, s.shadow.by_depth, s.ambient.intensity) = (0.7, true, 1.0);
     let burning: fn(&mut Settings) = |s| (s.fire.intensity, s.ambient.intensity) = (2.0, 1.0);
+    let stretched: fn(&mut Settings) = |s| (s.sprite.stretch, s.sprite.stretch_limit) = (2.0, 1.6);
     let mut stages = vec![
         scene(Technique::Soft, RenderPath::Raster, burning),
         scene(Technique::Soft, RenderPath::Raster, nothing),
@@ -153,6 +156,7 @@ fn stages() -> Vec<TestScene> {
         scene(Technique::Soft, RenderPath::Raster, contrast),
         scene(Technique::Soft, RenderPath::Raster, tested),
         scene(Technique::Soft, RenderPath::Raster, six_way),
+        scene(Technique::Soft, RenderPath::Raster, stretched),
         scene(Technique::SphericalBillboard, RenderPath::Raster, nothing),
         scene(Technique::Density, RenderPath::Raster, nothing),
         scene(Technique::VolumetricSoft, RenderPath::Raster, nothing),

@@ -7,8 +7,8 @@ use haze::ramp::Ramp;
 use haze::settings::*;
 
 use crate::gpu::{gpu, is_tiled_available};
-use crate::psnr::{MIN_PSNR, psnr};
-use crate::test_scene::TestScene;
+use crate::psnr::psnr;
+use crate::test_scene::{Change, TestScene, assert_agreement_and_effect};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -26,19 +26,6 @@ fn burning() -> TestScene {
 
 fn drawn(scene: &TestScene) -> Image<Vec4> {
     scene.on_gpu(gpu()).picture
-}
-
-type Change = fn(&mut TestScene);
-
-/// Both renderers draw the same, and something else after `turn_off`: `most` dB alike.
-fn assert_agreement_and_effect(name: &str, mut scene: TestScene, turn_off: Change, most: f32) {
-    let (seen, reference) = (drawn(&scene), scene.on_cpu());
-    let same = psnr(&seen, &reference);
-    turn_off(&mut scene);
-    let effect = psnr(&drawn(&scene), &seen);
-    println!("{name}: {same:.1} dB, turned off {effect:.1} dB");
-    assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-    assert!(effect < most, "{name}: turned off {effect:.1} dB");
 }
 
 #[test]

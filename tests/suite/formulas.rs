@@ -30,6 +30,7 @@ mod soft_fade;
 mod sprite;
 mod sprite_fragment;
 mod sprite_vertex;
+mod stretch;
 mod technique;
 mod testable;
 mod tile_sprite;
@@ -88,6 +89,7 @@ fn formulas() -> Vec<Formula> {
         sprite::formulas(),
         sprite_fragment::formulas(),
         sprite_vertex::formulas(),
+        stretch::formulas(),
         technique::formulas(),
         tile_sprite::formulas(),
         tiles::formulas(),
@@ -217,11 +219,13 @@ const INDIRECT: &[(&str, &str)] = &[
     ("sample_density", "reads the density grid; whole frames with shadow cover it"),
     ("optical_depth_towards", "reads the density grid; whole frames with shadow cover it"),
     ("haze_transmittance", "reads the volume of optical depths; presets cover it, whose scene is shaded by smoke"),
-    ("heat_by_age", "calls painted_share with a ramp lookup; whole frames with fire cover it"),
+    ("heat_of", "calls painted_share with a ramp lookup; whole frames with fire cover it"),
     ("fragment_heat", "calls heat_at with a fragment"),
     ("fire_light", "calls emission with fire_from_moments"),
     ("has_values", "decides only whether a buffer is read; tests of the tiled path cover it"),
-    ("tint_by_age", "calls sample_ramp; whole frames with colors by age cover it"),
+    ("tint_of", "calls sample_ramp; whole frames with colors cover it"),
+    ("stretch_of", "calls sprite_stretch; project_sprite covers it"),
+    ("load_particle", "reads the particles of the pass"),
     ("values_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
     ("values_of", "reads a buffer; tests of the tiled path with shadow cover it"),
 ];

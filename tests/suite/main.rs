@@ -19,6 +19,7 @@ mod gpu;
 mod hosts;
 mod import_graph;
 mod lighting;
+mod moving_sprites;
 mod mutants;
 mod overdraw;
 mod particles;

@@ -133,35 +133,36 @@ fn measured_extent_is_laid_out_as_in_the_systems_uniforms() {
 }
 
 #[test]
-fn particle_matches_two_vec4f_vertex_attributes() {
-    let offsets = [
-        ("position", std::mem::offset_of!(Particle, position)),
-        ("radius", std::mem::offset_of!(Particle, radius)),
-        ("rotation", std::mem::offset_of!(Particle, rotation)),
-        ("amount", std::mem::offset_of!(Particle, amount)),
-        ("frame", std::mem::offset_of!(Particle, frame)),
-        ("age", std::mem::offset_of!(Particle, age)),
+fn particle_matches_the_vertex_attributes() {
+    use naga::VectorSize::{Quad, Tri};
+    use std::mem::offset_of;
+    // Each attribute is named after the fields that it contains.
+    let attributes = [
+        ("position_radius", offset_of!(Particle, position), Quad),
+        ("rotation_amount_frame_age", offset_of!(Particle, rotation), Quad),
+        ("velocity", offset_of!(Particle, velocity), Tri),
+        // Bytes, which the hardware converts.
+        ("tint_heat", offset_of!(Particle, tint), Quad),
     ];
-    assert_eq!(offsets.map(|(_, offset)| offset), [0, 12, 16, 20, 24, 28]);
-    assert_eq!(size_of::<Particle>(), 32);
-    // Each attribute is a vec4f, named after the fields that it contains.
+    assert_eq!(attributes.map(|(_, offset, _)| offset), [0, 16, 32, 44]);
+    let others = [offset_of!(Particle, radius), offset_of!(Particle, amount), offset_of!(Particle, frame)];
+    assert_eq!(others, [12, 20, 24]);
+    assert_eq!((offset_of!(Particle, age), offset_of!(Particle, heat)), (28, 47));
+    assert_eq!(size_of::<Particle>(), 48);
     for file in ["accumulate.wgsl", "forward.wgsl"] {
         let module = composed(file);
         let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Particle")).unwrap();
         let naga::TypeInner::Struct { members, .. } = &ty.inner else { panic!("{file}: Particle is not a struct") };
-        assert_eq!(members.len(), 2, "{file}");
-        for (index, member) in members.iter().enumerate() {
-            let bytes = 16 * index..16 * (index + 1);
-            let fields: Vec<_> =
-                offsets.iter().filter(|(_, offset)| bytes.contains(offset)).map(|(name, _)| *name).collect();
-            assert_eq!(member.name.as_deref(), Some(fields.join("_").as_str()), "{file}");
+        assert_eq!(members.len(), attributes.len(), "{file}");
+        for (index, (member, (name, _, size))) in members.iter().zip(&attributes).enumerate() {
+            assert_eq!(member.name.as_deref(), Some(*name), "{file}");
             let location = match member.binding {
                 Some(naga::Binding::Location { location, .. }) => location as usize,
-                _ => panic!("{file}: {:?} has no location", member.name),
+                _ => panic!("{file}: {name} has no location"),
             };
             assert_eq!(location, index, "{file}");
-            let vec4f = naga::TypeInner::Vector { size: naga::VectorSize::Quad, scalar: naga::Scalar::F32 };
-            assert_eq!(module.types[member.ty].inner, vec4f, "{file}");
+            let vector = naga::TypeInner::Vector { size: *size, scalar: naga::Scalar::F32 };
+            assert_eq!(module.types[member.ty].inner, vector, "{file}");
         }
     }
 }

@@ -181,7 +181,7 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
     let refused = |file: &str, from: &str, to: &str| ShaderFolder::new().edit(file, from, to).refusal();
     let gone = refused("transfer.wgsl", "override BACK_FACES: bool", "const BACK_FACES: bool");
     assert!(gone.starts_with("transfer.wgsl:1:1: ") && gone.contains("'BACK_FACES' not found"), "{gone}");
-    let input = refused("lib/sprite_vertex.wgsl", "@location(0)", "@location(9)");
+    let input = refused("lib/particle.wgsl", "@location(0)", "@location(9)");
     assert!(input.contains("accumulate.wgsl:1:1: Input is not provided"), "{input}");
     let divided = refused("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / DEBUG_VIEW) {");
     assert!(divided.ends_with("fragment shader: Division by zero"), "{divided}");

@@ -16,6 +16,7 @@ use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::sprite::six_way::six_way_layout;
 
 use crate::gpu::gpu;
+use crate::psnr::{MIN_PSNR, psnr};
 use crate::test_host::HostKind;
 
 /// All inputs of a frame, in memory.
@@ -172,6 +173,7 @@ impl TestScene {
                 amount: 0.1 + 0.4 * unit(b.z),
                 frame: 0.0,
                 age: 0.5,
+                ..Particle::default()
             }
         };
         Self {
@@ -280,4 +282,18 @@ impl TestScene {
         haze_reference::render(&frame, &mut picture)?;
         Ok(picture)
     }
+}
+
+/// A change of a scene.
+pub type Change = fn(&mut TestScene);
+
+/// Both renderers draw the same, and something else after `turn_off`: `most` dB alike.
+pub fn assert_agreement_and_effect(name: &str, mut scene: TestScene, turn_off: Change, most: f32) {
+    let (seen, reference) = (scene.on_gpu(gpu()).picture, scene.on_cpu());
+    let same = psnr(&seen, &reference);
+    turn_off(&mut scene);
+    let effect = psnr(&scene.on_gpu(gpu()).picture, &seen);
+    println!("{name}: {same:.1} dB, turned off {effect:.1} dB");
+    assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+    assert!(effect < most, "{name}: turned off {effect:.1} dB");
 }

@@ -12,10 +12,11 @@ use crate::psnr::psnr;
 
 const SIZE: UVec2 = UVec2::new(640, 360);
 
-/// Renders with a scale and an upsampling mode for every system.
+/// Renders with a scale and an upsampling mode for every system but sparks, which are smaller than a texel: presets draw them
+/// at scale 1.
 fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Image<Vec4> {
     let mut shot = shot.clone();
-    for system in &mut shot.preset.systems {
+    for system in shot.preset.systems.iter_mut().filter(|system| !system.settings.is_stretched()) {
         (system.settings.accumulate.scale, system.settings.accumulate.upsample) = (scale, upsample);
     }
     render_on_gpu(&shot, true)

@@ -128,19 +128,35 @@ pub struct SmokeParticle {
     pub frame: f32,
     /// Share of the puff's life that has passed, 0 to 1. Only fire and color by age read it.
     pub age: f32,
+    /// Velocity in the entity's local space, metres per second. Only presets with `sprite.stretch` above 0 read it.
+    pub velocity: Vec3,
+    /// Color of the puff, 0 to 1, on which light falls. Only presets with `sprite.tint` above 0 read it.
+    pub tint: LinearRgba,
+    /// Multiplies the heat that the preset has for the puff's age, 0 to 1. Only fire reads it.
+    pub heat: f32,
 }
 
 impl Default for SmokeParticle {
     fn default() -> Self {
-        Self { position: Vec3::ZERO, radius: 0.5, rotation: 0.0, amount: 0.3, frame: 0.0, age: 0.5 }
+        Self {
+            position: Vec3::ZERO,
+            radius: 0.5,
+            rotation: 0.0,
+            amount: 0.3,
+            frame: 0.0,
+            age: 0.5,
+            velocity: Vec3::ZERO,
+            tint: LinearRgba::WHITE,
+            heat: 1.0,
+        }
     }
 }
 
 /// Particles of a simulation on the GPU, in the entity's local space. On an entity with [`Smoke`], they take the place that
 /// [`SmokeParticles`] have; those win if an entity has both.
 ///
-/// Each particle is 8 `f32`, as [`SmokeParticle::to_array`] lists them. The buffer needs the usages `VERTEX` and `STORAGE`. A
-/// compute pass of the program writes it before the main pass of the first camera.
+/// Each particle is twelve words, as [`SmokeParticle::to_words`] lists them. The buffer needs the usages `VERTEX` and
+/// `STORAGE`. A compute pass of the program writes it before the main pass of the first camera.
 #[derive(Component, Clone, Debug)]
 pub struct SmokeBuffer {
     /// Buffer of the particles.
@@ -153,15 +169,33 @@ pub struct SmokeBuffer {
 }
 
 impl SmokeParticle {
-    /// Layout of a particle in a [`SmokeBuffer`]: x, y, z, radius, rotation, amount, frame, age.
-    pub const fn to_array(self) -> [f32; 8] {
-        let Self { position: Vec3 { x, y, z }, radius, rotation, amount, frame, age } = self;
-        [x, y, z, radius, rotation, amount, frame, age]
+    /// Layout of a particle in a [`SmokeBuffer`]: the bits of eleven `f32` (position, radius, rotation, amount, frame, age,
+    /// velocity), then WGSL's `pack4x8unorm(vec4f(tint, heat))`.
+    pub fn to_words(self) -> [u32; 12] {
+        let particle = self.to_haze();
+        let (Vec3 { x, y, z }, Vec3 { x: u, y: v, z: w }) = (self.position, self.velocity);
+        let numbers = [x, y, z, self.radius, self.rotation, self.amount, self.frame, self.age, u, v, w];
+        let [red, green, blue] = particle.tint;
+        let mut words = [0; 12];
+        words.iter_mut().zip(numbers).for_each(|(word, number)| *word = number.to_bits());
+        words[11] = u32::from_le_bytes([red, green, blue, particle.heat]);
+        words
     }
 
     fn to_haze(self) -> haze::Particle {
-        let Self { position, radius, rotation, amount, frame, age } = self;
-        haze::Particle { position: convert::vec3(position), radius, rotation, amount, frame, age }
+        let Self { position, radius, rotation, amount, frame, age, velocity, tint, heat } = self;
+        let share = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+        haze::Particle {
+            position: convert::vec3(position),
+            radius,
+            rotation,
+            amount,
+            frame,
+            age,
+            velocity: convert::vec3(velocity),
+            tint: [tint.red, tint.green, tint.blue].map(share),
+            heat: share(heat),
+        }
     }
 }
 

@@ -125,6 +125,7 @@ impl PuffKind {
                 amount: 1.0,
                 frame: (b.y % FRAMES) as f32,
                 age: 0.5,
+                ..Particle::default()
             }
         };
         PuffCloud { particles: (0..PUFFS).map(puff).collect(), kind: self }
@@ -132,7 +133,15 @@ impl PuffKind {
 
     /// One puff.
     pub fn single(&self) -> PuffCloud<'_> {
-        let particle = Particle { position: Vec3::ZERO, radius: 0.8, rotation: 0.0, amount: 1.0, frame: 0.0, age: 0.5 };
+        let particle = Particle {
+            position: Vec3::ZERO,
+            radius: 0.8,
+            rotation: 0.0,
+            amount: 1.0,
+            frame: 0.0,
+            age: 0.5,
+            ..Particle::default()
+        };
         PuffCloud { particles: vec![particle], kind: self }
     }
 

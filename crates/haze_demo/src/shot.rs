@@ -20,7 +20,7 @@ const MAX_CPU_BIRTHS: u32 = 1 << 14;
 /// Source of a system's particles.
 pub(super) enum ParticleSource {
     Particles(Vec<Particle>),
-    EmitterSnapshot(EmitterSnapshot),
+    EmitterSnapshot(Box<EmitterSnapshot>),
 }
 
 /// A preset with its images and particle files loaded.
@@ -144,7 +144,7 @@ impl Shot {
     /// evaluated here but on the GPU.
     pub(super) fn sources(&self) -> Vec<(ParticleSource, Settings)> {
         self.each_system(|system, cache| match particle_files::emission(system, cache, self.preset.time) {
-            Some(emission) if emission.count() > MAX_CPU_BIRTHS => ParticleSource::EmitterSnapshot(emission),
+            Some(emission) if emission.count() > MAX_CPU_BIRTHS => ParticleSource::EmitterSnapshot(Box::new(emission)),
             _ => {
                 let mut particles = Vec::new();
                 particle_files::particles(system, cache, self.preset.time, &mut particles);

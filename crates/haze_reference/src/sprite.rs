@@ -17,6 +17,7 @@ use haze::formula::sprite::{
     FlipbookFrames, checkerboard, offset_frames, sample_detail, sample_flipbook, sample_sprite, sprite_uv,
     trimmed_corner, unrotate,
 };
+use haze::formula::stretch::{stretched_normal, unstretched};
 use haze::formula::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere,
     spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
@@ -36,6 +37,8 @@ pub struct SpriteSetup {
     pub radius: f32,
     /// Cosine and sine of the rotation.
     pub rotation: Vec2,
+    /// As in [`sprite_stretch`](haze::formula::stretch::sprite_stretch).
+    pub stretch: Vec2,
     /// Amount after near fade and opacity.
     pub amount: f32,
     /// Mip level.
@@ -109,26 +112,27 @@ impl VisibleSystem<'_> {
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
         let (technique, projector) = (self.settings.technique, self.projector());
         let sprite = projector.project(particle, texels_per_pixel)?;
-        let ProjectedSprite { centre, radius, amount, frames, lod } = sprite;
+        let ProjectedSprite { centre, radius, amount, frames, lod, stretch } = sprite;
         let view_depth = -centre.z;
         let (min, max) = if technique.is_sphere() {
             projector.sphere_rectangle(&sprite, texels_per_pixel)
         } else {
-            self.square_rectangle(projector.clamped_to_near_plane(centre), radius)
+            self.square_rectangle(projector.clamped_to_near_plane(centre), radius, stretch)
         };
         Some(SpriteSetup {
             centre,
             view_depth,
             radius,
             rotation: Vec2::new(particle.rotation.cos(), particle.rotation.sin()),
+            stretch,
             amount,
             lod,
             frames,
             reach: projector.trimmed_extent(&sprite),
             age: particle.age,
             optical_depths: self.optical_depths_of(particle, centre),
-            heat: self.heat_by_age(particle.age),
-            tint: self.tint_by_age(particle.age),
+            heat: self.heat_of(particle),
+            tint: self.tint_of(particle),
             weight: self.order_weight(view_depth),
             min,
             max,
@@ -146,17 +150,22 @@ impl VisibleSystem<'_> {
     }
 
     /// Heat of a particle.
-    pub fn heat_by_age(&self, age: f32) -> f32 {
-        let paint = |ramp| painted_share(self.sample_ramp(ramp, age));
-        if self.settings.burns() { paint(&self.material.heat_ramp) } else { 0.0 }
+    pub fn heat_of(&self, particle: &Particle) -> f32 {
+        let by_age = |ramp| painted_share(self.sample_ramp(ramp, particle.age));
+        match self.settings.burns() {
+            true => by_age(&self.material.heat_ramp) * (f32::from(particle.heat) / 255.0),
+            false => 0.0,
+        }
     }
 
     /// Color of a particle.
-    pub fn tint_by_age(&self, age: f32) -> Vec3 {
-        match self.settings.is_tinted() {
-            true => Vec3::ONE.lerp(self.sample_ramp(&self.material.age_ramp, age), self.system.age_color),
-            false => Vec3::ONE,
+    pub fn tint_of(&self, particle: &Particle) -> Vec3 {
+        if !self.settings.is_tinted() {
+            return Vec3::ONE;
         }
+        let by_age = self.sample_ramp(&self.material.age_ramp, particle.age);
+        let own = Vec3::from(particle.tint.map(|channel| f32::from(channel) / 255.0));
+        Vec3::ONE.lerp(by_age, self.system.age_color) * Vec3::ONE.lerp(own, self.system.tint)
     }
 
     /// Heat of a fragment of a sprite with this heat.
@@ -188,9 +197,10 @@ impl VisibleSystem<'_> {
         SpriteProjector { view: &self.view, system: &self.system, technique: self.settings.technique, trim: &self.trim }
     }
 
-    fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
+    fn square_rectangle(&self, centre: Vec3, radius: f32, stretch: Vec2) -> (Vec2, Vec2) {
         // Half the diagonal contains the sprite at every rotation.
-        let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2);
+        let ratio = 1.0 / (1.0 - stretch.length_squared()).max(1.0e-4);
+        let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2 * ratio);
         let (a, b) = (self.pixel_from_view(centre - reach), self.pixel_from_view(centre + reach));
         (a.min(b), a.max(b))
     }
@@ -203,7 +213,7 @@ impl VisibleSystem<'_> {
         }
         let drawn = self.projector().clamped_to_near_plane(sprite.centre);
         let offset = self.view_position(pixel, -drawn.z) - drawn;
-        let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
+        let local = unrotate(unstretched(offset.xy(), sprite.stretch), sprite.rotation) / sprite.radius;
         let (low, high) = (trimmed_corner(Vec2::NEG_ONE, sprite.reach), trimmed_corner(Vec2::ONE, sprite.reach));
         if local.cmplt(low).any() || local.cmpgt(high).any() {
             return None;
@@ -275,7 +285,7 @@ impl VisibleSystem<'_> {
             sample_sprite(&self.material.sprite, uv, frames, motion, lod)
         };
         SpriteFragment {
-            normal: rotate_normal(texel.xyz(), rotation),
+            normal: stretched_normal(rotate_normal(texel.xyz(), rotation), sprite.stretch),
             six_way: SixWay::default(),
             amount: texel.w,
             thickness: texel.w,

@@ -3,7 +3,7 @@
 
 use crate::error::FieldError;
 use crate::renderer::gpu::pipeline::{ADD_ALL, Constant, PREMULTIPLIED_OVER, WEIGHTED_SUM};
-use crate::settings::{AccumulationFormat, BlendOrder};
+use crate::settings::{AccumulationFormat, BlendOrder, Settings};
 use crate::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 /// Properties of a texture of the accumulation target.
@@ -164,17 +164,16 @@ impl Attachment {
 ///
 /// # Errors
 /// Names the setting of system `index` that adds the first texture that does not fit.
-pub(crate) fn validate_attachments(
-    index: usize,
-    set: AttachmentSet,
-    format: AccumulationFormat,
-) -> Result<(), FieldError> {
-    let rows = attachments(set).map(|attachment| (attachment.role, attachment.raster_format(format)));
-    validate_rows(index, rows)
+pub(crate) fn validate_attachments(index: usize, settings: &Settings) -> Result<(), FieldError> {
+    let format = settings.accumulate.format;
+    let rows =
+        attachments(AttachmentSet::of(settings)).map(|attachment| (attachment.role, attachment.raster_format(format)));
+    validate_rows(index, settings, rows)
 }
 
 fn validate_rows(
     index: usize,
+    settings: &Settings,
     rows: impl Iterator<Item = (AttachmentRole, wgpu::TextureFormat)>,
 ) -> Result<(), FieldError> {
     let (mut count, mut bytes) = (0, 0);
@@ -182,7 +181,7 @@ fn validate_rows(
         count += 1;
         bytes = bytes_with(bytes, format);
         if count > MAX_TARGET_ATTACHMENTS || bytes > MAX_BYTES_PER_SAMPLE {
-            let (setting, value) = role.setting();
+            let (setting, value) = role.setting(settings);
             let expected = format!(
                 "another value, or fewer settings that add textures to the accumulation target: this is its texture \
                  {count} of at most {MAX_TARGET_ATTACHMENTS}, and takes it to {bytes} bytes per sample of at most \
@@ -217,7 +216,7 @@ mod tests {
     #[test]
     fn sets_beyond_four_textures_or_32_bytes_per_sample_are_refused_by_name() {
         let refused = |rows: &[(AttachmentRole, wgpu::TextureFormat)]| {
-            validate_rows(2, rows.iter().copied()).map_err(|error| error.to_string())
+            validate_rows(2, &Settings::default(), rows.iter().copied()).map_err(|error| error.to_string())
         };
         let four = [(NormalAndAmount, Rgba16Float), (SixWay, Rgba16Float), (SixWay, Rgba8Unorm), (SixWay, Rgba16Float)];
         assert_eq!(refused(&four), Ok(()));
@@ -261,7 +260,8 @@ mod tests {
         let formats = tiled_formats(all, AccumulationFormat::Rgba16Float);
         assert_eq!(formats, [Rgba16Float, R32Float, Rgba16Float, Rgba16Float]);
         for format in [AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm] {
-            validate_attachments(0, all, format).unwrap();
+            let rows = attachments(all).map(|attachment| (attachment.role, attachment.raster_format(format)));
+            validate_rows(0, &Settings::default(), rows).unwrap();
         }
     }
 }

@@ -40,15 +40,26 @@ fn test_emitter(x: &[f32]) -> EmitterUniform {
         fade_in: 0.25,
         fade_out: 0.5,
         frame_rate: 4.0,
+        tint: vec3(0.9, 0.2, 0.4),
+        heat_spread: 0.6,
+        other_tint: vec3(0.3, 0.8, 1.0),
+        bounce: 0.0,
+        up: Vec3::Y,
+        floor: 1.8,
+        per_pulse: 13,
+        first_in_pulse: 5,
+        period: 0.34,
+        padding: 0.0,
     }
 }
 
 macro_rules! wgsl_emitter {
     ($call:literal) => {
         concat!(
-            "let e = Emitter(4294967195u, 330u, 3u, u32(x(0)), 8.0, 40.0, 6.0, 0.4, vec3f(1.0, 2.0, 3.0), 0.7, \
+            "var e = Emitter(4294967195u, 330u, 3u, u32(x(0)), 8.0, 40.0, 6.0, 0.4, vec3f(1.0, 2.0, 3.0), 0.7, \
              vec3f(0.5, 0.25, 0.75), 0.5, vec3f(0.1, 0.6, 0.0), 0.6, vec3f(0.0, 0.5, 0.1), 0.5, vec3f(0.3, 0.0, -0.2), \
-             1.5, vec3f(0.6, 0.8, 0.0), 0.25, vec3f(0.0, 0.0, 1.0), 1.5, vec2f(0.6, 0.8), 0.25, 0.5, 0.5, 0.25, 0.5, 4.0); ",
+             1.5, vec3f(0.6, 0.8, 0.0), 0.25, vec3f(0.0, 0.0, 1.0), 1.5, vec2f(0.6, 0.8), 0.25, 0.5, 0.5, 0.25, 0.5, 4.0, \
+             vec3f(0.9, 0.2, 0.4), 0.6, vec3f(0.3, 0.8, 1.0), 0.0, vec3f(0.0, 1.0, 0.0), 1.8, 13u, 5u, 0.34, 0.0); ",
             $call
         )
     };
@@ -57,13 +68,25 @@ macro_rules! wgsl_emitter {
 const WGSL_BIRTH_OFFSET: &str =
     wgsl_emitter!("let v = birth_offset(e, vec3f(x(1), x(2), x(3))); y(0, v.x); y(1, v.y); y(2, v.z);");
 
+const WGSL_FLIGHT: &str = wgsl_emitter!(
+    "let f = flight(e, vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), x(6)); y3(0, f.position); y3(3, f.velocity);"
+);
+
+const WGSL_BOUNCING: &str = wgsl_emitter!(
+    "e.bounce = 0.7; e.rise = vec3f(0.0, -9.0, 0.0); \
+     let f = bouncing_flight(e, vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), x(6)); \
+     y3(0, f.position); y3(3, f.velocity);"
+);
+
+const WGSL_DELAY: &str = wgsl_emitter!("y(0, birth_delay(e, u32(x(0))));");
+
 const WGSL_EMITTED: &str = wgsl_emitter!(
     "let p = emitted_particle(e, u32(x(1))); for (var i = 0u; i < 4u; i++) { y(i, p.position_radius[i]); \
-     y(4u + i, p.rotation_amount_frame_age[i]); }"
+     y(4u + i, p.rotation_amount_frame_age[i]); } y3(8, p.velocity); y4(11, unpack4x8unorm(p.tint_heat));"
 );
 
 pub fn formulas() -> Vec<Formula> {
-    [functions(), births()].into_iter().flatten().collect()
+    [functions(), flights(), births()].into_iter().flatten().collect()
 }
 
 fn functions() -> Vec<Formula> {
@@ -108,6 +131,64 @@ fn functions() -> Vec<Formula> {
     ]
 }
 
+fn flights() -> Vec<Formula> {
+    const CASES: [(f32, f32); 7] =
+        [(-1.0, 1.0), (1.8, 3.0), (-1.0, 1.0), (-2.0, 2.0), (-3.0, 3.0), (-2.0, 2.0), (0.0, 3.0)];
+    vec![
+        Formula {
+            name: "flight",
+            file: "lib/emitter.wgsl",
+            wgsl: WGSL_FLIGHT,
+            reference: |x| {
+                let flight = emitter::flight(&test_emitter(&[0.0]), v3(x), v3(&x[3..]), x[6]);
+                [flight.position.to_array(), flight.velocity.to_array()].concat()
+            },
+            cases: random(60, &CASES),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("emitter.wind * (seconds - reached)", "emitter.wind * seconds"),
+                ("emitter.rise * integrals.y", "emitter.rise"),
+                ("velocity * kept", "velocity"),
+                ("emitter.wind * (1.0 - kept)", "emitter.wind"),
+                ("emitter.rise * reached", "emitter.rise"),
+            ],
+        },
+        Formula {
+            name: "bouncing_flight",
+            file: "lib/emitter.wgsl",
+            wgsl: WGSL_BOUNCING,
+            reference: |x| {
+                let emitter = EmitterUniform { bounce: 0.7, rise: vec3(0.0, -9.0, 0.0), ..test_emitter(&[0.0]) };
+                let flight = emitter::bouncing_flight(&emitter, v3(x), v3(&x[3..]), x[6]);
+                [flight.position.to_array(), flight.velocity.to_array()].concat()
+            },
+            cases: random(200, &CASES),
+            // The last bounces turn a small error of the time of impact into one of velocity.
+            tolerance: 2e-3,
+            mutants: &[
+                ("2.0 * dot(impact.velocity", "dot(impact.velocity"),
+                ("reflected * emitter.bounce", "reflected"),
+                ("left -= above", "left -= below * 0.5"),
+                ("const MAX_BOUNCES: u32 = 3u", "const MAX_BOUNCES: u32 = 2u"),
+                ("const IMPACT_STEPS: u32 = 20u", "const IMPACT_STEPS: u32 = 6u"),
+            ],
+        },
+        Formula {
+            name: "birth_delay",
+            file: "lib/emitter.wgsl",
+            wgsl: WGSL_DELAY,
+            reference: |x| vec![emitter::birth_delay(&test_emitter(&[0.0]), x[0] as u32)],
+            cases: random(60, &[(0.0, 330.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("f32(pulse) * emitter.period", "f32(pulse)"),
+                ("- f32(emitter.first_in_pulse)", ""),
+                ("in_pulse / emitter.rate", "in_pulse"),
+            ],
+        },
+    ]
+}
+
 fn births() -> Vec<Formula> {
     vec![
         Formula {
@@ -139,7 +220,9 @@ fn births() -> Vec<Formula> {
             wgsl: WGSL_EMITTED,
             reference: |x| {
                 let emitted = emitter::emitted_particle(&test_emitter(x), x[1] as u32);
-                [emitted.position_radius, emitted.rotation_amount_frame_age].map(|v| v.to_array()).concat()
+                let first = [emitted.position_radius, emitted.rotation_amount_frame_age].map(|v| v.to_array()).concat();
+                let color = emitted.tint_heat.map(|channel| f32::from(channel) / 255.0);
+                [&first, &emitted.velocity.to_array()[..], &color].concat()
             },
             // 40 births per second over the last 8 seconds: some particles are dead.
             cases: with_choices(count(EmitterShape::ALL), &[(0.0, 330.0)]),
@@ -147,19 +230,21 @@ fn births() -> Vec<Formula> {
             // turbulence_scale.
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("(f32(number) + life.y) / emitter.rate", "f32(number) / emitter.rate"),
+                (" - life.y / emitter.rate", ""),
                 ("seconds < lifetime", "true"),
                 ("2.0 * life.x - 1.0", "life.x"),
                 ("outward * emitter.burst", "vec3f(0.0)"),
                 ("emitter.velocity_spread * life.z", "emitter.velocity_spread"),
-                ("emitter.wind * (seconds - reached)", "emitter.wind * seconds"),
-                ("emitter.rise * integrals.y", "emitter.rise"),
                 ("2.3 / emitter.turbulence_scale", "2.0 / emitter.turbulence_scale"),
-                ("emitter.turbulence * age", "emitter.turbulence"),
+                ("base + swirl * age", "base + swirl"),
+                ("swirl / lifetime", "swirl"),
+                ("mix(emitter.tint, emitter.other_tint, color.x)", "emitter.tint"),
+                ("emitter.heat_spread * color.y", "emitter.heat_spread"),
+                ("birth_random(index, 4u", "birth_random(index, 3u"),
                 ("emitter.seed * 977u + 5u", "emitter.seed * 977u"),
                 ("* sqrt(age)", "* age"),
                 ("2.0 * look.x - 1.0", "look.x"),
-                ("(2.0 * look.z - 1.0) * reached", "(2.0 * look.z - 1.0) * seconds"),
+                ("(2.0 * look.z - 1.0) * turned", "(2.0 * look.z - 1.0) * seconds"),
                 ("fade_in * fade_out", "fade_in"),
                 ("smoothstep_unit(age / max(emitter.fade_in", "saturate(age / max(emitter.fade_in"),
                 ("place.x * 256.0 + seconds", "place.x * 256.0 - seconds"),

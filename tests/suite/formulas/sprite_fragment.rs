@@ -20,6 +20,7 @@ fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
         view_depth: -centre.z,
         radius,
         rotation: Vec2::new(0.6, 0.8),
+        stretch: Vec2::new(0.5, -0.3),
         amount: 0.8,
         lod,
         frames: flipbook_frames(0.7, 3.0),
@@ -39,7 +40,7 @@ macro_rules! with_sprite {
     ($wgsl:literal) => {
         concat!(
             "TECHNIQUE = u32(x(0)); var in: SpriteVertex; in.centre_radius = vec4f(x(1), x(2), x(3), x(4)); \
-             in.amount_lod_frame_age = vec4f(0.8, x(5), 0.7, 0.5); in.rotation = vec2f(0.6, 0.8); \
+             in.amount_lod_frame_age = vec4f(0.8, x(5), 0.7, 0.5); in.rotation = vec2f(0.6, 0.8); in.stretch = vec2f(0.5, -0.3); STRETCH = true; \
              let frames = flipbook_frames(0.7, 3.0); ",
             $wgsl
         )
@@ -170,11 +171,9 @@ fn texels() -> Vec<Formula> {
         mutants: &[
             ("offset_frames(frames, 2 * count)", "offset_frames(frames, count)"),
             ("rotate_normal(texel.xyz, in.rotation)", "texel.xyz"),
+            ("stretched_normal(normal, in.stretch)", "normal"),
             ("if !DEBUG_SPRITE {", "if true {"),
-            (
-                "uv, frames, motion, lod);\n    }\n    return SpriteFragment",
-                "uv, frames, -motion, lod);\n    }\n    return SpriteFragment",
-            ),
+            ("uv, frames, motion, lod);\n    }\n    var normal", "uv, frames, -motion, lod);\n    }\n    var normal"),
         ],
     }]
 }
@@ -206,7 +205,8 @@ fn techniques() -> Vec<Formula> {
                 let ray = ndc_from_pixel(vec2f(x(6), x(7)), view.size) * view.ray_scale + view.ray_offset; \
                 in.view_position = view_position(ray, 1.0, view.orthographic); \
                 let depth = max(-in.centre_radius.z, view.near); \
-                let local = unrotate(ray * depth - in.centre_radius.xy, in.rotation) / in.centre_radius.w; \
+                let offset = unstretched(ray * depth - in.centre_radius.xy, in.stretch); \
+                let local = unrotate(offset, in.rotation) / in.centre_radius.w; \
                 in.uv = sprite_uv(local); \
                 if !is_sphere() && any(abs(local) > vec2f(1.0)) { return; } \
                 let f = technique_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount); y(4, f.thickness);"

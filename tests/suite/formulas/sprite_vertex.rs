@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/sprite_vertex.wgsl`.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use haze::Particle;
 use haze::formula::sprite::{animation_frames, flipbook_frames, sprite_uv, trimmed_corner};
 use haze::settings::{Settings, SpriteAnimation, Technique};
@@ -17,23 +17,37 @@ pub fn technique(x: &[f32]) -> Settings {
     Settings { technique: Technique::ALL[x[0] as usize], ..Settings::default() }
 }
 
-/// The particle of numbers 1 to 8.
+/// The particle of numbers 1 to 8, in motion.
 fn particle(x: &[f32]) -> Particle {
-    Particle { position: v3(&x[1..]), radius: x[4], rotation: x[5], amount: x[6], frame: x[7], age: x[8] }
+    let velocity = Vec3::new(x[5], x[7], x[6]);
+    Particle {
+        position: v3(&x[1..]),
+        radius: x[4],
+        rotation: x[5],
+        amount: x[6],
+        frame: x[7],
+        age: x[8],
+        velocity,
+        ..Particle::default()
+    }
 }
 
-/// The system with larger spherical billboards.
-fn with_billboards(settings: &Settings) -> VisibleSystem<'_> {
+/// The system with larger spherical billboards, and stretched squares.
+fn changed(settings: &Settings) -> VisibleSystem<'_> {
     let mut visible = visible_system(settings);
-    visible.system.billboard_radius = 1.3;
+    let system = &mut visible.system;
+    let stretch = if settings.technique.is_sphere() { 0.0 } else { 0.1 };
+    (system.billboard_radius, system.stretch, system.stretch_limit) = (1.3, stretch, 2.5);
     visible
 }
 
-/// WGSL of [`technique`], [`particle`] and [`with_billboards`].
+/// WGSL of [`technique`], [`particle`] and [`changed`].
 macro_rules! with_particle {
     ($wgsl:literal) => {
         concat!(
-            "TECHNIQUE = u32(x(0)); system.billboard_radius = 1.3; let p = Particle(vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8))); ",
+            "TECHNIQUE = u32(x(0)); STRETCH = !is_sphere(); system.billboard_radius = 1.3; system.stretch = 0.1; \
+             system.stretch_limit = 2.5; let p = Particle(vec4f(x(1), x(2), x(3), x(4)), \
+             vec4f(x(5), x(6), x(7), x(8)), vec3f(x(5), x(7), x(6)), vec4f(1.0)); ",
             $wgsl
         )
     };
@@ -54,7 +68,14 @@ fn particles() -> Vec<Vec<f32>> {
 
 /// A sprite in view space: radius in number 4, centre in numbers 1 to 3.
 fn sprite_at(x: &[f32]) -> ProjectedSprite {
-    ProjectedSprite { centre: v3(&x[1..]), radius: x[4], amount: 1.0, frames: flipbook_frames(0.0, 3.0), lod: 0.0 }
+    ProjectedSprite {
+        centre: v3(&x[1..]),
+        radius: x[4],
+        amount: 1.0,
+        frames: flipbook_frames(0.0, 3.0),
+        lod: 0.0,
+        stretch: Vec2::ZERO,
+    }
 }
 
 fn centres() -> Vec<Vec<f32>> {
@@ -157,15 +178,15 @@ fn projection() -> Vec<Formula> {
                 "let s = project_sprite(p, 0.5); if s.hidden { return; } y(0, 1.0); y4(1, s.centre_radius); \
                  y2(5, s.amount_lod_frame_age.xy); \
                  let f = flipbook_frames(s.amount_lod_frame_age.z, system.frame_count); \
-                 y3(7, vec3f(f32(f.first), f32(f.second), f.blend));"
+                 y3(7, vec3f(f32(f.first), f32(f.second), f.blend)); y2(10, s.stretch);"
             ),
             reference: |x| {
                 let settings = technique(x);
-                let sprite = with_billboards(&settings).projector().project(&particle(x), 0.5);
-                sprite.map_or(vec![0.0; 10], |sprite| {
-                    let ProjectedSprite { centre, radius, amount, frames, lod } = sprite;
+                let sprite = changed(&settings).projector().project(&particle(x), 0.5);
+                sprite.map_or(vec![0.0; 12], |sprite| {
+                    let ProjectedSprite { centre, radius, amount, frames, lod, stretch } = sprite;
                     let frames = [frames.first as f32, frames.second as f32, frames.blend];
-                    [&[1.0][..], &centre.to_array(), &[radius, amount, lod], &frames].concat()
+                    [&[1.0][..], &centre.to_array(), &[radius, amount, lod], &frames, &stretch.to_array()].concat()
                 })
             },
             cases: particles(),
@@ -176,6 +197,8 @@ fn projection() -> Vec<Formula> {
                 ("near_fade(back,", "near_fade(view_depth,"),
                 ("back > view.near && view_depth", "view_depth > view.near && view_depth"),
                 ("max(view_depth, view.near), view.orthographic", "1.0, view.orthographic"),
+                ("vec4f(particle.velocity, 0.0)", "vec4f(particle.velocity.zyx, 0.0)"),
+                ("system.stretch, radius, system.stretch_limit", "system.stretch, radius, 1000.0"),
             ],
         },
         Formula {
@@ -188,7 +211,7 @@ fn projection() -> Vec<Formula> {
             ),
             reference: |x| {
                 let settings = technique(x);
-                let visible = with_billboards(&settings);
+                let visible = changed(&settings);
                 let (projector, index) = (visible.projector(), x[9] as usize);
                 let sprite = projector.project(&particle(x), 0.5).filter(|_| (x[10] as u32) < 7);
                 let Some(sprite) = sprite else { return vec![0.0; 5] };
@@ -211,6 +234,7 @@ fn projection() -> Vec<Formula> {
             tolerance: 1e-3,
             mutants: &[
                 ("place.x * out.rotation.x - place.y", "place.x * out.rotation.x + place.y"),
+                ("turned = stretched(turned, out.stretch)", "turned = unstretched(turned, out.stretch)"),
                 ("min(centre.z, -view.near)", "centre.z"),
                 (" || index >= system.alive_count", ""),
                 ("let place = trimmed_corner(corner, ", "let place = trimmed_corner(corner, 0.5 * "),

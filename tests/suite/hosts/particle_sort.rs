@@ -2,7 +2,7 @@
 
 use glam::camera::rh;
 use glam::{Mat4, Vec3, vec3};
-use haze::frame::particle_bounds;
+use haze::frame::{SpriteExtent, particle_bounds};
 use haze::settings::*;
 use haze::{AliveCount, Bounds, Particle, ParticleBuffer, Particles, wgpu};
 use haze_demo::headless::Headless;
@@ -211,8 +211,7 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         // The camera looks along z. In this order, the sorted and the unsorted way draw alike, and only light can differ.
         scene.particles.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
         let slice = scene.on_gpu(gpu()).picture;
-        let reach = scene.settings.sprite_extent();
-        let tight = particle_bounds(&scene.particles, reach);
+        let tight = particle_bounds(&scene.particles, SpriteExtent::of(&scene.settings));
         // A generous box, as a host without knowledge of its particles gives.
         let (centre, half) = (tight.centre(), 2.0 * (tight.max - tight.min));
         scene.bounds = Some(Bounds { min: centre - half, max: centre + half });

@@ -1,7 +1,7 @@
 //! Results that depend on the draw order of sprites, and results that do not.
 
 use glam::{UVec2, Vec4, vec3};
-use haze::frame::particle_bounds;
+use haze::frame::{SpriteExtent, particle_bounds};
 use haze::settings::{AccumulationFormat, BlendOrder, DebugView};
 use haze::{Bounds, Particle};
 use haze_reference::blend_unit::{premultiplied_over, quantise};
@@ -83,7 +83,7 @@ fn particle_amounts_above_1_are_drawn_as_1() {
     let mut host = Host::new(gpu(), &scene).unwrap();
     let mut draw = |amount: f32| {
         scene.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
-        scene.bounds = Some(particle_bounds(&scene.particles, scene.settings.sprite_extent()));
+        scene.bounds = Some(particle_bounds(&scene.particles, SpriteExtent::of(&scene.settings)));
         host.draw(gpu(), &scene).unwrap();
         let slice = host.picture(gpu()).unwrap();
         host.draw_buffer(gpu(), &scene, &scene.particles).unwrap();

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec3, vec3};
 use haze::emitter::{Emitter, EmitterShape};
+use haze::frame::SpriteExtent;
 use haze::settings::*;
 use haze::{Particles, TiledMemory, wgpu};
 
@@ -36,7 +37,7 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
             let mut scene = scene(Technique::Soft);
             emission.evaluate(&mut scene.particles);
             // The same bounding box for both, so that both are lit on the same plane.
-            scene.bounds = Some(emission.bounds(scene.settings.sprite_extent()));
+            scene.bounds = Some(emission.bounds(SpriteExtent::of(&scene.settings)));
             scene.settings.accumulate.order = BlendOrder::Sorted;
             let mut host = Host::new(gpu(), &scene).unwrap();
             let particles = scene.particles.clone();

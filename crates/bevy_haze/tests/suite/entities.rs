@@ -90,8 +90,8 @@ fn particles_in_a_buffer_look_like_those_of_the_cpu() {
         .collect();
     host.app.world_mut().entity_mut(smoke).insert(SmokeParticles::new(puffs.iter().copied()));
     let (slice, seen) = mask(&mut host, smoke);
-    let floats: Vec<f32> = puffs.iter().flat_map(|puff| puff.to_array()).collect();
-    let mut buffer = ShaderBuffer::from(floats);
+    let words: Vec<u32> = puffs.iter().flat_map(|puff| puff.to_words()).collect();
+    let mut buffer = ShaderBuffer::from(words);
     buffer.buffer_usage |= BufferUsages::VERTEX;
     let buffer = host.app.world_mut().resource_mut::<Assets<ShaderBuffer>>().add(buffer);
     let bounds = Aabb::from_min_max(Vec3::new(-2.5, -0.5, -2.0), Vec3::new(2.0, 3.5, 2.0));

@@ -31,7 +31,7 @@ pub struct ColumnMap {
 struct Column {
     name: String,
     role: Option<ColumnRole>,
-    /// The stored value that means 1: 1 for floats, 255 for 8-bit amounts, 65535 for 16-bit amounts.
+    /// The stored value that means 1: 1 for floats; for amounts, colors and heat, 255 of 8 bits and 65535 of 16.
     unit_value: f64,
 }
 
@@ -73,6 +73,8 @@ impl ColumnMap {
             radius: has(ColumnRole::Radius) || has(ColumnRole::Width),
             rotation: has(ColumnRole::Rotation),
             amount: has(ColumnRole::Amount),
+            color: has(ColumnRole::Red) || has(ColumnRole::Green) || has(ColumnRole::Blue),
+            heat: has(ColumnRole::Heat),
         };
         Ok(Self {
             has_lives: has(ColumnRole::Age) && has(ColumnRole::Life),
@@ -91,9 +93,13 @@ impl ColumnMap {
         self.columns.get(column).is_some_and(|column| column.role.is_some())
     }
 
-    /// If the column holds the amount, sets the stored value that means 1.
-    pub fn set_amount_unit_value(&mut self, column: usize, unit_value: f64) {
-        if let Some(column) = self.columns.get_mut(column).filter(|column| column.role == Some(ColumnRole::Amount)) {
+    /// If the column holds an amount, a color or heat, sets the stored value that means 1.
+    pub fn set_unit_value(&mut self, column: usize, unit_value: f64) {
+        let is_share = |role| {
+            use ColumnRole::{Amount, Blue, Green, Heat, Red};
+            matches!(role, Amount | Red | Green | Blue | Heat)
+        };
+        if let Some(column) = self.columns.get_mut(column).filter(|column| column.role.is_some_and(is_share)) {
             column.unit_value = unit_value;
         }
     }
@@ -113,10 +119,20 @@ impl ColumnMap {
         let share = -LIFETIME_TOLERANCE..=1.0 + LIFETIME_TOLERANCE;
         // NaN fails every range check.
         let (is_good, expected) = match role {
-            ColumnRole::X | ColumnRole::Y | ColumnRole::Z | ColumnRole::Rotation | ColumnRole::Amount => {
-                (value.abs() <= MAX_MAGNITUDE, "a number up to 1e9")
-            }
-            ColumnRole::Radius | ColumnRole::Width => ((0.0..=MAX_MAGNITUDE).contains(&value), "0 or more, up to 1e9"),
+            ColumnRole::X
+            | ColumnRole::Y
+            | ColumnRole::Z
+            | ColumnRole::VelocityX
+            | ColumnRole::VelocityY
+            | ColumnRole::VelocityZ
+            | ColumnRole::Rotation
+            | ColumnRole::Amount => (value.abs() <= MAX_MAGNITUDE, "a number up to 1e9"),
+            ColumnRole::Radius
+            | ColumnRole::Width
+            | ColumnRole::Red
+            | ColumnRole::Green
+            | ColumnRole::Blue
+            | ColumnRole::Heat => ((0.0..=MAX_MAGNITUDE).contains(&value), "0 or more, up to 1e9"),
             ColumnRole::Age if self.has_lives => (value.abs() <= MAX_MAGNITUDE, "a number up to 1e9"),
             ColumnRole::Life if self.has_lives => ((0.0..=MAX_MAGNITUDE).contains(&value), "0 or more, up to 1e9"),
             ColumnRole::Age => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or a life column as well"),
@@ -135,6 +151,7 @@ impl ColumnMap {
     /// Builds the particle of a row from its stored values.
     pub fn particle(&self, row: usize, values: &RowValues) -> FileParticle {
         let of = |role: ColumnRole| values.0[role as usize];
+        let vector = |roles: [ColumnRole; 3]| Vec3::from(roles.map(|role| of(role) as f32));
         let age = match self.has_lives {
             true => of(ColumnRole::Age) / of(ColumnRole::Life).max(f64::MIN_POSITIVE),
             // At most one of the two has a column; the other is 0.
@@ -142,11 +159,14 @@ impl ColumnMap {
         };
         FileParticle {
             id: if self.provided.id { of(ColumnRole::Id) as i64 } else { row as i64 },
-            position: Vec3::new(of(ColumnRole::X) as f32, of(ColumnRole::Y) as f32, of(ColumnRole::Z) as f32),
+            position: vector([ColumnRole::X, ColumnRole::Y, ColumnRole::Z]),
             radius: if self.has_radius { of(ColumnRole::Radius) } else { 0.5 * of(ColumnRole::Width) } as f32,
             rotation: of(ColumnRole::Rotation) as f32,
             amount: of(ColumnRole::Amount) as f32,
             age: age.clamp(0.0, 1.0) as f32,
+            velocity: vector([ColumnRole::VelocityX, ColumnRole::VelocityY, ColumnRole::VelocityZ]),
+            color: vector([ColumnRole::Red, ColumnRole::Green, ColumnRole::Blue]),
+            heat: of(ColumnRole::Heat) as f32,
         }
     }
 

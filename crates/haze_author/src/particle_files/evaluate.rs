@@ -20,16 +20,19 @@ impl ParticleFrames {
         before.interpolate(after, share, |particle, weight| {
             let id = particle.id as u64;
             let random = pcg3d(UVec3::new(id as u32, (id >> 32) as u32, 0));
-            let [x, y, z] = particle.position.to_array();
-            let position = if source.up == UpAxis::Z { Vec3::new(x, z, -y) } else { particle.position };
+            let y_up = |v: Vec3| if source.up == UpAxis::Z { Vec3::new(v.x, v.z, -v.y) } else { v };
+            let channel = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
             particles.push(Particle {
-                position: source.position + position * source.units,
+                position: source.position + y_up(particle.position) * source.units,
                 radius: if provided.radius { particle.radius * source.units } else { source.default_radius },
                 // Random rotations hide that all sprites have the same image.
                 rotation: if provided.rotation { particle.rotation } else { unit(random.x) * std::f32::consts::TAU },
                 amount: weight * if provided.amount { particle.amount } else { source.default_amount },
                 frame: unit(random.y) * 256.0 + time * source.flipbook_rate,
                 age: particle.age,
+                velocity: y_up(particle.velocity) * source.units,
+                tint: if provided.color { particle.color.to_array().map(channel) } else { [255; 3] },
+                heat: if provided.heat { channel(particle.heat) } else { 255 },
             });
         });
     }
@@ -56,7 +59,8 @@ mod tests {
 
     #[test]
     fn units_and_up_axis_of_the_settings_are_applied() {
-        let frames = frames(&["x,y,z,pscale,amount,rotation,age\n1,2,3,4,0.5,6,0.25"]);
+        let frames =
+            frames(&["x,y,z,pscale,amount,rotation,age,vx,vy,vz,r,g,b,heat\n1,2,3,4,0.5,6,0.25,7,8,9,1,0.2,0,0.4"]);
         let plain = ParticleFiles { flipbook_rate: 0.0, ..ParticleFiles::default() };
         let [y_up] = at(&plain, &frames, 0.0)[..] else { panic!("one particle") };
         assert_eq!((y_up.position, y_up.radius), (Vec3::new(1.0, 2.0, 3.0), 4.0));
@@ -65,7 +69,10 @@ mod tests {
         let [z_up] = at(&moved, &frames, 0.0)[..] else { panic!("one particle") };
         // Blender's forward axis, y, points away from the viewer.
         assert!(z_up.position.distance(Vec3::new(0.01, 10.03, -0.02)) < 1e-6 && (z_up.radius - 0.04).abs() < 1e-7);
-        assert_eq!(Particle { position: y_up.position, radius: y_up.radius, ..z_up }, y_up);
+        assert!(z_up.velocity.distance(Vec3::new(0.07, 0.09, -0.08)) < 1e-6);
+        assert_eq!((y_up.velocity, y_up.tint, y_up.heat), (Vec3::new(7.0, 8.0, 9.0), [255, 51, 0], 102));
+        let Particle { position, radius, velocity, .. } = y_up;
+        assert_eq!(Particle { position, radius, velocity, ..z_up }, y_up);
     }
 
     #[test]

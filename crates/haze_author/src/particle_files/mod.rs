@@ -1,6 +1,6 @@
 //! Particle files of an external simulation: CSV or PLY, one file or one per frame, as exported by Blender and Houdini.
 //!
-//! All frames are loaded at once and stay in memory, 40 bytes per particle. Any time can then be evaluated in any
+//! All frames are loaded at once and stay in memory, 64 bytes per particle. Any time can then be evaluated in any
 //! order, scrubbing does not wait for the disk, and a broken frame is reported before the first image is drawn.
 //! [`Limits`] bounds the memory.
 

@@ -17,6 +17,12 @@ pub struct FileParticle {
     pub amount: f32,
     /// Fraction of the lifetime that has passed, 0 to 1.
     pub age: f32,
+    /// In units of the file per second.
+    pub velocity: Vec3,
+    /// Linear RGB.
+    pub color: Vec3,
+    /// Heat, 0 to 1; larger values are clamped.
+    pub heat: f32,
 }
 
 /// Optional attributes that a file provides besides positions.
@@ -31,6 +37,10 @@ pub struct ProvidedAttributes {
     pub rotation: bool,
     /// Amount.
     pub amount: bool,
+    /// At least one channel of a color.
+    pub color: bool,
+    /// Heat.
+    pub heat: bool,
 }
 
 /// Particles of one frame, sorted by id if the file has ids, and the attributes that the file provides.
@@ -110,6 +120,9 @@ impl FileParticle {
             rotation: self.rotation + (turn - std::f32::consts::PI) * share,
             amount: mix(self.amount, other.amount),
             age: mix(self.age, other.age),
+            velocity: self.velocity.lerp(other.velocity, share),
+            color: self.color.lerp(other.color, share),
+            heat: mix(self.heat, other.heat),
         }
     }
 }

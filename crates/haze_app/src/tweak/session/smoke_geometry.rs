@@ -1,7 +1,7 @@
 //! Extent of the smoke at the shown time.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
-use haze::frame::particle_bounds;
+use haze::frame::{SpriteExtent, particle_bounds};
 use haze::preset::{Camera, Preset, PresetSystem};
 use haze::{Bounds, Light, LightKind, Particle};
 use haze_author::particle_files::{self, ParticleFrames};
@@ -37,7 +37,7 @@ impl SmokeGeometry {
             self.of = Some((preset.systems.clone(), caches, time.to_bits()));
             let all = preset.systems.iter().zip(&self.systems);
             self.bounds =
-                all.map(|(system, particles)| particle_bounds(particles, system.settings.sprite_extent())).collect();
+                all.map(|(system, particles)| particle_bounds(particles, SpriteExtent::of(&system.settings))).collect();
         }
         self
     }

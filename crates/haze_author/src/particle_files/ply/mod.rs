@@ -24,8 +24,8 @@ pub fn read(content: &[u8], max_particles: usize) -> Result<ParticleFrame, Parse
     let mut columns = columns(vertices).map_err(ParseError::WholeFile)?;
     for (column, property) in vertices.properties.iter().enumerate() {
         match property.kind {
-            PropertyKind::Scalar(ScalarType::U8) => columns.set_amount_unit_value(column, 255.0),
-            PropertyKind::Scalar(ScalarType::U16) => columns.set_amount_unit_value(column, 65535.0),
+            PropertyKind::Scalar(ScalarType::U8) => columns.set_unit_value(column, 255.0),
+            PropertyKind::Scalar(ScalarType::U16) => columns.set_unit_value(column, 65535.0),
             _ => {}
         }
     }

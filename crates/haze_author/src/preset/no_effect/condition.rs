@@ -69,11 +69,12 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
         is_lit && !settings.is_six_way() && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
     let by_amount = settings.soft_scatter.intensity > 0.0 && settings.soft_scatter.mode == SoftScatterMode::Ramp;
     let deferred = settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0;
-    let by_age = settings.is_tinted() || settings.burns();
+    let by_age = settings.sprite.age_color > 0.0 || settings.burns();
     let by_shadow = is_lit && settings.receives_shadow();
     !(by_normal || by_amount || by_shadow || by_age || deferred && !is_forward)
 }
 
 pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {
-    system.emitter.buoyancy == 0.0 && system.emitter.shape != EmitterShape::Disc
+    let emitter = &system.emitter;
+    emitter.buoyancy == 0.0 && emitter.bounce <= 0.0 && emitter.shape != EmitterShape::Disc
 }

@@ -208,9 +208,30 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.fire.flicker",
             "material.heat_ramp",
             "material.fire_ramp",
+            "emitter.heat_spread",
         ],
     ),
     rule("only at a light of the fire above 0", |s, _| s.settings.fire.light <= 0.0, &["settings.fire.flicker"]),
+    rule(
+        "only at a sprite.tint above 0",
+        |s, _| s.settings.sprite.tint <= 0.0,
+        &["emitter.tint", "emitter.other_tint"],
+    ),
+    rule(
+        "spheres are not stretched",
+        |s, _| technique(s).is_sphere(),
+        &["settings.sprite.stretch", "settings.sprite.stretch_limit"],
+    ),
+    rule(
+        "only at a sprite.stretch above 0",
+        |s, _| s.settings.sprite.stretch <= 0.0,
+        &["settings.sprite.stretch_limit"],
+    ),
+    rule(
+        "only at a stretch_limit above 1",
+        |s, _| s.settings.sprite.stretch_limit <= 1.0,
+        &["settings.sprite.stretch"],
+    ),
     rule("only at an age_color above 0", |s, _| s.settings.sprite.age_color <= 0.0, &["material.age_ramp"]),
     rule(
         "only at an intensity of diffuse light above 0",
@@ -305,5 +326,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &["emitter.turbulence_scale", "emitter.turbulence_speed"],
     ),
     rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
-    rule("only with buoyancy, or with shape disc", ignores_up, &["emitter.up"]),
+    rule("only with buoyancy, bounce, or shape disc", ignores_up, &["emitter.up"]),
+    rule("only at a bounce above 0", |s, _| s.emitter.bounce <= 0.0, &["emitter.floor"]),
+    rule("only at a duration above 0", |s, _| s.emitter.duration <= 0.0, &["emitter.period"]),
 ];
