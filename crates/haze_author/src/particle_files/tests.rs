@@ -45,7 +45,7 @@ fn frames_are_placed_in_time_by_their_numbers() {
         std::fs::write(folder.path().join(format!("s_{number:03}.csv")), text).unwrap();
     }
     let frames = ParticleFrames::load(&folder.path().join("s_###.csv"), LIMITS).unwrap();
-    assert_eq!((frames.frame_count(), frames.max_particles(), frames.bytes()), (6, 3, 6 * 40));
+    assert_eq!((frames.frame_count(), frames.max_particles(), frames.bytes()), (6, 3, 6 * 64));
     let at = |frame| {
         frames.frames_around(frame).map(|found| (found.before.particles().len(), found.after.is_some(), found.share))
     };
