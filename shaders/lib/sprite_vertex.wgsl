@@ -153,11 +153,8 @@ fn tint_of(particle: Particle) -> vec3f {
     return mix(vec3f(1.0), by_age, system.age_color) * mix(vec3f(1.0), particle.tint_heat.rgb, system.tint);
 }
 
-// Stretch of a particle's sprite; zero for spheres. `centre_radius`: of the sprite, view space.
+// Stretch of a particle's sprite. `centre_radius`: of the sprite, view space.
 fn stretch_of(particle: Particle, centre_radius: vec4f) -> vec2f {
-    if !STRETCH {
-        return vec2f(0.0);
-    }
     let velocity = (system.view_from_particles * vec4f(particle.velocity, 0.0)).xyz;
     let radius = centre_radius.w;
     return sprite_stretch(centre_radius.xyz, velocity, system.stretch, radius, system.stretch_limit, view.orthographic);

@@ -119,7 +119,8 @@ pub struct ParticleSystem<'a> {
     /// An emitter that moves as a whole, or a simulation in local space, needs no work on the CPU.
     pub world_from_particles: Mat4,
     /// Box in the particles' space that contains every sprite with its corners:
-    /// [`SpriteExtent::reach`](super::SpriteExtent::reach) around each particle. It decides which pixels are lit, which lights reach the smoke, and whether the system is visible.
+    /// [`SpriteExtent::reach`](super::SpriteExtent::reach) around each particle. It decides which pixels are lit, which lights
+    /// reach the smoke, and whether the system is visible.
     /// Sprites outside the box may be cut off; a box that is too large costs time. `None` measures a slice with
     /// [`particle_bounds`](crate::frame::particle_bounds).
     pub bounds: Option<Bounds>,

@@ -67,5 +67,6 @@ fn puff(index: u32, age: f32) -> SmokeParticle {
         amount: 0.5 * (6.0 * age).min(1.0) * (1.0 - age),
         frame: random(6) * 64.0,
         age,
+        ..default()
     }
 }

@@ -12,6 +12,7 @@ use bevy::math::{Mat4, Vec3};
 use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight, LightEntity, ViewLightEntities, ViewShadowBindings};
 use bevy::render::render_resource::Texture;
 use bevy::render::view::ExtractedView;
+use haze::formula::shadow_map::MAX_SHADOW_LAYERS;
 use haze::{ShadowMap, ShadowProjection, glam};
 
 use crate::convert;
@@ -19,8 +20,6 @@ use crate::lights::SceneLight;
 
 /// Distance by which a surface must be before smoke to shade it, metres. A cell of haze's grid is larger.
 const BIAS: f32 = 0.05;
-/// Layers that haze takes for one light.
-const MAX_LAYERS: usize = 6;
 
 /// Views of the render world that draw shadow maps.
 #[derive(SystemParam)]
@@ -75,7 +74,7 @@ impl ShadowViews<'_, '_> {
                 (&bindings.point_light_depth_texture, first_layer, faces.get(&entity)?.clone())
             };
             let last = first_layer + clip_from_world.len() as u32;
-            let fits = (1..=MAX_LAYERS).contains(&clip_from_world.len())
+            let fits = (1..=MAX_SHADOW_LAYERS).contains(&clip_from_world.len())
                 && last <= texture.size().depth_or_array_layers
                 && clip_from_world.iter().all(Mat4::is_finite);
             let bias = clip_from_world.first().map_or(0.0, |clip| bias(clip, smoke));

@@ -1,0 +1,223 @@
+use super::*;
+use crate::formula::emitter::{drag_integrals, smoothstep_unit};
+use crate::frame::{SpriteExtent, particle_bounds};
+use crate::settings::Settings;
+
+fn at(emitter: &Emitter, time: f32) -> Vec<Particle> {
+    let mut particles = Vec::new();
+    emitter.evaluate(time, &mut particles);
+    particles
+}
+
+#[test]
+fn particles_do_not_depend_on_earlier_evaluations() {
+    let emitter = Emitter::default();
+    let later = at(&emitter, 30.0);
+    assert_eq!(later, at(&emitter, 30.0));
+    let _ = at(&emitter, 1.0);
+    assert_eq!(later, at(&emitter, 30.0));
+    assert!(later.iter().all(Particle::is_valid));
+    // Rate times lifetime, within the jitter.
+    assert!((200..=280).contains(&later.len()), "{}", later.len());
+}
+
+#[test]
+fn extreme_seeds_give_smoke_too() {
+    // The second seed times 977 wraps to the largest word.
+    for seed in [0, 769_313_487, u32::MAX] {
+        assert!(at(&Emitter { seed, ..Emitter::default() }, 2.0).len() > 50);
+    }
+}
+
+#[test]
+fn motion_is_continuous() {
+    let emitter = Emitter { lifetime_spread: 0.0, ..Emitter::default() };
+    let (before, after) = (at(&emitter, 12.0), at(&emitter, 12.001));
+    let mut matched = 0;
+    for a in &before {
+        // A millisecond moves a particle by millimetres; its neighbours are further away.
+        let nearest = after.iter().map(|b| a.position.distance(b.position)).fold(f32::INFINITY, f32::min);
+        assert!(nearest < 0.02 || a.age > 0.999, "{nearest}");
+        matched += 1;
+    }
+    assert!(matched > 100);
+}
+
+#[test]
+fn smoke_rises_along_up() {
+    let upwards = Emitter { shape: EmitterShape::Disc, turbulence: 0.0, ..Emitter::default() };
+    // Cycles the axes: x becomes y, y becomes z, z becomes x.
+    let turned = |v: Vec3| Vec3::new(v.z, v.x, v.y);
+    let along_z = Emitter { up: Vec3::Z * 3.0, velocity: turned(upwards.velocity), velocity_spread: 0.0, ..upwards };
+    let upwards = Emitter { velocity_spread: 0.0, ..upwards };
+    let height = |particles: &[Particle], up: Vec3| particles.iter().map(|p| p.position.dot(up)).sum::<f32>();
+    let (y, z) = (height(&at(&upwards, 9.0), Vec3::Y), height(&at(&along_z, 9.0), Vec3::Z));
+    assert!((y - z).abs() < 1e-3 * y, "{y} {z}");
+    assert!(Emitter { up: Vec3::ZERO, ..upwards }.validate(String::new).is_err());
+}
+
+#[test]
+fn births_and_deaths_are_invisible() {
+    for particle in at(&Emitter::default(), 20.0) {
+        assert!(particle.amount <= 0.3 * smoothstep_unit(particle.age / 0.12) + 1e-6);
+        assert!(particle.age < 0.98 || particle.amount < 0.01);
+    }
+}
+
+#[test]
+fn smoke_ends_after_emission_has_ended() {
+    let emitter = Emitter { duration: 0.5, rate: 100.0, ..Emitter::default() };
+    assert!(at(&emitter, -1.0).is_empty());
+    assert!((48..=50).contains(&at(&emitter, 0.6).len()));
+    assert!(at(&emitter, 60.0).is_empty());
+}
+
+#[test]
+fn drag_integrals_are_continuous_where_the_series_takes_over() {
+    for t in [0.1, 1.0, 10.0] {
+        let (series, closed) = (drag_integrals(0.499_999 / t, t), drag_integrals(0.500_001 / t, t));
+        assert!((series.x - closed.x).abs() < 2e-6 * t && (series.y - closed.y).abs() < 2e-6 * t * t);
+    }
+}
+
+/// Emitters of all kinds.
+fn emitters() -> impl Iterator<Item = Emitter> {
+    let base = Emitter { rate: 400.0, ..Emitter::default() };
+    [
+        base,
+        Emitter { shape: EmitterShape::Disc, up: Vec3::new(1.0, 2.0, 0.3), extent: Vec3::new(2.0, 0.0, 1.0), ..base },
+        Emitter { shape: EmitterShape::Box, wind: Vec3::new(3.0, 0.0, -1.0), drag: 4.0, ..base },
+        Emitter { burst: 8.0, duration: 0.1, drag: 2.0, velocity: Vec3::ZERO, ..base },
+        Emitter { burst: -3.0, turbulence: 4.0, turbulence_scale: 0.3, drag: 0.0, buoyancy: -2.0, ..base },
+        Emitter { radius_start: 2.0, radius_end: 0.1, lifetime_spread: 0.9, velocity_spread: 5.0, ..base },
+        Emitter { duration: 0.3, period: 0.7, ..base },
+        Emitter {
+            bounce: 0.6,
+            floor: -0.4,
+            velocity: Vec3::new(-1.0, 3.0, 0.5),
+            wind: Vec3::new(2.0, 0.0, 0.0),
+            buoyancy: -9.8,
+            drag: 0.3,
+            ..base
+        },
+    ]
+    .into_iter()
+}
+
+#[test]
+fn velocity_is_the_change_of_position() {
+    // Without turbulence, whose change from place to place does not count, and between bounces.
+    for emitter in emitters().filter(|emitter| emitter.bounce <= 0.0) {
+        let emitter = Emitter { turbulence: 0.0, frame_rate: 0.0, ..emitter };
+        let step = 1.0e-3;
+        let (before, now) = (at(&emitter, 0.08), at(&emitter, 0.08 + step));
+        // A still flipbook frame is another in each particle.
+        let pairs =
+            before.iter().filter_map(|a| Some((a, now.iter().find(|b| b.frame.to_bits() == a.frame.to_bits())?)));
+        let mut count = 0;
+        for (a, b) in pairs {
+            let error = ((b.position - a.position) / step - a.velocity).length();
+            assert!(error < 0.02 * (1.0 + a.velocity.length()), "{emitter:?}: {error} of {}", a.velocity);
+            count += 1;
+        }
+        assert!(count > 20, "{emitter:?}: {count}");
+    }
+}
+
+#[test]
+fn pulses_repeat_and_each_is_born_in_its_turn() {
+    let emitter = Emitter { rate: 100.0, duration: 0.2, period: 1.0, lifetime: 0.5, ..Emitter::default() };
+    let emitter = Emitter { lifetime_spread: 0.0, ..emitter };
+    let count = |time| at(&emitter, time).len();
+    assert_eq!((count(-0.1), count(0.9), count(7.8)), (0, 0, 0));
+    assert!((18..=20).contains(&count(0.3)) && (18..=20).contains(&count(7.3)), "{} {}", count(0.3), count(7.3));
+    assert!((8..=12).contains(&count(3.1)), "{}", count(3.1));
+    // Other random numbers in each pulse.
+    assert_ne!(at(&emitter, 0.3)[3].position, at(&emitter, 1.3)[3].position);
+    // Long lives: particles of several pulses.
+    let long = Emitter { lifetime: 2.7, ..emitter };
+    let alive = at(&long, 9.5).len() as f64;
+    assert!((54.0..=60.0).contains(&alive) && alive <= long.max_alive(), "{alive} of {}", long.max_alive());
+    let error = Emitter { period: 0.1, ..emitter }.validate(|| "e".into()).unwrap_err().to_string();
+    assert_eq!(error, "e.period: 0.1 is not valid; expected 0, or at least the duration of 0.2 s");
+}
+
+#[test]
+fn particles_bounce_off_the_floor_and_come_to_rest() {
+    let emitter = Emitter {
+        bounce: 0.5,
+        buoyancy: -9.81,
+        drag: 0.0,
+        extent: Vec3::ZERO,
+        velocity: Vec3::new(1.0, 0.0, 0.0),
+        velocity_spread: 0.0,
+        turbulence: 0.0,
+        position: Vec3::new(0.0, 1.0, 0.0),
+        lifetime: 5.0,
+        lifetime_spread: 0.0,
+        fade_in: 0.0,
+        fade_out: 0.0,
+        rate: 1000.0,
+        ..Emitter::default()
+    };
+    let mut tops = [0.0_f32; 4];
+    for particle in at(&emitter, 20.0) {
+        assert!(particle.position.y > -1.0e-3, "{particle:?}");
+        let seconds = particle.age * 5.0;
+        // A fall of 1 m takes 0.45 s; each further arc has half the speed of the one before.
+        let bounces = [0.452, 0.904, 1.13, 1.243].iter().filter(|time| seconds > **time).count();
+        if let Some(top) = tops.get_mut(bounces) {
+            *top = top.max(particle.position.y);
+        } else {
+            assert_eq!(particle.velocity, Vec3::ZERO, "{seconds}");
+        }
+    }
+    for (top, expected) in tops.iter().zip([1.0, 0.25, 0.0625, 0.0156]) {
+        assert!((top - expected).abs() < 0.01 * expected + 1.0e-3, "{tops:?}");
+    }
+}
+
+#[test]
+fn box_of_an_emission_contains_its_particles() {
+    let mut stretched = Settings::default();
+    (stretched.sprite.stretch, stretched.sprite.stretch_limit) = (0.2, 20.0);
+    for extent in [Settings::default(), stretched].map(|settings| SpriteExtent::of(&settings)) {
+        for emitter in emitters() {
+            for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
+                let (measured, promised) =
+                    (particle_bounds(&at(&emitter, time), extent), emitter.snapshot(time).bounds(extent));
+                if at(&emitter, time).is_empty() {
+                    continue;
+                }
+                let holds = promised.min.cmple(measured.min).all() && promised.max.cmpge(measured.max).all();
+                assert!(holds, "{emitter:?} at {time}: {measured:?} in {promised:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sample_represents_all_particles_and_stays_the_same() {
+    let emitter = Emitter { rate: 20_000.0, lifetime: 5.0, lifetime_spread: 0.0, ..Emitter::default() };
+    let few = |time| {
+        let mut particles = Vec::new();
+        emitter.snapshot(time).sample(&mut particles);
+        particles
+    };
+    let (all, now, soon) = (at(&emitter, 9.0), few(9.0), few(9.0004));
+    assert!((900..=1100).contains(&now.len()), "{}", now.len());
+    let mean = |particles: &[Particle]| particles.iter().map(|p| p.position).sum::<Vec3>() / particles.len() as f32;
+    assert!((mean(&all) - mean(&now)).length() < 0.1);
+    // Except for a birth or a death.
+    let same = |a: &&Particle| soon.iter().any(|b| a.position.distance(b.position) < 0.002);
+    assert!(now.iter().filter(same).count() >= now.len() - 2);
+}
+
+#[test]
+fn too_many_particles_are_refused() {
+    let emitter = Emitter { rate: 100_000.0, lifetime: 600.0, ..Emitter::default() };
+    let error = emitter.validate(|| "systems[0].emitter".into()).unwrap_err();
+    let expected = "at this rate, 72000000 particles are alive at once; expected at most 1048576";
+    assert_eq!(error.to_string(), format!("systems[0].emitter.rate: {expected}"));
+    Emitter { duration: 0.1, ..emitter }.validate(String::new).unwrap();
+}
