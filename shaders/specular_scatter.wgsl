@@ -1,13 +1,16 @@
 // specular_scatter: draws the glow of lights behind the smoke, one quad of constant pixel size around each light.
-// Reads   accumulation target, reduced depth, scene depth, lights, specular ramp.
+// Reads   accumulation target, or lit smoke and its depth slopes; reduced depth, scene depth, lights, specular ramp.
 // Writes  the host's color target: linear light.
 // Blend   ONE, ONE (additive); alpha is unchanged.
 // Source  OTEE "Specular scattering".
 
-#import "lib/accumulated.wgsl"
+#import "lib/lit_target.wgsl"
 #import "lib/color.wgsl"
 #import "lib/ramp.wgsl"
 #import "lib/sprite.wgsl"
+
+// True: the amount comes from the output of light_target.
+override LIT: bool = false;
 
 struct QuadVertex {
     @builtin(position) position: vec4f,
@@ -74,7 +77,12 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
         discard;
     }
     let pixel = in.position.xy - view.origin;
-    let amount = sample_target(accumulation, pixel).a;
+    var amount = 0.0;
+    if LIT {
+        amount = sample_lit(pixel).a;
+    } else {
+        amount = sample_target(accumulation, pixel).a;
+    }
     if amount <= 0.0 {
         discard;
     }

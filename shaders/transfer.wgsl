@@ -1,5 +1,4 @@
-// transfer: lights the accumulated smoke once per pixel over the system's bounding box, or upsamples the output of
-// light_target.
+// transfer: lights the accumulated smoke once per pixel over the system's bounding box.
 // Reads   accumulation target, reduced depth, scene depth, lights, ramps, baked diffuse light.
 // Writes  the host's color target: linear light.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
@@ -7,15 +6,12 @@
 // Space   Lighting in view space, on the plane through the middle of the smoke that faces the viewer.
 
 #import "lib/lit_smoke.wgsl"
+#import "lib/bounding_box.wgsl"
+#import "lib/coverage.wgsl"
 #import "lib/color.wgsl"
 
-// True: draw back faces, which the near plane never clips away. False: draw front faces, depth-tested.
-override BACK_FACES: bool = false;
 // True: there is no reduced depth; sprites were compared with the host's own depth.
 override HOST_DEPTH: bool = false;
-
-// True: the accumulation target is the output of light_target, light times amount, and amount.
-override LIT: bool = false;
 
 const DEBUG_VIEW_FINAL: u32 = 0u;
 const DEBUG_VIEW_COMBINED: u32 = 1u;
@@ -28,28 +24,9 @@ const DEBUG_VIEW_OVERDRAW: u32 = 7u;
 const DEBUG_VIEW_REDUCED_DEPTH: u32 = 8u;
 override DEBUG_VIEW: u32 = DEBUG_VIEW_FINAL;
 
-// The twelve triangles of a box, counter-clockwise seen from outside. Bit 0 of a corner is x, bit 1 is y, bit 2 is z.
-const BOX_CORNERS = array<u32, 36>(
-    0u, 2u, 1u, 1u, 2u, 3u,
-    4u, 5u, 6u, 5u, 7u, 6u,
-    0u, 1u, 4u, 1u, 5u, 4u,
-    2u, 6u, 3u, 3u, 6u, 7u,
-    0u, 4u, 2u, 2u, 4u, 6u,
-    1u, 3u, 5u, 3u, 7u, 5u,
-);
-
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    var corners = BOX_CORNERS;
-    let corner = corners[index];
-    let side = vec3f(f32(corner & 1u), f32((corner >> 1u) & 1u), f32(corner >> 2u));
-    let world = mix(system.bounds_min, system.bounds_max, side);
-    var clip = view.clip_from_view * (view.view_from_world * vec4f(world, 1.0));
-    if BACK_FACES {
-        // Not depth-tested: the near and far planes do not matter, only the half-space in front of the eye.
-        clip.z = 0.5 * clip.w;
-    }
-    return clip;
+    return box_position(index);
 }
 
 @fragment
@@ -78,10 +55,6 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         discard;
     }
     let covered = smoke_coverage(amount);
-    if LIT {
-        // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
-        return vec4f(bounded_light(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
-    }
     let surface = shaded_surface(accumulated, sample_attachments(pixel), pixel);
     if DEBUG_VIEW == DEBUG_VIEW_NORMALS {
         return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;

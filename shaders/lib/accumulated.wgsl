@@ -1,9 +1,10 @@
-// Sampling of the accumulation target at full resolution, shared by transfer and specular_scatter.
+// Sampling of the accumulation target at full resolution.
 
 #import "lib/bindings.wgsl"
 #import "lib/depth.wgsl"
 #import "lib/upsample.wgsl"
 
+// Or the output of light_target, in passes that read it.
 @group(3) @binding(0) var accumulation: texture_2d<f32>;
 // Linear view depth over system.depth_limit.
 @group(3) @binding(1) var reduced_depth: texture_2d<f32>;
@@ -16,6 +17,11 @@ fn scene_view_depth(pixel: vec2f) -> f32 {
 
 fn clamped_texel(texel: vec2i) -> vec2i {
     return clamp(texel, vec2i(0), vec2i(system.target_size) - 1);
+}
+
+// Depth of a texel that guides the upsampling. Everything behind the smoke counts as one depth.
+fn guide(texel: vec2i) -> f32 {
+    return min(textureLoad(reduced_depth, texel, 0).r * system.depth_limit, system.smoke_depth_limit);
 }
 
 // Samples a texture of the accumulation target at a pixel of the view. It is zero outside the part of the view that the
@@ -38,11 +44,7 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     var depths = vec4f(0.0);
     var depth = 0.0;
     if UPSAMPLE != UPSAMPLE_BILINEAR {
-        depths.x = textureLoad(reduced_depth, a, 0).r;
-        depths.y = textureLoad(reduced_depth, b, 0).r;
-        depths.z = textureLoad(reduced_depth, c, 0).r;
-        depths.w = textureLoad(reduced_depth, d, 0).r;
-        depths = min(depths * system.depth_limit, vec4f(system.smoke_depth_limit));
+        depths = vec4f(guide(a), guide(b), guide(c), guide(d));
         depth = min(scene_view_depth(pixel), system.smoke_depth_limit);
     }
     let weights = upsample_weights(UPSAMPLE, fraction, depths, depth);
@@ -62,8 +64,7 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     for (var i = 0; i < count; i++) {
         let offset = vec2i(i % 4, i / 4) - 1;
         let at = clamped_texel(base + offset);
-        let texel_depth = min(textureLoad(reduced_depth, at, 0).r * system.depth_limit, system.smoke_depth_limit);
-        let place = vec3f(vec2f(offset) - fraction, texel_depth - depth);
+        let place = vec3f(vec2f(offset) - fraction, guide(at) - depth);
         fit = add_texel(fit, place, guided_weight(place, depth), textureLoad(target_texture, at, 0));
     }
     if count == 0 {

@@ -1,4 +1,4 @@
-// Lighting of accumulated smoke by normal or six-way maps, and its coverage, shared by transfer and light_target.
+// Lighting of accumulated smoke by normal or six-way maps, shared by transfer and light_target.
 
 #import "lib/diffuse.wgsl"
 #import "lib/accumulated.wgsl"
@@ -23,9 +23,6 @@ const DIFFUSE_MODE_SPHERICAL_HARMONICS: u32 = 4u;
 override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
-const COVERAGE_MODE_LINEAR: u32 = 0u;
-const COVERAGE_MODE_RAMP: u32 = 1u;
-override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
 
 // Surface that light falls on.
 struct Surface {
@@ -159,13 +156,4 @@ fn fire_light(surface: Surface, amount: f32) -> vec3f {
         return vec3f(0.0);
     }
     return emission(fire_from_moments(surface.heat), amount);
-}
-
-// Share of the scene that the smoke hides.
-fn smoke_coverage(amount: f32) -> f32 {
-    let covered = coverage(amount, system.boost);
-    if COVERAGE_MODE == COVERAGE_MODE_RAMP {
-        return painted_share(sample_ramp(coverage_ramp, linear_sampler, covered));
-    }
-    return covered;
 }

@@ -1,4 +1,4 @@
-// Upsampling of the reduced target to full resolution: weights of the texels around a pixel.
+// Upsampling of the reduced target to full resolution.
 
 const UPSAMPLE_GUIDED: u32 = 0u;
 const UPSAMPLE_JOINT_BILATERAL: u32 = 1u;
@@ -12,12 +12,19 @@ const SURFACE_DEPTH_TOLERANCE: f32 = 0.1;
 // Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
 const SMOKE_DEPTH_TOLERANCE: f32 = 0.4;
 
-// True if smoke hardly depends on depth here, so that bilinear weights suffice. `fade` is the length of a soft fade,
-// metres.
+// Share of a soft fade's length: the unit of slopes over depth, and the standard deviation of depth that damps them.
+const SLOPE_LENGTH: f32 = 0.05;
+
+// True if smoke hardly changes between two depths. `fade` is the length of a soft fade, metres.
+fn is_shallow(nearest: f32, farthest: f32, fade: f32) -> bool {
+    return farthest - nearest < SMOKE_DEPTH_TOLERANCE * fade;
+}
+
+// True if smoke hardly depends on depth here, so that bilinear weights suffice.
 fn bilinear_suffices(depths: vec4f, depth: f32, fade: f32) -> bool {
     let low = min(min(min(depths.x, depths.y), min(depths.z, depths.w)), depth);
     let high = max(max(max(depths.x, depths.y), max(depths.z, depths.w)), depth);
-    return high - low < SMOKE_DEPTH_TOLERANCE * fade;
+    return is_shallow(low, high, fade);
 }
 
 // Weights of the texels (0,0) (1,0) (0,1) (1,1). `fraction` is the pixel's position between them, `depths` are their
@@ -122,4 +129,59 @@ fn fitted_value(fit: GuidedFit, fade: f32) -> vec4f {
         + (fit.z_value / fit.total - value * mean.z) * way.z;
     // A line extends beyond its points, smoke does not.
     return clamp(fitted, fit.low, fit.high);
+}
+
+// Least-squares line through the values of a texel and its neighbours over depth. z: depth minus the middle texel's.
+// The fields are weighted sums.
+struct DepthLine {
+    total: f32,
+    z: f32,
+    z_square: f32,
+    value: vec4f,
+    z_value: vec4f,
+}
+
+fn add_to_line(line: DepthLine, z: f32, weight: f32, value: vec4f) -> DepthLine {
+    let w = z * weight;
+    return DepthLine(
+        line.total + weight,
+        line.z + w,
+        line.z_square + w * z,
+        line.value + value * weight,
+        line.z_value + value * w,
+    );
+}
+
+// Change of the line over SLOPE_LENGTH of a soft fade, metres. Damped where the depths hardly determine it: at most half
+// the range of the values, so that it fits into their format.
+fn depth_slope(line: DepthLine, fade: f32) -> vec4f {
+    let z = line.z / line.total;
+    let value = line.value / line.total;
+    let held = SLOPE_LENGTH * fade;
+    return (line.z_value / line.total - value * z) * held / (line.z_square / line.total - z * z + held * held);
+}
+
+// Weights of the four texels around a pixel, as in upsample_weights(): bilinear times a Gaussian of the depth
+// difference, of which SURFACE_DEPTH_TOLERANCE is two sigma. Never zero by depth, and not normalised: the sum is the
+// share of the texels that saw the pixel's surface.
+fn surface_weights(fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
+    let sigmas = (depths - depth) * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));
+    return upsample_weights(UPSAMPLE_BILINEAR, fraction, depths, depth) * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
+}
+
+// Mean of four texels, in columns, each carried along its slope to the pixel's depth. A texel's slope is depth_slope().
+fn carried_value(weights: vec4f, values: mat4x4f, slopes: mat4x4f, depths: vec4f, depth: f32, fade: f32) -> vec4f {
+    let nearest = min(min(depths.x, depths.y), min(depths.z, depths.w));
+    let farthest = max(max(depths.x, depths.y), max(depths.z, depths.w));
+    let way = (clamp(depth, nearest, farthest) - depths) / (SLOPE_LENGTH * fade);
+    let carried = (values * weights + slopes * (weights * way)) / dot(weights, vec4f(1.0));
+    let low = min(min(values[0], values[1]), min(values[2], values[3]));
+    let high = max(max(values[0], values[1]), max(values[2], values[3]));
+    return clamp(carried, low, high);
+}
+
+// Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
+// surface_weights().
+fn four_texels_share(seen: f32) -> f32 {
+    return smoothstep(0.02, 0.2, seen);
 }

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::noise::NoiseVolume;
 use super::ramp::Ramp;
+use super::ramp_steps::{RampSteps, largest_step};
 use super::sprite::Sprite;
 use super::sprite::alpha_bounds::AlphaBounds;
 use super::sprite::sprite_density::SpriteDensity;
@@ -100,6 +101,14 @@ impl MaterialAssets {
             density: SpriteDensity::new(&self.sprite),
             zonal: zonal(&self.diffuse_ramp),
             backlight_zonal: zonal(&self.backlight_ramp),
+            ramp_steps: RampSteps {
+                diffuse: largest_step(&self.diffuse_ramp),
+                backlight: largest_step(&self.backlight_ramp),
+                soft_scatter: largest_step(&self.soft_scatter_ramp),
+                shadow: largest_step(&self.shadow_ramp),
+                motif: largest_step(&self.motif),
+                fire: largest_step(&self.fire_ramp),
+            },
         }
     }
 }
@@ -124,6 +133,8 @@ pub struct MaterialInfo {
     pub zonal: [Vec3; 3],
     /// Zonal harmonic coefficients of the backlight ramp.
     pub backlight_zonal: [Vec3; 3],
+    /// Steps of the ramps.
+    pub ramp_steps: RampSteps,
 }
 
 /// Properties of a detail map that preparing a frame needs.

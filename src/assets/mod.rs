@@ -11,4 +11,5 @@ pub mod noise;
 #[doc(hidden)]
 pub mod parallel;
 pub mod ramp;
+pub mod ramp_steps;
 pub mod sprite;

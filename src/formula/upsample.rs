@@ -1,6 +1,6 @@
 //! Upsampling of the reduced target to full resolution. WGSL: `shaders/lib/upsample.wgsl`.
 
-use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, vec3};
+use glam::{Mat4, Vec2, Vec3, Vec3Swizzles, Vec4, vec3};
 
 use crate::settings::Upsample;
 
@@ -10,10 +10,17 @@ pub const SURFACE_DEPTH_TOLERANCE: f32 = 0.1;
 /// Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
 pub const SMOKE_DEPTH_TOLERANCE: f32 = 0.4;
 
-/// True if smoke hardly depends on depth here, so that bilinear weights suffice. `fade` is the length of a soft fade,
-/// metres.
+/// Share of a soft fade's length: the unit of slopes over depth, and the standard deviation of depth that damps them.
+pub const SLOPE_LENGTH: f32 = 0.05;
+
+/// True if smoke hardly changes between two depths. `fade` is the length of a soft fade, metres.
+pub fn is_shallow(nearest: f32, farthest: f32, fade: f32) -> bool {
+    farthest - nearest < SMOKE_DEPTH_TOLERANCE * fade
+}
+
+/// True if smoke hardly depends on depth here, so that bilinear weights suffice.
 pub fn bilinear_suffices(depths: Vec4, depth: f32, fade: f32) -> bool {
-    depths.max_element().max(depth) - depths.min_element().min(depth) < SMOKE_DEPTH_TOLERANCE * fade
+    is_shallow(depths.min_element().min(depth), depths.max_element().max(depth), fade)
 }
 
 /// Weights of the texels (0,0) (1,0) (0,1) (1,1) around a pixel at `fraction` between them. `depths` are the texels'
@@ -142,4 +149,67 @@ pub fn fitted_value(fit: &GuidedFit, fade: f32) -> Vec4 {
         + (fit.y_value / fit.total - value * mean.y) * way.y
         + (fit.z_value / fit.total - value * mean.z) * way.z;
     fitted.clamp(fit.low, fit.high)
+}
+
+/// Least-squares line through the values of a texel and its neighbours over depth. z: depth minus the middle texel's.
+/// The fields are weighted sums.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DepthLine {
+    /// Sum of the weights.
+    pub total: f32,
+    /// Sum of z.
+    pub z: f32,
+    /// Sum of z².
+    pub z_square: f32,
+    /// Sum of the values.
+    pub value: Vec4,
+    /// Sum of the values times z.
+    pub z_value: Vec4,
+}
+
+/// Returns the line with one more texel.
+pub fn add_to_line(line: &DepthLine, z: f32, weight: f32, value: Vec4) -> DepthLine {
+    let w = z * weight;
+    DepthLine {
+        total: line.total + weight,
+        z: line.z + w,
+        z_square: line.z_square + w * z,
+        value: line.value + value * weight,
+        z_value: line.z_value + value * w,
+    }
+}
+
+/// Change of the line over [`SLOPE_LENGTH`] of a soft fade, metres. Damped where the depths hardly determine it: at most
+/// half the range of the values, so that it fits into their format.
+pub fn depth_slope(line: &DepthLine, fade: f32) -> Vec4 {
+    let z = line.z / line.total;
+    let value = line.value / line.total;
+    let held = SLOPE_LENGTH * fade;
+    (line.z_value / line.total - value * z) * held / (line.z_square / line.total - z * z + held * held)
+}
+
+/// Weights of the four texels around a pixel, as in [`upsample_weights`]: bilinear times a Gaussian of the depth
+/// difference, of which [`SURFACE_DEPTH_TOLERANCE`] is two sigma. Never zero by depth, and not normalised: the sum is
+/// the share of the texels that saw the pixel's surface.
+pub fn surface_weights(fraction: Vec2, depths: Vec4, depth: f32) -> Vec4 {
+    let sigmas = (depths - depth) * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));
+    let gaussian = Vec4::from(sigmas.to_array().map(|s| (-0.5 * s * s).exp()));
+    upsample_weights(Upsample::Bilinear, fraction, depths, depth) * (gaussian + 1.0e-4)
+}
+
+/// Mean of four texels, in columns, each carried along its slope to the pixel's depth, and clamped to their values. A
+/// texel's slope is [`depth_slope`].
+pub fn carried_value(weights: Vec4, values: Mat4, slopes: Mat4, depths: Vec4, depth: f32, fade: f32) -> Vec4 {
+    let way = (depth.clamp(depths.min_element(), depths.max_element()) - depths) / (SLOPE_LENGTH * fade);
+    let carried = (values * weights + slopes * (weights * way)) / weights.element_sum();
+    let low = values.x_axis.min(values.y_axis).min(values.z_axis.min(values.w_axis));
+    let high = values.x_axis.max(values.y_axis).max(values.z_axis.max(values.w_axis));
+    carried.clamp(low, high)
+}
+
+/// Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
+/// [`surface_weights`].
+pub fn four_texels_share(seen: f32) -> f32 {
+    let share = ((seen - 0.02) / 0.18).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
 }

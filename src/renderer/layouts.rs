@@ -33,6 +33,8 @@ pub(crate) struct Layouts {
     pub depth_resolve: wgpu::BindGroupLayout,
     pub accumulate: wgpu::BindGroupLayout,
     pub transfer: wgpu::BindGroupLayout,
+    /// Lit smoke or the first attachment, reduced depth, depth slopes.
+    pub lit: wgpu::BindGroupLayout,
     /// Of a host's shaders: shadow of the smoke on the scene.
     pub scene_shadow: wgpu::BindGroupLayout,
 }
@@ -100,6 +102,10 @@ impl Layouts {
             depth_resolve: layout("haze depth samples", &[multisampled]),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),
             transfer: layout("haze transfer inputs", &transfer),
+            lit: layout(
+                "haze lit inputs",
+                &[texture(filterable, D2), texture(unfilterable, D2), texture(filterable, D2)],
+            ),
             scene_shadow: layout(
                 "haze scene shadow",
                 &[

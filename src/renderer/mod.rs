@@ -30,6 +30,7 @@ mod tiled;
 mod validate_frame;
 mod warm_up;
 
+use crate::assets::ramp_steps::RampSteps;
 use crate::error::{Error, FieldError};
 use crate::formula::shadow::SHADOWED_LIGHTS;
 use crate::frame::{FrameInput, SceneDepth};
@@ -151,9 +152,11 @@ impl Renderer {
             let path = || format!("settings[{index}]");
             settings.validate(path)?;
             AttachmentSet::validate(settings, path)?;
-            // The sprite's frame count is not known yet: compiles for one frame and for several.
-            for frame_count in [1.0, 2.0] {
-                let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, shared.support);
+            // The material is not known yet: compiles for one frame and for several, for smooth ramps and hard ones.
+            for (frame_count, ramps) in
+                [(1.0, RampSteps::default()), (2.0, RampSteps::default()), (2.0, RampSteps::HARD)]
+            {
+                let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, &ramps, shared.support);
                 for &path in settings.path.candidates() {
                     let settings = resolved.with_path(path);
                     for back_faces in [false, true] {
@@ -198,6 +201,8 @@ impl Renderer {
             passes.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
             // Lights the target, if the lighting resolution is the target's.
             passes.light_target.iter().for_each(|pass| pass.record(encoder, timing));
+            // Fits how the lit smoke changes with depth, for its upsampling.
+            passes.depth_slopes.iter().for_each(|pass| pass.record(encoder, timing));
         }
         // Far to near; systems at equal distance keep the host's order.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));

@@ -6,11 +6,13 @@ use super::layouts::Layouts;
 use super::pass::accumulate::{self, AccumulateKey};
 use super::pass::depth_downsample::{self, DepthDownsampleKey};
 use super::pass::depth_resolve::{self, DepthResolveKey};
+use super::pass::depth_slopes::{self, DepthSlopesKey};
 use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
 use super::pass::light_target::{self, LightingKey};
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
+use super::pass::transfer_lit::{self, TransferLitKey};
 use super::plan::Plan;
 use super::tiled::TiledPipelines;
 use crate::error::Error;
@@ -23,7 +25,9 @@ pub(crate) struct Pipelines {
     pub diffuse_bake: PipelineVariants<DiffuseBakeKey>,
     pub accumulate: PipelineVariants<AccumulateKey>,
     pub light_target: PipelineVariants<LightingKey>,
+    pub depth_slopes: PipelineVariants<DepthSlopesKey>,
     pub transfer: PipelineVariants<TransferKey>,
+    pub transfer_lit: PipelineVariants<TransferLitKey>,
     pub specular_scatter: PipelineVariants<SpecularScatterKey>,
     pub forward: PipelineVariants<ForwardKey>,
     pub store: PipelineStore,
@@ -43,14 +47,17 @@ impl Pipelines {
         let with = |material, inputs| [Some(&layouts.frame), Some(&layouts.system), Some(material), Some(inputs)];
         let accumulate = with(&layouts.material, &layouts.accumulate);
         let transfer = with(&layouts.lighting, &layouts.transfer);
+        let lit = with(&layouts.lighting, &layouts.lit);
         Ok(Self {
             depth_downsample: pipeline_variants!(store, shader, depth_downsample, &frame_and_system),
             depth_resolve: pipeline_variants!(store, shader, depth_resolve, &[Some(&layouts.depth_resolve)]),
             diffuse_bake: pipeline_variants!(store, shader, diffuse_bake, &material),
             accumulate: pipeline_variants!(store, shader, accumulate, &accumulate),
             light_target: pipeline_variants!(store, shader, light_target, &transfer),
+            depth_slopes: pipeline_variants!(store, shader, depth_slopes, &lit),
             transfer: pipeline_variants!(store, shader, transfer, &transfer),
-            specular_scatter: pipeline_variants!(store, shader, specular_scatter, &transfer),
+            transfer_lit: pipeline_variants!(store, shader, transfer_lit, &lit),
+            specular_scatter: pipeline_variants!(store, shader, specular_scatter, &lit),
             forward: pipeline_variants!(store, shader, forward, &material),
             store: store.clone(),
             tiled: match tiles_are_supported(&store.device) {
@@ -85,7 +92,9 @@ impl Pipelines {
                 }
                 plan.overdraw.map_or(Ok(()), |key| self.accumulate.check(key))?;
                 plan.light_target.map_or(Ok(()), |key| self.light_target.check(key))?;
+                plan.depth_slopes.map_or(Ok(()), |key| self.depth_slopes.check(key))?;
                 plan.transfers().try_for_each(|key| self.transfer.check(key))?;
+                plan.transfer_lit.map_or(Ok(()), |key| self.transfer_lit.check(key))?;
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(key))
             }
         }

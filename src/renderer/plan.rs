@@ -6,19 +6,23 @@ use super::gpu::host_pass::HostPass;
 use super::pass::accumulate::{AccumulateKey, DepthTest};
 use super::pass::depth_downsample::DepthDownsampleKey;
 use super::pass::depth_resolve::RESOLVED_DEPTH_FORMAT;
+use super::pass::depth_slopes::DepthSlopesKey;
 use super::pass::diffuse_bake::DiffuseBakeKey;
 use super::pass::forward::ForwardKey;
 use super::pass::light_target::LightingKey;
 use super::pass::specular_scatter::SpecularScatterKey;
 use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
-use super::pass::transfer::TransferKey;
+use super::pass::transfer::{BoundingBoxKey, TransferKey};
+use super::pass::transfer_lit::TransferLitKey;
 use super::sprite_instances::SpriteKey;
 use super::tiled::TiledKeys;
+use crate::assets::ramp_steps::RampSteps;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
 use crate::settings::{
     BlendOrder, DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, RenderPath, Settings, Technique,
+    Upsample,
 };
 use crate::view_setup::{AttachmentSet, ResolvedSettings, Support};
 
@@ -98,8 +102,12 @@ pub(crate) struct DeferredPlan<'a> {
     pub overdraw: Option<AccumulateKey>,
     /// Present if smoke is lit at the target's resolution.
     pub light_target: Option<LightingKey>,
+    /// Present if lit smoke is upsampled by `guided`.
+    pub depth_slopes: Option<DepthSlopesKey>,
     /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
     pub transfer: TransferKey,
+    /// Draws the debug views that show lit smoke, if it is lit at the target's resolution.
+    pub transfer_lit: Option<TransferLitKey>,
     pub debug_views: &'a [DebugView],
     pub specular_scatter: Option<SpecularScatterKey>,
 }
@@ -142,14 +150,20 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
     };
     let mut deferred = Settings::default();
     deferred.diffuse.mode = DiffuseMode::Cubemap;
+    deferred.accumulate.lighting_resolution = LightingResolution::Full;
     let mut lit = deferred;
     lit.accumulate.lighting_resolution = LightingResolution::Target;
     lit.diffuse.mode = DiffuseMode::Ramp;
     lit.shadow.strength = 1.0;
     let forward = Settings { path: RenderPath::Forward, ..Settings::default() };
     let tiled = Settings { path: RenderPath::Tiled, ..Settings::default() };
-    [deferred, lit, forward, tiled]
-        .map(|settings| plan(&inputs, &ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 2.0, Support::ALL), false))
+    [deferred, lit, forward, tiled].map(|settings| {
+        plan(
+            &inputs,
+            &ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 2.0, &RampSteps::default(), Support::ALL),
+            false,
+        )
+    })
 }
 
 fn deferred<'a>(
@@ -165,7 +179,7 @@ fn deferred<'a>(
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
     let lights_target =
-        debug_views.iter().any(|debug_view| debug_view.shows_lit_smoke()) && settings.lights_per_texel();
+        settings.lights_per_texel() && debug_views.iter().any(|view| view.shows_lit_smoke() || view.shows_glow());
     let lighting = LightingKey {
         encoding: accumulate.encoding,
         decode: accumulate.decode,
@@ -176,6 +190,15 @@ fn deferred<'a>(
         ambient: settings.has_ambient(),
         ramp_filter,
         exact_filtering,
+    };
+    let (upsample, coverage) = (accumulate.upsample, settings.coverage);
+    let drawn = BoundingBoxKey {
+        host,
+        // Without a depth attachment, the hardware cannot hide the box behind the scene, so front faces have no
+        // advantage; back faces are never clipped by the near plane.
+        back_faces: back_faces || host.depth_format.is_none(),
+        reversed: inputs.reversed,
+        mirrored: inputs.mirrored,
     };
     let glows =
         debug_views.iter().any(|debug_view| debug_view.shows_glow()) && settings.specular_scatter.intensity > 0.0;
@@ -209,24 +232,20 @@ fn deferred<'a>(
             .contains(&DebugView::Overdraw)
             .then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         light_target: lights_target.then_some(lighting),
-        transfer: TransferKey {
-            host,
-            lighting,
-            lit: false,
-            upsample: accumulate.upsample,
-            host_depth,
-            debug_view: DebugView::Final,
-            // Without a depth attachment, the hardware cannot hide the box behind the scene, so front faces have no
-            // advantage; back faces are never clipped by the near plane.
-            back_faces: back_faces || host.depth_format.is_none(),
-            reversed: inputs.reversed,
-            mirrored: inputs.mirrored,
-            coverage: settings.coverage,
-        },
+        depth_slopes: (lights_target && upsample == Upsample::Guided).then_some(DepthSlopesKey),
+        transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
+        transfer_lit: lights_target.then_some(TransferLitKey {
+            drawn,
+            upsample,
+            coverage,
+            ramp_filter,
+            exact_filtering,
+        }),
         debug_views,
         specular_scatter: glows.then_some(SpecularScatterKey {
             host,
-            upsample: accumulate.upsample,
+            lit: lights_target,
+            upsample,
             ramp_filter,
             exact_filtering,
         }),
@@ -280,12 +299,16 @@ pub(crate) fn reads_linear_target(scene_depth: SceneDepthKind, read_only_depth: 
 }
 
 impl DeferredPlan<'_> {
-    /// Returns the transfer keys of all debug views that draw the bounding box.
+    /// Returns the transfer keys of all debug views that transfer draws.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
-        let drawn = self.debug_views.iter().filter(|debug_view| **debug_view != DebugView::SpecularScatter);
-        // Debug views that show a part of the light compute it in transfer, not in light_target.
-        let is_lit = |debug_view: DebugView| self.light_target.is_some() && debug_view.shows_lit_smoke();
-        drawn.map(move |&debug_view| TransferKey { debug_view, lit: is_lit(debug_view), ..self.transfer })
+        let drawn =
+            |debug_view: &&DebugView| **debug_view != DebugView::SpecularScatter && !self.draws_lit(**debug_view);
+        self.debug_views.iter().filter(drawn).map(|&debug_view| TransferKey { debug_view, ..self.transfer })
+    }
+
+    /// Returns true if transfer_lit draws a debug view. Those that show a part of the light need transfer.
+    pub fn draws_lit(&self, debug_view: DebugView) -> bool {
+        self.transfer_lit.is_some() && debug_view.shows_lit_smoke()
     }
 }
 

@@ -10,6 +10,7 @@ use super::gpu::timing::Timing;
 use super::pass::Groups;
 use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
+use super::pass::depth_slopes::DepthSlopes;
 use super::pass::depth_sort::DepthSort;
 use super::pass::diffuse_bake::DiffuseBake;
 use super::pass::emit::Emit;
@@ -64,6 +65,7 @@ pub(crate) struct DeferredPasses {
     pub accumulate: AccumulatePasses,
     pub overdraw: Option<Accumulate>,
     pub light_target: Option<LightTarget>,
+    pub depth_slopes: Option<DepthSlopes>,
     pub transfer: Transfer,
     pub specular_scatter: Option<SpecularScatter>,
     pub sprites: Sprites,
@@ -177,11 +179,20 @@ impl PassBuilder<'_> {
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
             }),
+            depth_slopes: plan.depth_slopes.zip(accumulation.depth_slopes.as_ref()).zip(inputs.lit.as_ref()).map(
+                |((key, target), inputs)| DepthSlopes {
+                    pipeline: pipelines.depth_slopes.get(key),
+                    target: target.clone(),
+                    size,
+                    groups: groups.clone(),
+                    inputs: inputs.clone(),
+                },
+            ),
             transfer: transfer_pass(pipelines, plan, &groups, inputs),
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
                 pipeline: pipelines.specular_scatter.get(key),
                 groups: groups.clone(),
-                inputs: inputs.transfer.clone(),
+                inputs: inputs.upsampled.clone(),
                 lights,
             }),
             sprites: sprites.clone(),
@@ -194,11 +205,17 @@ fn transfer_pass(pipelines: &Pipelines, plan: &DeferredPlan<'_>, groups: &Groups
     for key in plan.transfers() {
         by_debug_view[key.debug_view as usize] = Some(pipelines.transfer.get(key));
     }
+    if let Some(key) = plan.transfer_lit {
+        let lit = pipelines.transfer_lit.get(key);
+        plan.debug_views.iter().filter(|debug_view| plan.draws_lit(**debug_view)).for_each(|&debug_view| {
+            by_debug_view[debug_view as usize] = Some(lit.clone());
+        });
+    }
     Transfer {
         pipelines: by_debug_view,
         groups: groups.clone(),
         inputs: inputs.transfer.clone(),
         overdraw_inputs: inputs.overdraw.clone(),
-        lit_inputs: inputs.lit.clone(),
+        lit_inputs: plan.transfer_lit.map(|_| inputs.upsampled.clone()),
     }
 }

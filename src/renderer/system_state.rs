@@ -22,6 +22,7 @@ use super::system_targets::SystemTargets;
 use super::targets::TargetViews;
 use super::tiled::TiledSystem;
 use super::validate_frame::tiled_unavailable_reason;
+use crate::assets::material_assets::MaterialInfo;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, ParticleSystem};
 use crate::settings::{RenderPath, Technique};
@@ -242,8 +243,9 @@ impl SystemState {
         system: &ParticleSystem<'_>,
     ) -> (Bounds, ResolvedSettings) {
         let space = ParticleSpace::new(view, &system.world_from_particles);
-        let frame_count = system.material.info.frame_count;
-        let settings = ResolvedSettings::new(system.settings, space.scale, view.size, frame_count, shared.support);
+        let MaterialInfo { frame_count, ramp_steps, .. } = &system.material.info;
+        let settings =
+            ResolvedSettings::new(system.settings, space.scale, view.size, *frame_count, ramp_steps, shared.support);
         let bounds = self.particles.measure(view, &space, system, &settings);
         self.measured = Some(MeasuredSystem { space, settings, bounds });
         (bounds, settings)

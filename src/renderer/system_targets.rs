@@ -22,12 +22,14 @@ pub(crate) struct SystemTargets {
 pub(crate) struct TargetInputs {
     /// Group 3 of accumulate; `None` if sprites are compared with the host's own depth.
     pub accumulate: Option<wgpu::BindGroup>,
-    /// Group 3 of transfer, specular_scatter and light_target.
+    /// Group 3 of transfer and light_target.
     pub transfer: wgpu::BindGroup,
     /// As `transfer`, with counted layers in place of the first attachment.
     pub overdraw: Option<wgpu::BindGroup>,
-    /// As `transfer`, with lit smoke in place of the first attachment.
+    /// Group 3 of depth_slopes, without the slopes, which it writes.
     pub lit: Option<wgpu::BindGroup>,
+    /// Group 3 of transfer_lit and specular_scatter: lit smoke and its slopes, or the first attachment.
+    pub upsampled: wgpu::BindGroup,
 }
 
 /// Textures that fit the current frame, and their bind groups.
@@ -55,6 +57,7 @@ impl SystemTargets {
             depth_source: settings.accumulate.depth_source,
             overdraw: plan.overdraw.is_some(),
             lit: plan.light_target.is_some(),
+            depth_slopes: plan.depth_slopes.is_some(),
             depth_copy: !shared.read_only_depth,
             tiled: plan.tiled.is_some(),
         };
@@ -68,19 +71,23 @@ impl SystemTargets {
             let depth = accumulation.reduced_depth.as_ref();
             let amount = &accumulation.attachments[0];
             let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
-            // Placeholders: no shader reads the depth or the further attachments that a system does not have, but the
-            // bindings must be filled.
+            // Placeholders: no shader reads the textures that a system does not have, but the bindings must be filled.
             let transfer = |amount| {
                 let mut inputs = [amount; TRANSFER_TEXTURES];
                 (inputs[1], inputs[2]) = (depth.unwrap_or(amount), &baked_diffuse.array);
                 inputs[3..].iter_mut().zip(&accumulation.attachments[1..]).for_each(|(input, view)| *input = view);
                 bind_textures(device, "haze transfer inputs", transfer, inputs)
             };
+            let lit = accumulation.lit.as_ref().unwrap_or(amount);
+            let lit_inputs = |slopes| {
+                bind_textures(device, "haze lit inputs", &shared.layouts.lit, [lit, depth.unwrap_or(lit), slopes])
+            };
             TargetInputs {
                 accumulate: depth.map(|depth| bind_textures(device, "haze accumulate inputs", accumulate, [depth])),
                 transfer: transfer(amount),
                 overdraw: accumulation.overdraw.as_ref().map(|layers| transfer(&layers[0])),
-                lit: accumulation.lit.as_ref().map(transfer),
+                lit: accumulation.depth_slopes.as_ref().map(|_| lit_inputs(lit)),
+                upsampled: lit_inputs(accumulation.depth_slopes.as_ref().unwrap_or(lit)),
             }
         });
         ReadyTargets { accumulation, baked_diffuse, inputs }

@@ -92,9 +92,8 @@ choice! {
     /// Upsampling of the reduced target to full resolution.
     #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     Upsample {
-        /// Bilinear where depth hardly changes, elsewhere a fit by position and depth over the surrounding sixteen
-        /// texels. Smooth on both sides of an edge and on surfaces at a grazing angle. `docs/upsampling.md` compares
-        /// them.
+        /// Bilinear where depth hardly changes, elsewhere the surrounding texels, fitted to the pixel's depth. Smooth on
+        /// both sides of an edge and on surfaces at a grazing angle. `docs/upsampling.md` compares them.
         #[default]
         Guided = "guided",
         /// Bilinear weights times a falloff over the depth difference. Smooth on both sides of an edge, jagged on
@@ -113,8 +112,10 @@ choice! {
     /// of each.
     #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
     LightingResolution {
-        /// Once per pixel of the picture, from the upsampled normal and amount.
+        /// `target` where the ramps in use are smooth at this scale, else `full`.
         #[default]
+        Auto = "auto",
+        /// Once per pixel of the picture, from the upsampled normal and amount.
         Full = "full",
         /// Once per texel of the target, then upsampled: a light costs `scale`² times less. Hard steps in a diffuse
         /// ramp become soft.

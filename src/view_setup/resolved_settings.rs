@@ -4,7 +4,12 @@ use std::ops::Deref;
 
 use glam::UVec2;
 
+use crate::assets::ramp_steps::RampSteps;
 use crate::settings::{Lighting, LightingResolution, RenderPath, Settings, Shadow};
+
+/// Largest step of a ramp times the scale, at which light per texel looks like light per pixel. Steps are those of
+/// [`RampSteps`].
+const SMOOTH_STEP: f32 = 0.4;
 
 /// Capabilities of a device that settings depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,15 +36,28 @@ pub struct ResolvedSettings {
 
 impl ResolvedSettings {
     /// `particle_scale`: metres per unit of the particles' space; sprite sizes grow by it. `picture`: size of the view,
-    /// pixels. `frame_count`: number of frames of the sprite.
-    pub fn new(settings: &Settings, particle_scale: f32, picture: UVec2, frame_count: f32, support: Support) -> Self {
+    /// pixels. `frame_count`: number of frames of the sprite. `ramp_steps`: of the material.
+    pub fn new(
+        settings: &Settings,
+        particle_scale: f32,
+        picture: UVec2,
+        frame_count: f32,
+        ramp_steps: &RampSteps,
+        support: Support,
+    ) -> Self {
         let lighting = if support.six_way { settings.lighting } else { Lighting::Normals };
         let strength = if support.shadow { settings.shadow.strength } else { 0.0 };
         let shadow = Shadow { strength, ..settings.shadow };
         let mut sprite = settings.sprite.for_frames(frame_count);
         sprite.size *= particle_scale;
         let scale = settings.accumulate.effective_scale(picture);
-        Self { settings: Settings { lighting, shadow, sprite, ..*settings }, scale }
+        let mut settings = Settings { lighting, shadow, sprite, ..*settings };
+        if settings.accumulate.lighting_resolution == LightingResolution::Auto {
+            let is_smooth = ramp_steps.largest(&settings) * scale as f32 <= SMOOTH_STEP;
+            settings.accumulate.lighting_resolution =
+                if is_smooth { LightingResolution::Target } else { LightingResolution::Full };
+        }
+        Self { settings, scale }
     }
 
     /// Returns the same settings with the path that `auto` chose.
@@ -58,5 +76,24 @@ impl Deref for ResolvedSettings {
 
     fn deref(&self) -> &Settings {
         &self.settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn auto_lights_texels_where_steps_of_ramps_are_small_for_the_scale() {
+        let lights_per_texel = |step: f32, scale| {
+            let mut settings = Settings::default();
+            settings.accumulate.scale = scale;
+            let ramps = RampSteps { diffuse: step, ..RampSteps::default() };
+            let resolved = ResolvedSettings::new(&settings, 1.0, UVec2::splat(512), 1.0, &ramps, Support::ALL);
+            resolved.lights_per_texel()
+        };
+        assert!(lights_per_texel(0.1, 2) && lights_per_texel(0.1, 4) && !lights_per_texel(0.1, 8));
+        assert!(!lights_per_texel(0.25, 2) && lights_per_texel(0.02, 16));
+        assert!(!lights_per_texel(0.0, 1), "a texel is a pixel");
     }
 }

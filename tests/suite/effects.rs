@@ -186,7 +186,7 @@ const SAME: [&str; 7] = [
 
 /// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
-const NOT_ALWAYS: [&str; 22] = [
+const NOT_ALWAYS: [&str; 23] = [
     // Particles may be white, and those of files may rest.
     "systems[0].settings.sprite.tint",
     "systems[0].settings.sprite.stretch",
@@ -211,7 +211,9 @@ const NOT_ALWAYS: [&str; 22] = [
     "systems[0].settings.accumulate.depth_downsample",
     "systems[0].settings.accumulate.max_side",
     "systems[0].settings.accumulate.scale",
-    // Some alternatives give the same image: `auto` chooses `raster`, and `soft_linear` and `host` read the same depth.
+    // Some alternatives give the same image: `auto` chooses `raster` and `target`, and `soft_linear` and `host` read the
+    // same depth.
+    "systems[0].settings.accumulate.lighting_resolution",
     "systems[0].settings.path",
     "systems[0].settings.technique",
     "systems[0].settings.accumulate.depth_source",

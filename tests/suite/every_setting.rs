@@ -169,7 +169,7 @@ fn stages() -> Vec<TestScene> {
 }
 
 /// Values that give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 8] = [
+const SAME: [&str; 9] = [
     // Shades the scene, which this test does not draw.
     "shadow.scene",
     // A light that the host adds to its own.
@@ -179,6 +179,8 @@ const SAME: [&str; 8] = [
     "path auto",
     // The same image, computed differently; tiled.rs compares the two.
     "path tiled",
+    // The choice of `auto` here.
+    "accumulate.lighting_resolution target",
     // The layers that are skipped otherwise are invisible.
     "accumulate.layers all",
     // The same depth, read from another texture.

@@ -195,6 +195,8 @@ const INDIRECT: &[(&str, &str)] = &[
     ("add_attachments", "adds structs member by member; tests of the tiled path cover it"),
     ("slots_from_attachments", "maps roles to texture slots by override constants"),
     ("attachments_from_slots", "maps texture slots to roles by override constants"),
+    ("texel_of_five", "offsets of a cross; whole frames lit per texel cover it"),
+    ("box_position", "projects a corner of the box; whole frames cover it"),
     ("sample_attachments", "reads the pass's textures by the tested sample_target"),
     ("load_attachments", "reads the pass's textures"),
     ("load_map", "reads a host's shadow map; whole frames with shadow maps cover it"),

@@ -25,7 +25,7 @@ const MUTANTS: &[Mutant] = &[
         "return accumulated_from(vec4f(accumulated.rgb * accumulated.a, accumulated.a), ",
     ),
     // Reversed winding gives the image of the other cull mode.
-    ("wrong face culled", "transfer.wgsl", "corners[index]", "corners[35u - index]"),
+    ("wrong face culled", "lib/bounding_box.wgsl", "corners[index]", "corners[35u - index]"),
     (
         "missing premultiply",
         "lib/normal.wgsl",

@@ -103,6 +103,8 @@ fn probed_values_match_every_debug_view() {
             (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
             s.accumulate.order = BlendOrder::Sorted;
             (s.diffuse.mode, s.soft_scatter.mode) = (DiffuseMode::Motif, SoftScatterMode::Ramp);
+            // Lit texels are half floats. Near an amount of 1, where the glow is steep, their last bit is visible.
+            s.accumulate.lighting_resolution = LightingResolution::Full;
         },
     ];
     let paths = if is_tiled_available() { &[RenderPath::Raster, RenderPath::Tiled][..] } else { &[RenderPath::Raster] };

@@ -179,8 +179,8 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
         assert_eq!(refusal, format!("{pass}:1:1: Unable to find entry point '{entry_point}'"));
     }
     let refused = |file: &str, from: &str, to: &str| ShaderFolder::new().edit(file, from, to).refusal();
-    let gone = refused("transfer.wgsl", "override BACK_FACES: bool", "const BACK_FACES: bool");
-    assert!(gone.starts_with("transfer.wgsl:1:1: ") && gone.contains("'BACK_FACES' not found"), "{gone}");
+    let gone = refused("lib/bounding_box.wgsl", "override BACK_FACES: bool", "const BACK_FACES: bool");
+    assert!(gone.starts_with("builtin:/transfer.wgsl:1:1: ") && gone.contains("'BACK_FACES' not found"), "{gone}");
     let input = refused("lib/particle.wgsl", "@location(0)", "@location(9)");
     assert!(input.contains("accumulate.wgsl:1:1: Input is not provided"), "{input}");
     let divided = refused("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / DEBUG_VIEW) {");
@@ -272,9 +272,9 @@ fn byte_order_marks_and_crlf_line_endings_are_accepted() {
 
 #[test]
 fn folders_without_readable_shaders_are_rejected_with_a_reason() {
-    let expected = "expected accumulate.wgsl, density_splat.wgsl, depth_downsample.wgsl, depth_resolve.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \
+    let expected = "expected accumulate.wgsl, density_splat.wgsl, depth_downsample.wgsl, depth_resolve.wgsl, depth_slopes.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \
                     forward.wgsl, light_target.wgsl, measure.wgsl, shadow_march.wgsl, shadow_visibility.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
-                    tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl or a file of lib/ in it";
+                    tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl, transfer_lit.wgsl or a file of lib/ in it";
     let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
     let folder = ShaderFolder::new();
     let path = folder.0.path();

@@ -60,10 +60,11 @@ fn pass_names(times: &FrameTimes) -> Vec<&str> {
     times.passes.iter().map(|pass| pass.name).collect()
 }
 
-/// Stage with settings that use every pass of the deferred path.
+/// Stage with settings that use every pass of the deferred path but those of light per texel.
 fn scene() -> TestScene {
     let mut scene = TestScene::new(SIZE);
     scene.settings.diffuse.mode = DiffuseMode::Cubemap;
+    scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     scene
 }
 
@@ -93,8 +94,8 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
         assert!(times.passes.iter().all(|pass| pass.is_host == (pass.name == "host")));
     }
     scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
-    let lit =
-        ["depth_downsample", "diffuse_bake", "accumulate", "light_target", "host", "transfer", "specular_scatter"];
+    let mut lit = DEFERRED_PASSES.to_vec();
+    lit.splice(3..3, ["light_target", "depth_slopes"]);
     assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), lit);
     scene.settings.path = RenderPath::Forward;
     assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), ["host", "forward"]);

@@ -14,6 +14,14 @@ pub type AccumulatedTextures = [Option<Image<Vec4>>; AttachmentRole::ALL.len()];
 /// Values of a texel, indexed by role; 0 for textures that the system does not have.
 pub type Attachments = [Vec4; AttachmentRole::ALL.len()];
 
+/// Smoke lit once per texel.
+pub struct LitTarget {
+    /// Light times amount, and amount.
+    pub light: Image<Vec4>,
+    /// Change of `light` with depth: output of depth_slopes.
+    pub slopes: Image<Vec4>,
+}
+
 /// Finished target of a system.
 pub struct AccumulatedTarget<'a> {
     /// System that was accumulated.
@@ -24,8 +32,10 @@ pub struct AccumulatedTarget<'a> {
     pub reduced_depth: &'a Image<f32>,
     /// Textures of the accumulation target, by role.
     pub textures: &'a AccumulatedTextures,
-    /// Output of light_target. `None` if texels are lit as they are read.
-    pub lit: Option<Image<Vec4>>,
+    /// True if the smoke is lit once per texel.
+    pub is_lit: bool,
+    /// Outputs of light_target and depth_slopes. `None` if texels are lit as they are read.
+    pub lit: Option<LitTarget>,
 }
 
 impl AccumulatedTarget<'_> {
@@ -53,15 +63,13 @@ impl AccumulatedTarget<'_> {
         self.sample_texels(|at| target.load(at), pixel)
     }
 
-    /// Samples the lit smoke.
-    pub fn sample_lit(&self, pixel: Vec2) -> Vec4 {
-        match &self.lit {
-            Some(lit) => self.sample_target(lit, pixel),
-            None => self.sample_texels(|at| self.lit_texel(at), pixel),
-        }
+    /// Depth of a texel that guides the upsampling. Everything behind the smoke counts as one depth.
+    pub fn guide(&self, texel: IVec2) -> f32 {
+        self.reduced_depth.load(texel).min(self.visible.system.smoke_depth_limit)
     }
 
-    fn sample_texels(&self, texel_at: impl Fn(IVec2) -> Vec4, pixel: Vec2) -> Vec4 {
+    /// As [`sample_target`](Self::sample_target), of a texture that is a function.
+    pub fn sample_texels(&self, texel_at: impl Fn(IVec2) -> Vec4, pixel: Vec2) -> Vec4 {
         let system = &self.visible.system;
         let texel = pixel / system.scale as f32 - system.target_origin;
         if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
@@ -74,12 +82,11 @@ impl AccumulatedTarget<'_> {
         let corner = texel - 0.5;
         let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
         let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
-        let guide = |tap| self.reduced_depth.load(tap).min(system.smoke_depth_limit);
         let (depths, depth) = match upsample {
             Upsample::Bilinear => (Vec4::ZERO, 0.0),
             _ => {
                 let depth = self.visible.scene_view_depth(pixel.as_ivec2()).min(system.smoke_depth_limit);
-                (Vec4::from(taps.map(guide)), depth)
+                (Vec4::from(taps.map(|tap| self.guide(tap))), depth)
             }
         };
         let fade = 1.0 / system.fade_scale;
@@ -90,7 +97,7 @@ impl AccumulatedTarget<'_> {
         let fit = (0..16).fold(GuidedFit::default(), |fit, i| {
             let offset = IVec2::new(i % 4, i / 4) - 1;
             let at = base + offset;
-            let place = (offset.as_vec2() - fraction).extend(guide(at) - depth);
+            let place = (offset.as_vec2() - fraction).extend(self.guide(at) - depth);
             add_texel(&fit, place, guided_weight(place, depth), texel_at(at))
         });
         fitted_value(&fit, fade)

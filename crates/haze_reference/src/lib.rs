@@ -5,6 +5,7 @@ pub mod accumulated;
 pub mod blend_unit;
 mod frame_shadow;
 mod input;
+mod lit_target;
 pub mod optical_depths;
 pub mod pass;
 mod probe;
@@ -21,8 +22,8 @@ use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::settings::DebugView;
 
-use accumulated::AccumulatedTarget;
 pub use accumulated::AccumulatedTextures;
+use accumulated::{AccumulatedTarget, LitTarget};
 pub use input::{FrameInput, ParticleSystem, ShadowMap};
 pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
 pub use scene_shadow::SceneShadow;
@@ -73,9 +74,12 @@ impl<'a> PreparedFrame<'a> {
             };
             let baked = visible.diffuse_bake();
             let (reduced_depth, textures) = (&reduced_depth, &textures);
-            let mut smoke = AccumulatedTarget { visible, baked: &baked, reduced_depth, textures, lit: None };
-            if visible.lights_per_texel(self.debug_view) {
-                smoke.lit = Some(smoke.light_target());
+            let is_lit = visible.lights_per_texel(self.debug_view);
+            let mut smoke = AccumulatedTarget { visible, baked: &baked, reduced_depth, textures, is_lit, lit: None };
+            if is_lit {
+                let light = smoke.light_target();
+                let slopes = smoke.depth_slopes(&light);
+                smoke.lit = Some(LitTarget { light, slopes });
             }
             if self.debug_view != DebugView::SpecularScatter {
                 smoke.transfer(self.debug_view, picture);

@@ -157,7 +157,8 @@ impl<'a> ProbedSystem<'a> {
             let value = format!("{}x{}", other.x, other.y);
             return Err(FieldError::new("texels", value, format!("{}x{}, the size of the system", size.x, size.y)));
         }
-        let accumulated = AccumulatedTarget { visible, baked, reduced_depth, textures, lit: None };
+        let is_lit = visible.lights_per_texel(DebugView::Final);
+        let accumulated = AccumulatedTarget { visible, baked, reduced_depth, textures, is_lit, lit: None };
         let view = ViewGeometry::new(&haze::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {

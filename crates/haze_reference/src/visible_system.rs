@@ -99,9 +99,9 @@ impl<'a> VisibleSystem<'a> {
         })
     }
 
-    /// True if this debug view shows the light of the target's texels.
+    /// True if this debug view shows the light of the target's texels, or its amount.
     pub fn lights_per_texel(&self, debug_view: DebugView) -> bool {
-        debug_view.shows_lit_smoke() && self.settings.lights_per_texel()
+        (debug_view.shows_lit_smoke() || debug_view.shows_glow()) && self.settings.lights_per_texel()
     }
 
     /// View depth of the scene at a pixel, metres.
@@ -135,8 +135,9 @@ struct MeasuredSystem {
 impl MeasuredSystem {
     fn new(view: &ViewGeometry, system: &ParticleSystem<'_>, material: MaterialInfo) -> Self {
         let space = ParticleSpace::new(view, &system.world_from_particles);
+        let MaterialInfo { frame_count, ramp_steps, .. } = &material;
         let settings =
-            ResolvedSettings::new(system.settings, space.scale, view.size, material.frame_count, Support::ALL);
+            ResolvedSettings::new(system.settings, space.scale, view.size, *frame_count, ramp_steps, Support::ALL);
         let mut measures = ParticleMeasures::default();
         measures.measure(&space, view.depth.near, system.particles, &settings);
         let bounds = system.bounds.map_or(measures.bounds, |bounds| space.world_bounds(&bounds));

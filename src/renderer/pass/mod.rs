@@ -5,6 +5,7 @@ pub(crate) mod accumulate;
 pub(crate) mod density_splat;
 pub(crate) mod depth_downsample;
 pub(crate) mod depth_resolve;
+pub(crate) mod depth_slopes;
 pub(crate) mod depth_sort;
 pub(crate) mod diffuse_bake;
 pub(crate) mod emit;
@@ -21,6 +22,7 @@ pub(crate) mod tile_gather;
 pub(crate) mod tile_project;
 pub(crate) mod tile_refine;
 pub(crate) mod transfer;
+pub(crate) mod transfer_lit;
 
 /// Bind groups 0 to 2 of a system's passes.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! specular_scatter: adds the glow of lights behind the smoke, one quad of constant pixel size around each light.
 //!
-//! Reads: accumulation target, reduced depth, scene depth, lights, specular ramp.
+//! Reads: accumulation target, or lit smoke and its depth slopes; reduced depth, scene depth, lights, specular ramp.
 //! Writes: the host's color target.
 //! Blend: ONE, ONE.
 //! Source: OTEE "Specular scattering".
@@ -16,6 +16,8 @@ use crate::settings::{RampFilter, Upsample};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SpecularScatterKey {
     pub host: HostPass,
+    /// True if the amount comes from the output of light_target.
+    pub lit: bool,
     pub upsample: Upsample,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
@@ -31,6 +33,7 @@ pub(crate) fn describe(key: SpecularScatterKey) -> RenderPipelineDescription {
         sample_count: key.host.sample_count,
         targets: key.host.color_targets(ADDITIVE),
         constants: vec![
+            bool_constant("LIT", key.lit),
             enum_constant!("UPSAMPLE", key.upsample),
             enum_constant!("RAMP_FILTER", key.ramp_filter),
             bool_constant("EXACT_FILTERING", key.exact_filtering),

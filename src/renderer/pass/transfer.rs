@@ -1,5 +1,4 @@
-//! transfer: lights the accumulated smoke once per pixel, over the system's bounding box; or upsamples the output of
-//! light_target.
+//! transfer: lights the accumulated smoke once per pixel, over the system's bounding box.
 //!
 //! Reads: accumulation target, reduced depth, scene depth, lights, ramps.
 //! Writes: the host's color target.
@@ -10,7 +9,8 @@ use super::Groups;
 use super::light_target::LightingKey;
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
-    PREMULTIPLIED_OVER, RenderPipelineDescription, bool_constant, depth_compare, enum_constant, read_only_depth,
+    Constant, PREMULTIPLIED_OVER, RenderPipelineDescription, bool_constant, depth_compare, enum_constant,
+    read_only_depth,
 };
 use crate::settings::{CoverageMode, DebugView, Upsample};
 
@@ -20,50 +20,60 @@ const BOX_VERTICES: u32 = 36;
 /// Key of a transfer pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TransferKey {
-    pub host: HostPass,
+    pub drawn: BoundingBoxKey,
     pub lighting: LightingKey,
-    /// True if the upsampled input is light from light_target.
-    pub lit: bool,
     pub upsample: Upsample,
     pub host_depth: bool,
     pub debug_view: DebugView,
+    pub coverage: CoverageMode,
+}
+
+/// State of the host's pass and the faces with which a system's bounding box is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct BoundingBoxKey {
+    pub host: HostPass,
     /// True to draw the back faces, untested: the near plane cuts the box, or there is no depth attachment.
     pub back_faces: bool,
     pub reversed: bool,
     /// True if the view mirrors, which reverses the winding of faces.
     pub mirrored: bool,
-    pub coverage: CoverageMode,
+}
+
+impl BoundingBoxKey {
+    /// Returns a pipeline's parts. `constants`: those of the pass.
+    pub fn describe(self, constants: Vec<Constant>) -> RenderPipelineDescription {
+        let (cull, compare) = if self.back_faces {
+            (wgpu::Face::Front, wgpu::CompareFunction::Always)
+        } else {
+            (wgpu::Face::Back, depth_compare(self.reversed))
+        };
+        let back_faces = bool_constant("BACK_FACES", self.back_faces);
+        RenderPipelineDescription {
+            buffers: &[],
+            primitive: wgpu::PrimitiveState {
+                front_face: if self.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                cull_mode: Some(cull),
+                ..Default::default()
+            },
+            depth_stencil: self.host.depth_format.map(|format| read_only_depth(format, compare)),
+            sample_count: self.host.sample_count,
+            targets: self.host.color_targets(PREMULTIPLIED_OVER),
+            constants: constants.into_iter().chain([back_faces]).collect(),
+        }
+    }
 }
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
-    let (cull, compare) = if key.back_faces {
-        (wgpu::Face::Front, wgpu::CompareFunction::Always)
-    } else {
-        (wgpu::Face::Back, depth_compare(key.reversed))
-    };
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: wgpu::PrimitiveState {
-            front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
-            cull_mode: Some(cull),
-            ..Default::default()
-        },
-        depth_stencil: key.host.depth_format.map(|format| read_only_depth(format, compare)),
-        sample_count: key.host.sample_count,
-        targets: key.host.color_targets(PREMULTIPLIED_OVER),
-        constants: key.lighting.constants([
-            bool_constant("LIT", key.lit),
-            enum_constant!("UPSAMPLE", key.upsample),
-            enum_constant!("DEBUG_VIEW", key.debug_view),
-            bool_constant("HOST_DEPTH", key.host_depth),
-            bool_constant("BACK_FACES", key.back_faces),
-            enum_constant!("COVERAGE_MODE", key.coverage),
-        ]),
-    }
+    key.drawn.describe(key.lighting.constants([
+        enum_constant!("UPSAMPLE", key.upsample),
+        enum_constant!("DEBUG_VIEW", key.debug_view),
+        bool_constant("HOST_DEPTH", key.host_depth),
+        enum_constant!("COVERAGE_MODE", key.coverage),
+    ]))
 }
 
-/// The pass for one system, in the host's pass.
+/// The pass for one system, in the host's pass; with lit smoke, transfer_lit.
 #[derive(Debug)]
 pub(crate) struct Transfer {
     /// Pipelines by debug view; `None` for those that are not shown.
@@ -73,7 +83,7 @@ pub(crate) struct Transfer {
     pub inputs: wgpu::BindGroup,
     /// As `inputs`, with counted layers in place of the first texture.
     pub overdraw_inputs: Option<wgpu::BindGroup>,
-    /// As `inputs`, with lit smoke in place of the first texture, if smoke is lit at the target's resolution.
+    /// Group 3 of transfer_lit, if smoke is lit at the target's resolution.
     pub lit_inputs: Option<wgpu::BindGroup>,
 }
 

@@ -18,7 +18,7 @@ fn inputs() -> PipelineInputs<'static> {
 }
 
 fn resolved(settings: &Settings) -> ResolvedSettings {
-    ResolvedSettings::new(settings, 1.0, UVec2::new(1280, 720), 2.0, Support::ALL)
+    ResolvedSettings::new(settings, 1.0, UVec2::new(1280, 720), 2.0, &RampSteps::default(), Support::ALL)
 }
 
 fn deferred<'a>(inputs: &PipelineInputs<'a>, settings: &Settings) -> DeferredPlan<'a> {
@@ -106,18 +106,24 @@ fn only_the_modes_cubemap_and_motif_bake_light() {
 #[test]
 fn light_target_is_planned_only_for_final_images_at_reduced_resolution() {
     let mut settings = Settings::default();
+    settings.accumulate.lighting_resolution = LightingResolution::Full;
     assert_eq!(deferred(&inputs(), &settings).light_target, None);
     settings.accumulate.lighting_resolution = LightingResolution::Target;
     for &debug_view in DebugView::ALL {
         let inputs = PipelineInputs { debug_views: &[debug_view], ..inputs() };
         let shown = deferred(&inputs, &settings);
         let shows_lit_smoke = matches!(debug_view, DebugView::Final | DebugView::Combined);
-        assert_eq!(shown.light_target.is_some(), shows_lit_smoke, "{debug_view:?}");
-        assert_eq!(shown.transfers().any(|key| key.lit), shows_lit_smoke, "{debug_view:?}");
+        let needs_lit = shows_lit_smoke || debug_view == DebugView::SpecularScatter;
+        assert_eq!(shown.light_target.is_some(), needs_lit, "{debug_view:?}");
+        assert_eq!(shown.draws_lit(debug_view), shows_lit_smoke, "{debug_view:?}");
+        assert_eq!(shown.depth_slopes.is_some(), needs_lit, "{debug_view:?}");
     }
     let all = PipelineInputs { debug_views: DebugView::ALL, ..inputs() };
-    let lit: Vec<_> = deferred(&all, &settings).transfers().filter(|key| key.lit).map(|key| key.debug_view).collect();
-    assert_eq!(lit, [DebugView::Final, DebugView::Combined]);
+    let by_transfer: Vec<_> = deferred(&all, &settings).transfers().map(|key| key.debug_view).collect();
+    let lit = [DebugView::Final, DebugView::Combined, DebugView::SpecularScatter];
+    assert!(DebugView::ALL.iter().all(|view| by_transfer.contains(view) != lit.contains(view)), "{by_transfer:?}");
+    settings.accumulate.upsample = Upsample::Bilinear;
+    assert_eq!(deferred(&inputs(), &settings).depth_slopes, None);
     settings.accumulate.scale = 1;
     assert_eq!(deferred(&inputs(), &settings).light_target, None);
     settings.accumulate.max_side = 1279;
@@ -147,11 +153,11 @@ fn transfer_key_follows_mirroring_reversed_depth_and_missing_depth_attachment() 
         other => panic!("{other:?}"),
     };
     let plain = transfer(&inputs(), false);
-    assert!(!plain.back_faces && !plain.mirrored && !plain.reversed);
-    assert!(transfer(&inputs(), true).back_faces);
-    assert!(transfer(&PipelineInputs { mirrored: true, ..inputs() }, false).mirrored);
-    assert!(transfer(&PipelineInputs { reversed: true, ..inputs() }, false).reversed);
+    assert!(!plain.drawn.back_faces && !plain.drawn.mirrored && !plain.drawn.reversed);
+    assert!(transfer(&inputs(), true).drawn.back_faces);
+    assert!(transfer(&PipelineInputs { mirrored: true, ..inputs() }, false).drawn.mirrored);
+    assert!(transfer(&PipelineInputs { reversed: true, ..inputs() }, false).drawn.reversed);
     // Without a depth attachment, back faces are drawn.
     let untested = PipelineInputs { host: HostPass::color_only(Rgba16Float), ..inputs() };
-    assert!(transfer(&untested, false).back_faces);
+    assert!(transfer(&untested, false).drawn.back_faces);
 }

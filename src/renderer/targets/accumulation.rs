@@ -31,6 +31,8 @@ pub(crate) struct AccumulationKey {
     pub overdraw: bool,
     /// True if smoke is lit at this resolution.
     pub lit: bool,
+    /// True if slopes of the lit smoke are needed.
+    pub depth_slopes: bool,
     /// True if the backend cannot test what it samples, so that a copy of the reduced depth is needed.
     pub depth_copy: bool,
     /// True if compute shaders write the target.
@@ -49,6 +51,8 @@ pub(crate) struct AccumulationTarget {
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
     /// Light times amount in rgb and amount in a, if smoke is lit at this resolution.
     pub lit: Option<wgpu::TextureView>,
+    /// Change of the lit smoke with depth.
+    pub depth_slopes: Option<wgpu::TextureView>,
     /// `None` if sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// Coarser copy of the reduced depth, if the backend cannot test what it samples.
@@ -110,12 +114,24 @@ impl AccumulationTarget {
         let overdraw = key.overdraw.then(|| create(AttachmentSet::NORMAL_AND_AMOUNT, false));
         textures.written = TextureUsages::RENDER_ATTACHMENT;
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
+        let depth_slopes = key.depth_slopes.then(|| textures.create_whole("haze depth slopes", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;
         let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", REDUCED_DEPTH_FORMAT, size));
         let depth_copy =
             (is_reduced && key.depth_copy).then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
         let bytes = textures.bytes;
-        Self { key, size, idle: IdleCounter::default(), attachments, overdraw, lit, reduced_depth, depth_copy, bytes }
+        Self {
+            key,
+            size,
+            idle: IdleCounter::default(),
+            attachments,
+            overdraw,
+            lit,
+            depth_slopes,
+            reduced_depth,
+            depth_copy,
+            bytes,
+        }
     }
 }
 

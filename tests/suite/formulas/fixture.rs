@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use glam::{UVec2, Vec2, Vec4, vec3};
 use haze::assets::material_assets::MaterialInfo;
+use haze::assets::ramp_steps::RampSteps;
 use haze::formula::uniforms::LightUniform;
 use haze::frame::MAX_LIGHTS;
 use haze::image::Image;
@@ -104,7 +105,7 @@ pub fn visible_system(settings: &Settings) -> VisibleSystem<'_> {
         particles: Vec::new(),
         trim: SpriteTrim::new(settings, &INFO),
         scene_depth: &DEPTHS,
-        settings: ResolvedSettings::new(settings, 1.0, SIZE, system.frame_count, Support::ALL),
+        settings: ResolvedSettings::new(settings, 1.0, SIZE, system.frame_count, &RampSteps::default(), Support::ALL),
         material: &MATERIAL,
         optical_depths: None,
     }
@@ -112,5 +113,5 @@ pub fn visible_system(settings: &Settings) -> VisibleSystem<'_> {
 
 /// Returns the finished target of a system. Every image of it is the test ramp.
 pub fn accumulated_target<'a>(visible: &'a VisibleSystem<'a>, reduced_depth: &'a Image<f32>) -> AccumulatedTarget<'a> {
-    AccumulatedTarget { visible, baked: &[], reduced_depth, textures: &TEXTURES, lit: None }
+    AccumulatedTarget { visible, baked: &[], reduced_depth, textures: &TEXTURES, is_lit: false, lit: None }
 }

@@ -6,7 +6,7 @@ use haze::formula::six_way::SixWay;
 use haze::formula::uniforms::LightUniform;
 use haze::image::Image;
 use haze::settings::*;
-use haze_reference::accumulated::AccumulatedTarget;
+use haze_reference::accumulated::{AccumulatedTarget, LitTarget};
 use haze_reference::pass::transfer::Surface;
 use haze_reference::shade::Shade;
 use haze_reference::visible_system::VisibleSystem;
@@ -23,6 +23,16 @@ const PLACE: [(f32, f32); 3] = [(-2.0, 2.0), (-2.0, 2.0), (-7.0, -5.0)];
 fn reduced_depth(visible: &VisibleSystem<'_>) -> Image<f32> {
     let limit = visible.system.depth_limit;
     Image { size: SIZE, texels: DEPTHS.texels.iter().map(|depth| depth * limit).collect() }
+}
+
+/// Limits of depth that the red channel of the test ramp crosses.
+fn with_limits(visible: &mut VisibleSystem<'_>) {
+    (visible.system.depth_limit, visible.system.smoke_depth_limit) = (8.0, 6.0);
+}
+
+/// The lit target of the reference. Its light and its slopes are the test ramp.
+fn lit_target() -> LitTarget {
+    LitTarget { light: COLORS.clone(), slopes: COLORS.clone() }
 }
 
 fn with_target<T>(
@@ -44,7 +54,10 @@ fn changed(change: impl Fn(&mut Settings)) -> Settings {
 }
 
 pub fn formulas() -> Vec<Formula> {
-    [accumulated(), diffuse(), surfaces(), lit_surfaces(), specular_scatter()].into_iter().flatten().collect()
+    [accumulated(), lit_targets(), diffuse(), surfaces(), lit_surfaces(), specular_scatter()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 fn accumulated() -> Vec<Formula> {
@@ -83,16 +96,27 @@ fn accumulated() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "guide",
+            file: "lib/accumulated.wgsl",
+            wgsl: "system.depth_limit = 8.0; system.smoke_depth_limit = 6.0; y(0, guide(vec2i(i32(x(0)), i32(x(1)))));",
+            reference: |x| with_target(&DEFAULTS, with_limits, |target| vec![target.guide(v2(x).as_ivec2())]),
+            cases: random(40, &[(0.0, 7.9), (0.0, 3.9)]),
+            tolerance: 1e-4,
+            mutants: &[
+                ("* system.depth_limit, system.smoke_depth_limit)", "* system.depth_limit, 1.0e6)"),
+                ("0).r * system.depth_limit", "0).r"),
+            ],
+        },
+        Formula {
             name: "sample_target",
             file: "lib/accumulated.wgsl",
             wgsl: "UPSAMPLE = u32(x(0)); system.scale = select(2u, 1u, x(3) < 0.2); system.depth_limit = 8.0; \
                    system.smoke_depth_limit = 6.0; y4(0, sample_target(test_ramp, vec2f(x(1), x(2))));",
             reference: |x| {
                 let settings = changed(|s| s.accumulate.upsample = Upsample::ALL[x[0] as usize]);
-                let scale = if x[3] < 0.2 { 1 } else { 2 };
                 let change = |visible: &mut VisibleSystem<'_>| {
-                    (visible.system.scale, visible.system.depth_limit) = (scale, 8.0);
-                    visible.system.smoke_depth_limit = 6.0;
+                    with_limits(visible);
+                    visible.system.scale = if x[3] < 0.2 { 1 } else { 2 };
                 };
                 let pixel = v2(&x[1..]);
                 with_target(&settings, change, |target| target.sample_target(&COLORS, pixel).to_array().to_vec())
@@ -118,6 +142,64 @@ fn accumulated() -> Vec<Formula> {
             cases: random(60, &[(0.0, 8.0), (0.0, 4.0), (0.0, 1.0)]),
             tolerance: 1e-5,
             mutants: &[("-system.centre.z, view.orthographic", "1.0, view.orthographic")],
+        },
+    ]
+}
+
+fn lit_targets() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "sample_lit",
+            file: "lib/lit_target.wgsl",
+            wgsl: "UPSAMPLE = u32(x(0)); system.scale = select(2u, 1u, x(3) < 0.2); system.depth_limit = 8.0; \
+                   system.smoke_depth_limit = 6.0; y4(0, sample_lit(vec2f(x(1), x(2))));",
+            reference: |x| {
+                let settings = changed(|s| s.accumulate.upsample = Upsample::ALL[x[0] as usize]);
+                let change = |visible: &mut VisibleSystem<'_>| {
+                    with_limits(visible);
+                    visible.system.scale = if x[3] < 0.2 { 1 } else { 2 };
+                };
+                let mut visible = visible_system(&settings);
+                change(&mut visible);
+                let depth = reduced_depth(&visible);
+                let target = AccumulatedTarget { lit: Some(lit_target()), ..accumulated_target(&visible, &depth) };
+                // Other modes sample the first texture, which is the lit one in both.
+                target.sample_lit(v2(&x[1..])).to_array().to_vec()
+            },
+            cases: with_choices(count(Upsample::ALL), &[(-0.5, 7.9), (-0.5, 3.9), (0.0, 1.0)]),
+            tolerance: 2e-3,
+            mutants: &[
+                ("UPSAMPLE != UPSAMPLE_GUIDED || system.scale == 1u", "system.scale == 1u"),
+                ("textureLoad(depth_slopes, at[1], 0)", "vec4f(0.0)"),
+                ("mix(mean_of_sixteen(base, fraction, depth), four, share)", "four"),
+                (
+                    "if any(texel < vec2f(0.0)) || any(texel >= system.target_size) {\n        return vec4f(0.0);\n    }\n    if !EXACT",
+                    "if !EXACT",
+                ),
+            ],
+        },
+        Formula {
+            name: "mean_of_sixteen",
+            file: "lib/lit_target.wgsl",
+            wgsl: "system.depth_limit = 8.0; system.smoke_depth_limit = 6.0; \
+                   y4(0, mean_of_sixteen(vec2i(i32(x(0)), i32(x(1))), vec2f(x(2), x(3)), x(4)));",
+            reference: |x| {
+                let (base, fraction) = (v2(x).as_ivec2(), v2(&x[2..]));
+                let mean = |target: &AccumulatedTarget<'_>| {
+                    target.mean_of_sixteen(|at| COLORS.load(at), base, fraction, x[4]).to_array().to_vec()
+                };
+                with_target(&DEFAULTS, with_limits, mean)
+            },
+            cases: random(60, &[(0.0, 7.9), (0.0, 3.9), (0.0, 1.0), (0.0, 1.0), (1.0, 7.0)]),
+            tolerance: 1e-4,
+            mutants: &[
+                (
+                    "vec2i(i % 4, i / 4) - 1;\n        let at = clamped_texel(base + offset);\n        let weight",
+                    "vec2i(i % 4, i / 4);\n        let at = clamped_texel(base + offset);\n        let weight",
+                ),
+                ("return sum / total", "return sum / 4.0"),
+                ("guide(at) - depth), depth);\n        sum", "0.0), depth);\n        sum"),
+            ],
         },
     ]
 }
@@ -310,7 +392,7 @@ fn surfaces() -> Vec<Formula> {
     vec![
         Formula {
             name: "smoke_coverage",
-            file: "lib/lit_smoke.wgsl",
+            file: "lib/coverage.wgsl",
             wgsl: "COVERAGE_MODE = u32(x(0)); y(0, smoke_coverage(x(1)));",
             reference: |x| {
                 let settings = changed(|s| s.coverage = CoverageMode::ALL[x[0] as usize]);

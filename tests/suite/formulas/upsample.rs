@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/upsample.wgsl`.
 
-use glam::Vec4;
+use glam::{Mat4, Vec4};
 use haze::formula::upsample;
 use haze::settings::Upsample;
 
@@ -24,8 +24,15 @@ const WGSL_FITTED: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.
      let o = 5u * i; f = add_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
      y(0, fitted_value(f, 0.5).x);";
 
+macro_rules! wgsl_line {
+    () => {
+        "var l: DepthLine; for (var i = 0u; i < 4u; i++) { let o = 3u * i; \
+         l = add_to_line(l, x(o), x(o + 1u), vec4f(x(o + 2u))); } "
+    };
+}
+
 pub fn formulas() -> Vec<Formula> {
-    [weights(), guided_fits()].into_iter().flatten().collect()
+    [weights(), guided_fits(), carried()].into_iter().flatten().collect()
 }
 
 fn weights() -> Vec<Formula> {
@@ -64,6 +71,15 @@ fn weights() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "is_shallow",
+            file: "lib/upsample.wgsl",
+            wgsl: "y(0, f32(is_shallow(x(0), x(1), x(2))));",
+            reference: |x| vec![f32::from(upsample::is_shallow(x[0], x[1], x[2]))],
+            cases: random(100, &[(4.0, 5.0), (4.5, 5.5), (0.0, 4.0)]),
+            tolerance: 0.0,
+            mutants: &[("SMOKE_DEPTH_TOLERANCE * fade", "fade"), ("farthest - nearest <", "farthest <")],
+        },
+        Formula {
             name: "bilinear_suffices",
             file: "lib/upsample.wgsl",
             wgsl: "y(0, f32(bilinear_suffices(vec4f(x(0), x(1), x(2), x(3)), x(4), x(5))));",
@@ -71,7 +87,7 @@ fn weights() -> Vec<Formula> {
             cases: random(200, &[(4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (0.0, 4.0)]),
             tolerance: 0.0,
             mutants: &[
-                ("SMOKE_DEPTH_TOLERANCE * fade", "fade"),
+                ("is_shallow(low, high, fade)", "is_shallow(low, high, 1.0)"),
                 ("min(depths.z, depths.w)), depth)", "min(depths.z, depths.w)), 9.0)"),
                 ("max(depths.x, depths.y)", "depths.y"),
             ],
@@ -128,6 +144,102 @@ fn guided_fits() -> Vec<Formula> {
                 ("clamp(fitted, fit.low, fit.high)", "fitted"),
                 ("mean.xxy * mean.yzz", "mean.xxy"),
             ],
+        },
+    ]
+}
+
+/// A line through four texels, each a depth, a weight and a value.
+fn line(x: &[f32]) -> upsample::DepthLine {
+    x[..12]
+        .chunks(3)
+        .fold(upsample::DepthLine::default(), |line, x| upsample::add_to_line(&line, x[0], x[1], Vec4::splat(x[2])))
+}
+
+fn carried() -> Vec<Formula> {
+    let texels = [[(-1.0, 1.0), (0.1, 1.0), (0.0, 1.0)]; 4].concat();
+    vec![
+        Formula {
+            name: "add_to_line",
+            file: "lib/upsample.wgsl",
+            wgsl: concat!(
+                wgsl_line!(),
+                "y(0, l.total); y(1, l.z); y(2, l.z_square); y(3, l.value.x); y(4, l.z_value.x);"
+            ),
+            reference: |x| {
+                let line = line(x);
+                vec![line.total, line.z, line.z_square, line.value.x, line.z_value.x]
+            },
+            cases: random(100, &texels),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[
+                ("w * z,", "w,"),
+                ("line.z_value + value * w", "line.z_value + value"),
+                ("let w = z * weight", "let w = z"),
+            ],
+        },
+        Formula {
+            name: "depth_slope",
+            file: "lib/upsample.wgsl",
+            wgsl: concat!(wgsl_line!(), "y(0, depth_slope(l, x(12)).x);"),
+            reference: |x| vec![upsample::depth_slope(&line(x), x[12]).x],
+            cases: random(200, &[texels.as_slice(), &[(0.5, 40.0)]].concat()),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("* held / (line", "/ (line"),
+                ("- z * z + held * held", "+ held * held"),
+                ("line.total - value * z)", "line.total)"),
+                ("let held = SLOPE_LENGTH * fade;\n    return", "let held = SLOPE_LENGTH;\n    return"),
+            ],
+        },
+        Formula {
+            name: "surface_weights",
+            file: "lib/upsample.wgsl",
+            wgsl: "let w = surface_weights(vec2f(x(0), x(1)), vec4f(x(2), x(3), x(4), x(5)), x(6)); \
+                   y(0, w.x); y(1, w.y); y(2, w.z); y(3, w.w);",
+            reference: |x| upsample::surface_weights(v2(x), v4(&x[2..]), x[6]).to_array().to_vec(),
+            cases: random(200, &[(0.0, 1.0), (0.0, 1.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("(depths - depth) * (2.0", "(depths - depth) * (1.0"),
+                ("upsample_weights(UPSAMPLE_BILINEAR, fraction", "upsample_weights(UPSAMPLE_BILINEAR, fraction.yx"),
+                ("sigmas * sigmas) + 1.0e-4);\n}\n\n// Mean", "sigmas * sigmas) + 1.0e-2);\n}\n\n// Mean"),
+            ],
+        },
+        Formula {
+            name: "carried_value",
+            file: "lib/upsample.wgsl",
+            wgsl: "var v: mat4x4f; var s: mat4x4f; for (var i = 0u; i < 4u; i++) { v[i] = vec4f(x(i)); s[i] = vec4f(x(4u + i)); } \
+                   y(0, carried_value(vec4f(x(8), x(9), x(10), x(11)), v, s, vec4f(x(12), x(13), x(14), x(15)), x(16), x(17)).x);",
+            reference: |x| {
+                let columns = |x: &[f32]| Mat4::from_cols_array_2d(&[[x[0]; 4], [x[1]; 4], [x[2]; 4], [x[3]; 4]]);
+                let (values, slopes) = (columns(x), columns(&x[4..]));
+                vec![upsample::carried_value(v4(&x[8..]), values, slopes, v4(&x[12..]), x[16], x[17]).x]
+            },
+            cases: {
+                let share = [(0.01, 0.25); 4];
+                let depths = [(4.0, 5.0); 4];
+                random(
+                    200,
+                    &[&[(0.0, 1.0); 4], &[(-0.05, 0.05); 4], &share, &depths, &[(3.5, 5.5), (0.5, 2.0)][..]].concat(),
+                )
+            },
+            tolerance: ARITHMETIC * 100.0,
+            mutants: &[
+                ("clamp(depth, nearest, farthest) - depths", "depth - depths"),
+                ("/ dot(weights, vec4f(1.0))", ""),
+                ("clamp(carried, low, high)", "carried"),
+                ("slopes * (weights * way)", "slopes * way"),
+                ("/ (SLOPE_LENGTH * fade);\n    let carried", "/ SLOPE_LENGTH;\n    let carried"),
+            ],
+        },
+        Formula {
+            name: "four_texels_share",
+            file: "lib/upsample.wgsl",
+            wgsl: "y(0, four_texels_share(x(0)));",
+            reference: |x| vec![upsample::four_texels_share(x[0])],
+            cases: random(100, &[(0.0, 0.3)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[("smoothstep(0.02, 0.2, seen)", "smoothstep(0.0, 0.2, seen)")],
         },
     ]
 }

@@ -1,7 +1,7 @@
 //! Memory of the targets, and steady frames that create no GPU resources.
 
 use glam::{UVec2, Vec3, vec3};
-use haze::settings::{DiffuseMode, LightingResolution};
+use haze::settings::{DiffuseMode, LightingResolution, Upsample};
 use haze::{Bounds, wgpu};
 
 use super::SIZE;
@@ -11,8 +11,9 @@ use crate::test_host::Host;
 use crate::test_scene::TestScene;
 
 #[test]
-fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
+fn a_system_at_1080p_half_scale_takes_at_most_8_mb_and_16_bytes_a_texel_more_if_lit_there() {
     let mut scene = TestScene::new(UVec2::new(1920, 1080));
+    scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     // The worst case: the bounds cover the whole screen.
     scene.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
     let drawn = scene.on_gpu(gpu());
@@ -20,8 +21,11 @@ fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
     println!("{:.2} MB", whole as f64 / 1e6);
     assert!(whole <= 8_000_000, "{whole} bytes");
     assert_eq!(drawn.renderer.targets(0).unwrap().size, UVec2::new(960, 540));
-    // Lighting at target resolution adds four half floats per texel.
+    // Light and its slopes over depth: four half floats each.
     scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
+    assert_eq!(scene.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 16);
+    // Other filters than `guided` need no slopes.
+    scene.settings.accumulate.upsample = Upsample::JointBilateral;
     assert_eq!(scene.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 8);
     scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     // Targets cover only the screen rectangle of the bounds.

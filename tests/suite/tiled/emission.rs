@@ -73,6 +73,8 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
     );
     let mut scene = scene(Technique::Soft);
     (scene.settings.path, scene.settings.accumulate.scale) = (RenderPath::Tiled, 2);
+    // Light per texel has two further targets, whatever the number of particles.
+    scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     scene.view = TestScene::new(UVec2::new(1920, 1080)).view;
     let mut host = Host::new(gpu(), &scene).unwrap();
     let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

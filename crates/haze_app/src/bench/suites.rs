@@ -213,8 +213,13 @@ fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             for &scale in scales(path, &[1, 2, 4]) {
                 let name = format!("{} 1/{scale} {count} lights", path.name());
                 let work = (format!("lights {} {scale}", path.name()), f64::from(count));
-                let shot = changed(&shot, at_scale(path, scale));
-                let lit = changed(&shot, |s| s.accumulate.lighting_resolution = LightingResolution::Target);
+                let lit_at = |resolution| {
+                    changed(&shot, |s| {
+                        at_scale(path, scale)(s);
+                        s.accumulate.lighting_resolution = resolution;
+                    })
+                };
+                let (shot, lit) = (lit_at(LightingResolution::Full), lit_at(LightingResolution::Target));
                 cases.push(Case { name: name.clone(), shot, work });
                 if scale > 1 {
                     // The same, lit once per texel of the target.

@@ -3,6 +3,7 @@
 mod accumulate;
 pub mod density_splat;
 mod depth_downsample;
+mod depth_slopes;
 mod diffuse_bake;
 mod forward;
 mod light_target;

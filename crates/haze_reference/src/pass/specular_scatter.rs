@@ -64,7 +64,7 @@ impl AccumulatedTarget<'_> {
         if distance_squared >= 1.0 {
             return None;
         }
-        let amount = self.sample_accumulated(pixel).w;
+        let amount = if self.is_lit { self.sample_lit(pixel).w } else { self.sample_accumulated(pixel).w };
         if amount <= 0.0 {
             return None;
         }

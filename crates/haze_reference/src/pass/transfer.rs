@@ -98,8 +98,7 @@ impl AccumulatedTarget<'_> {
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
-        let is_lit = self.visible.lights_per_texel(debug_view);
-        let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_accumulated(pixel) };
+        let accumulated = if self.is_lit { self.sample_lit(pixel) } else { self.sample_accumulated(pixel) };
         let amount = accumulated.w;
         match debug_view {
             DebugView::Overdraw => return Some(overdraw_color(amount * 255.0).extend(1.0)),
@@ -110,7 +109,7 @@ impl AccumulatedTarget<'_> {
             return None;
         }
         let covered = self.coverage(amount);
-        if is_lit {
+        if self.is_lit {
             return Some(bounded_light(accumulated.xyz() / amount.max(1.0e-6)).extend(1.0) * covered);
         }
         let surface = self.surface_at(accumulated, pixel);

@@ -72,8 +72,8 @@ fn text(number: f32) -> String {
 }
 
 impl FieldVisitor for ValueSpread<'_> {
-    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
-        let (shown, needs_log_slider) = slider_range(&range, *value);
+    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
+        let (shown, needs_log_slider) = slider_range(&range, unit, *value);
         let (low, high) = if needs_log_slider { range.into_inner() } else { shown.into_inner() };
         self.offer(name, five_values(*value, low, high, needs_log_slider).map(text));
     }

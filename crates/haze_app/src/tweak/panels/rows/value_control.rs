@@ -29,7 +29,7 @@ pub fn number(
 ) -> bool {
     let (low, high) = (*range.start(), *range.end());
     let (shown, needs_log_slider) =
-        usual.map_or_else(|| slider_range(range, *value), |(low, high)| (low..=high, false));
+        usual.map_or_else(|| slider_range(range, unit, *value), |(low, high)| (low..=high, false));
     let slider = ValueSlider {
         name,
         unit,

@@ -1,0 +1,46 @@
+// depth_slopes: fits a line to the lit smoke over depth around each texel, for its upsampling.
+// Reads   lit smoke, reduced depth.
+// Writes  change of the lit smoke over SLOPE_LENGTH of a soft fade; Rgba16Float. Zero where depth hardly changes.
+// Blend   none.
+// Source  He and Sun, "Fast guided filter", 2015: the coefficients are fitted at low resolution.
+
+#import "lib/accumulated.wgsl"
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    // One triangle that covers the target.
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let texel = vec2i(floor(position.xy));
+    let depth = guide(texel);
+    let fade = 1.0 / system.fade_scale;
+    var nearest = depth;
+    var farthest = depth;
+    for (var i = 0; i < 5; i++) {
+        let around = guide(clamped_texel(texel + texel_of_five(i)));
+        nearest = min(nearest, around);
+        farthest = max(farthest, around);
+    }
+    if is_shallow(nearest, farthest, fade) {
+        return vec4f(0.0);
+    }
+    var line: DepthLine;
+    for (var i = 0; i < 5; i++) {
+        let offset = texel_of_five(i);
+        let at = clamped_texel(texel + offset);
+        let z = guide(at) - depth;
+        line = add_to_line(line, z, guided_weight(vec3f(vec2f(offset), z), depth), textureLoad(accumulation, at, 0));
+    }
+    return depth_slope(line, fade);
+}
+
+// Offset of one of five texels, which form a cross.
+fn texel_of_five(index: i32) -> vec2i {
+    if index < 3 {
+        return vec2i(index - 1, 0);
+    }
+    return vec2i(0, 2 * index - 7);
+}
