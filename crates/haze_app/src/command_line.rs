@@ -14,7 +14,8 @@ use haze::error::is_link_loop;
 use haze::{Error, builtin};
 
 use crate::commands::{info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
-use crate::output::{self, Failures, one_line, print_error, write_text};
+use crate::output::{Failures, one_line, print_error, write_text};
+use crate::recipe_files::has_extension;
 use crate::{bench, tweak};
 
 /// Lit, soft smoke for wgpu: accumulated at low resolution, lit once per pixel from ramps that artists paint.
@@ -97,7 +98,7 @@ fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
         let path = Path::new(name);
         let is_built_in = name.to_str().is_some_and(|name| builtin::find(builtin::PRESETS, name).is_some());
         let is_command = Cli::command().find_subcommand(name).is_some();
-        !is_command && (is_built_in || path.is_file() || output::has_extension(path, "json"))
+        !is_command && (is_built_in || path.is_file() || has_extension(path, "json"))
     };
     if arguments.get(1).is_some_and(is_preset) {
         arguments.insert(1, "tweak".into());

@@ -1,7 +1,11 @@
 //! Main window: its layout, and the order of work in a frame.
 
+mod device;
 pub mod drag_end;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod open;
+#[cfg(target_arch = "wasm32")]
+pub mod page_window;
 mod status_bar;
 pub mod surface_pacing;
 #[cfg(test)]
