@@ -40,6 +40,7 @@ mod progress;
 mod puff_error;
 mod puff_sheet;
 mod recipe_files;
+mod share_link;
 mod sprite_by_name;
 #[cfg(not(target_arch = "wasm32"))]
 mod startup;

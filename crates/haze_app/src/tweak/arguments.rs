@@ -10,16 +10,18 @@ use haze::settings::set_field;
 
 use super::files::hot_reload::ShaderFolder;
 use super::files::persistence::{Layout, Persistence};
+use super::files::shared_look;
 use super::platform::file_dialog::Dialogs;
 use super::platform::{asset_loading, state_folder};
 use super::session::Session;
 use super::window::Start;
 use super::window::open::open;
 use crate::options::{AssetsArguments, parse_assignment, parse_size, with_option};
+use crate::share_link;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
+    /// A built-in preset's name (see `haze preset list`), the path of a JSON file, or a link to a look, in quotes.
     #[arg(default_value = "column")]
     preset: PathBuf,
     /// Size of the window in points. Default: the last size, or 1280x800, or 1000x640 where the CPU draws.
@@ -53,7 +55,11 @@ impl Default for Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut session = Session::open(&arguments.preset, arguments.assets.folder()?)?;
+    let link = arguments.preset.to_str().and_then(share_link::fragment);
+    let mut session = match link {
+        Some(fragment) => shared_look::open(fragment, &link_folder(fragment))?,
+        None => Session::open(&arguments.preset, arguments.assets.folder()?)?,
+    };
     for (field, value) in &arguments.set {
         set_field(&mut session.document.preset, field, value).map_err(|error| with_option("--set", error))?;
     }
@@ -79,4 +85,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)),
     };
     open(start, size.map(egui::Vec2::from))
+}
+
+/// Returns the folder for the ramps of a link.
+fn link_folder(fragment: &str) -> PathBuf {
+    let state = state_folder::state(|name| std::env::var_os(name)).unwrap_or_else(std::env::temp_dir);
+    state.join("links").join(shared_look::folder_name(fragment))
 }

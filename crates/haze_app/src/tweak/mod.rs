@@ -9,6 +9,8 @@ mod document;
 mod files;
 #[cfg(target_arch = "wasm32")]
 mod page;
+#[cfg(target_arch = "wasm32")]
+mod page_picture;
 mod panels;
 mod platform;
 mod session;

@@ -53,3 +53,8 @@ pub fn dropped_file(context: &egui::Context) -> Option<PathBuf> {
 
 /// Gives a written file to the user, who has it already: it lies on the disk.
 pub fn hand_over(_: &Path) {}
+
+/// Returns a link without the address of a page, which a program does not know.
+pub fn link_address(fragment: &str) -> String {
+    format!("#{fragment}")
+}

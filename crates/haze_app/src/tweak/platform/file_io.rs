@@ -10,7 +10,8 @@ use haze::preset::Preset;
 use haze_author::particle_files;
 
 pub use super::disk::{
-    Stamp, Watcher, absolute, dropped_file, exists, hand_over, is_same, is_taken, list, make_folder, remove,
+    Stamp, Watcher, absolute, dropped_file, exists, hand_over, is_same, is_taken, link_address, list, make_folder,
+    remove,
 };
 
 /// Reads a preset, and the text that it was read from.

@@ -23,10 +23,11 @@ use crate::tweak::files::file_actions::FileActions;
 use crate::tweak::files::hot_reload::{HotReload, ShaderFolder};
 use crate::tweak::files::persistence::{Layout, Persistence};
 use crate::tweak::files::preset_thumbnails::PresetThumbnails;
+use crate::tweak::files::shared_look;
 use crate::tweak::files::window_screenshot::Screenshot;
 use crate::tweak::panels;
 use crate::tweak::panels::debug_view_strip::{debug_view_strip, next_debug_view};
-use crate::tweak::platform::clock;
+use crate::tweak::platform::{IS_PAGE, clock, file_io};
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{ACTIONS, Action};
 use crate::tweak::session::first_run_hints::WindowPart;
@@ -54,6 +55,10 @@ pub struct Window {
     probe_job: Option<ProbeJob>,
     screenshot: Screenshot,
 }
+
+/// Use of a copied link, for those who cannot guess it.
+const LINK_USE: &str =
+    if IS_PAGE { "" } else { "; open it with `haze 'LINK'`, or put it behind the address of a haze page" };
 
 /// State that a window starts with.
 pub struct Start {
@@ -166,6 +171,13 @@ impl Window {
                 context.copy_text(session.document.to_text());
                 session.messages.info("file", "copied: the preset as text");
             }
+            Action::CopyLink => match shared_look::fragment_of(session) {
+                Ok(fragment) => {
+                    context.copy_text(file_io::link_address(&fragment));
+                    session.messages.info("file", format!("copied: the look as a link{LINK_USE}"));
+                }
+                Err(error) => session.messages.error("file", error),
+            },
             Action::Screenshot => self.export_job.begin(ExportKind::Image, session),
             Action::Seeds => self.export_job.begin(ExportKind::Seeds, session),
             Action::Export => self.export_job.is_open = !self.export_job.is_open,

@@ -12,6 +12,7 @@ use super::device::setup;
 use super::drag_end::split_events_at_release;
 use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
+use crate::tweak::page_picture::{self, PageGpu};
 use crate::tweak::platform::web::{page, storage};
 use crate::tweak::viewport_renderer::ViewportRenderer;
 use crate::tweak::viewport_renderer::device_health::DeviceHealth;
@@ -61,6 +62,10 @@ async fn open_in(canvas: HtmlCanvasElement, kept: Rc<KeptState>) -> Result<(), S
         let renderer = ViewportRenderer::new(context)?;
         if let Some(memory) = kept.memory.take() {
             context.egui_ctx.memory_mut(|new| *new = memory);
+        }
+        if let Some(render) = &context.wgpu_render_state {
+            let (device, queue) = (render.device.clone(), render.queue.clone());
+            page_picture::set_gpu(PageGpu { device, queue, context: renderer.context() });
         }
         let health = renderer.health().clone();
         let events = page::watch_context(&watched, Rc::clone(&kept.is_lost), renderer.wake());

@@ -130,3 +130,8 @@ pub fn hand_over(path: &Path) {
         page::download(&file);
     }
 }
+
+/// Returns the link, which also becomes the address of the page.
+pub fn link_address(fragment: &str) -> String {
+    page::set_fragment(fragment)
+}

@@ -65,10 +65,30 @@ pub fn pick_files(done: impl FnOnce(Vec<PathBuf>) + 'static) {
     shown.click();
 }
 
+/// Waits until the browser has run other tasks.
+pub async fn next_task() {
+    let wait = js_sys::Promise::new(&mut |done, _| {
+        let window = web_sys::window();
+        let _ = window.map(|window| window.set_timeout_with_callback_and_timeout_and_arguments_0(&done, 4));
+    });
+    let _ = JsFuture::from(wait).await;
+}
+
 /// Returns the part of the address after `#`.
 pub fn fragment() -> String {
     let hash = web_sys::window().and_then(|window| window.location().hash().ok());
     hash.unwrap_or_default().trim_start_matches('#').to_owned()
+}
+
+/// Replaces the part of the address after `#`. Returns the address.
+pub fn set_fragment(fragment: &str) -> String {
+    let Some(window) = web_sys::window() else { return format!("#{fragment}") };
+    let address = window.location().href().unwrap_or_default();
+    let address = format!("{}#{fragment}", address.split('#').next().unwrap_or_default());
+    if let Ok(history) = window.history() {
+        let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&address));
+    }
+    address
 }
 
 /// Returns the canvas of the page.
