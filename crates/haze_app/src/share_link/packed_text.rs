@@ -35,9 +35,8 @@ fn run(compressor: &mut CompressorOxide, mut input: &[u8], flush: MZFlush) -> Op
         input = &input[done.bytes_consumed..];
         all.extend_from_slice(&part[..done.bytes_written]);
         match done.status {
-            Ok(MZStatus::StreamEnd) => return Some(all),
-            // Nothing is left to write.
-            Err(MZError::Buf) => return Some(all),
+            // The error: nothing is left to write.
+            Ok(MZStatus::StreamEnd) | Err(MZError::Buf) => return Some(all),
             Ok(_) if done.bytes_written < part.len() && input.is_empty() && flush != MZFlush::Finish => {
                 return Some(all);
             }
