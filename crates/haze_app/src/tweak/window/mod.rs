@@ -205,7 +205,7 @@ impl Window {
         panels::notice_bar::panel(ui, &mut self.session, self.persistence.as_mut());
         egui::Panel::bottom("status").show(ui, |ui| self.status_bar(ui));
         egui::Panel::bottom("time").show(ui, |ui| panels::timeline::panel(ui, &mut self.session));
-        if self.session.view.has_strip {
+        if self.session.view.has_strip && !panels::narrow::is_narrow(ui.ctx()) {
             let aspect = self.session.view.aspect;
             let height = self.layout.strip.unwrap_or((0.12 * ui.available_height()).max(80.0));
             let most = (0.25 * ui.available_height()).clamp(56.0, 320.0);
@@ -215,21 +215,34 @@ impl Window {
         }
     }
 
-    /// Draws the settings panel, and runs its requests.
+    /// Draws the settings panel: at the right, or below the image of a narrow window.
     fn settings(&mut self, ui: &mut Ui) {
+        if panels::narrow::is_narrow(ui.ctx()) {
+            let height = 0.4 * ui.available_height();
+            let panel = egui::Panel::bottom("settings_below").resizable(true).default_size(height);
+            let shown = panel
+                .size_range(80.0..=1.6 * height)
+                .show(ui, |ui| panels::settings_panel::panel(ui, &mut self.session));
+            return self.run_settings(shown.response.rect, shown.inner);
+        }
         let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(370.0, 440.0));
         // The image stays the largest part, even in a small window.
         let most = (0.45 * ui.available_width()).clamp(240.0, 560.0);
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=most);
         let shown = settings.show(ui, |ui| panels::settings_panel::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
-        self.session.hints.record_rect(WindowPart::Settings, shown.response.rect);
+        self.run_settings(shown.response.rect, shown.inner);
+    }
+
+    /// Runs the requests of the settings panel.
+    fn run_settings(&mut self, rect: egui::Rect, sheet_of: Option<String>) {
+        self.session.hints.record_rect(WindowPart::Settings, rect);
         let has_no_place = [&mut self.session.ramps.needs_saved_preset, &mut self.session.sprites.needs_saved_preset]
             .map(std::mem::take);
         if has_no_place.contains(&true) {
             self.file_actions.save_as(&self.session);
         }
-        if let Some(path) = shown.inner {
+        if let Some(path) = sheet_of {
             let is_seed = path.ends_with(".emitter.seed");
             let product = if is_seed { ExportKind::Seeds } else { ExportKind::Values(path) };
             self.export_job.begin(product, &mut self.session);
