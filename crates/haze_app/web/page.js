@@ -31,17 +31,6 @@ addEventListener("error", (event) => {
     }
 });
 
-// wgpu leaves depth textures with WebGL's default filter, with which a shader reads zeros from them.
-const webGl = globalThis.WebGL2RenderingContext?.prototype ?? {};
-const storeTexture = webGl.texStorage2D;
-webGl.texStorage2D = function (target, levels, format, width, height) {
-    if ([this.DEPTH_COMPONENT16, this.DEPTH_COMPONENT24, this.DEPTH_COMPONENT32F].includes(format)) {
-        this.texParameteri(target, this.TEXTURE_MIN_FILTER, this.NEAREST);
-        this.texParameteri(target, this.TEXTURE_MAG_FILTER, this.NEAREST);
-    }
-    storeTexture.call(this, target, levels, format, width, height);
-};
-
 async function hasWebGpu() {
     try {
         return Boolean(await navigator.gpu?.requestAdapter());
