@@ -1,4 +1,4 @@
-//! What a browser has in place of a disk, a file dialog and threads.
+//! Replacements in a browser for the disk, file dialogs and threads.
 
 pub mod disk;
 pub mod file_dialog;
