@@ -33,9 +33,7 @@ pub fn open_page() {
 async fn open() -> Result<(), String> {
     storage::load();
     let fragment = page::fragment();
-    let opened = open_fragment(&fragment);
-    let is_link = !fragment.is_empty() && opened.is_ok();
-    let (mut session, refused) = match opened {
+    let (mut session, refused) = match open_fragment(&fragment) {
         Ok(session) => (session, None),
         Err(error) => (open_fragment("").map_err(|error| error.to_string())?, Some(error)),
     };
@@ -47,8 +45,8 @@ async fn open() -> Result<(), String> {
         session.messages.error("layout", error);
     }
     let mut persistence = Persistence::new(STATE.into(), &mut session);
-    // A reload is no crash: the work goes on. Over a link, the user is asked.
-    if !is_link {
+    // A reload is no crash: the work goes on. Over a link, also a broken one, the user is asked.
+    if fragment.is_empty() {
         persistence.answer(true, &mut session);
     }
     let start =
