@@ -51,11 +51,17 @@ fn bin_list(length: u32, more: u32) -> vec2u {
     return select(vec2u(NO_LIST, counters.visible), vec2u(first, length), fits);
 }
 
+// Runs that count_sprites has counted.
+var<workgroup> counted_runs: u32;
+
 // One workgroup per bin.
 @compute @workgroup_size(256)
 fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
-    // Runs that count_sprites has counted.
-    let runs = run_count(counters.visible);
+    if local == 0u {
+        counted_runs = run_count(counters.visible);
+    }
+    // Browsers refuse barriers in a loop whose end could differ among invocations.
+    let runs = workgroupUniformLoad(&counted_runs);
     var length = 0u;
     for (var first = 0u; first < runs; first += SCAN_SIZE) {
         let at = bin.x * tiles.runs + first + local;

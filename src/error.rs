@@ -5,6 +5,7 @@ mod io_reason;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) use io_reason::LINK_LOOP;
 #[doc(hidden)]
 pub use io_reason::{io_expected, io_problem, io_reason, is_link_loop};

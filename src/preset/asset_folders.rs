@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::sequence::exists;
-use crate::assets::builtin;
+use crate::assets::{builtin, directory};
 use crate::error::Error;
 
 /// Folder of the preset's file, followed by one that presets share.
@@ -75,13 +75,9 @@ impl AssetFolders {
 /// Most similar name of a file in the same folder with the same extension, and its similarity.
 fn nearest(file: &Path) -> Option<(f64, String)> {
     let (name, folder) = (file.file_name()?.to_str()?, file.parent()?);
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let ending = file.extension()?;
     let is_kind = |name: &String| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
-    let names = std::fs::read_dir(folder)
-        .ok()?
-        .take(MAX_FOLDER_ENTRIES)
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let names = directory::names(folder).ok()?.take(MAX_FOLDER_ENTRIES);
     let alike = names.filter(is_kind).map(|other| (strsim::jaro_winkler(name, &other), other));
     // Among equally similar frames the first by name, in whatever order the folder lists them.
     alike.filter(|(alike, _)| *alike >= MIN_SIMILARITY).max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)))

@@ -3,6 +3,7 @@
 use std::io::{Error as IoError, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use crate::assets::directory;
 use crate::error::Error;
 
 /// Maximum number of folder entries that are examined.
@@ -47,9 +48,7 @@ impl Sequence {
 
     /// Lists the existing frames in order.
     fn frames(&self) -> Result<Vec<(u32, PathBuf)>, IoError> {
-        let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
-        let names = std::fs::read_dir(folder)?.take(MAX_FOLDER_ENTRIES);
-        let names = names.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        let names = directory::names(&self.folder)?.take(MAX_FOLDER_ENTRIES);
         let mut frames: Vec<_> = names.filter_map(|name| Some((self.number(&name)?, self.folder.join(name)))).collect();
         frames.sort();
         Ok(frames)
@@ -77,10 +76,7 @@ pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, Error> {
 pub fn exists(path: &Path) -> bool {
     match Sequence::of(path) {
         Some(sequence) => sequence.frames().is_ok_and(|frames| !frames.is_empty()),
-        None => match path.symlink_metadata() {
-            Ok(_) => true,
-            Err(error) => error.kind() != ErrorKind::NotFound,
-        },
+        None => directory::is_taken(path),
     }
 }
 

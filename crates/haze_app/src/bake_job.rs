@@ -13,9 +13,9 @@ use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use image::DynamicImage;
 
-use super::file_kind::recipe_kinds;
 use super::output::{Failures, FileChecks, print_line};
 use super::progress::{with_changing_progress, with_progress};
+use super::recipe_files::recipe_stem;
 
 /// Kinds of recipes that a command takes.
 pub struct RecipeKinds {
@@ -56,26 +56,6 @@ impl RecipeKinds {
         let refuse = || FieldError::new("recipe", path.display(), self.expected).into();
         kind.and_then(self.load).ok_or_else(refuse)
     }
-}
-
-/// Returns the possible recipes of an image: `fire.ramp.json`, and so on, for `fire.png`.
-pub fn recipe_paths(picture: &Path) -> impl Iterator<Item = PathBuf> {
-    recipe_kinds().map(|kind| picture.with_extension(format!("{kind}.json")))
-}
-
-/// Name without `.json`: `fire.ramp` for `fire.ramp.json`.
-fn recipe_stem(path: &Path) -> &Path {
-    Path::new(path.file_stem().unwrap_or_default())
-}
-
-/// Returns the path of the image of a ramp or motif recipe.
-pub fn image_path(path: &Path) -> PathBuf {
-    path.with_file_name(recipe_stem(path).with_extension("png"))
-}
-
-/// Returns the path of a sprite's six-way maps: `smoke.six_way.png` for `smoke.png`.
-pub fn six_way_path(picture: &Path) -> PathBuf {
-    picture.with_extension("six_way.png")
 }
 
 pub enum Recipe {
@@ -208,7 +188,7 @@ mod tests {
 
     #[test]
     fn every_recipe_kind_is_baked_by_one_command() {
-        for recipe in recipe_paths(Path::new("a/fire.png")) {
+        for recipe in crate::recipe_files::recipe_paths(Path::new("a/fire.png")) {
             let is_known = [&RAMPS, &SPRITES].map(|kinds| kinds.find(&recipe).is_ok());
             assert!(is_known.contains(&true), "{}", recipe.display());
         }

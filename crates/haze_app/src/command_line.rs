@@ -14,8 +14,9 @@ use haze::error::is_link_loop;
 use haze::{Error, builtin};
 
 use crate::commands::{info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
-use crate::output::{self, Failures, one_line, print_error, write_text};
-use crate::{bench, tweak};
+use crate::output::{Failures, one_line, print_error, write_text};
+use crate::recipe_files::has_extension;
+use crate::{bench, share_link, tweak};
 
 /// Lit, soft smoke for wgpu: accumulated at low resolution, lit once per pixel from ramps that artists paint.
 #[derive(Parser)]
@@ -90,14 +91,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     })
 }
 
-/// Inserts `tweak` before the name of a preset: `haze PRESET` is `haze tweak PRESET`. A subcommand of the same name
+/// Inserts `tweak` before the name of a preset or a link: `haze PRESET` is `haze tweak PRESET`. A subcommand of the same name
 /// takes precedence.
 fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_preset = |name: &OsString| {
         let path = Path::new(name);
         let is_built_in = name.to_str().is_some_and(|name| builtin::find(builtin::PRESETS, name).is_some());
         let is_command = Cli::command().find_subcommand(name).is_some();
-        !is_command && (is_built_in || path.is_file() || output::has_extension(path, "json"))
+        let is_link = name.to_str().and_then(share_link::fragment).is_some();
+        !is_command && (is_built_in || is_link || path.is_file() || has_extension(path, "json"))
     };
     if arguments.get(1).is_some_and(is_preset) {
         arguments.insert(1, "tweak".into());

@@ -8,7 +8,7 @@ use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::OffscreenRenderer;
 use haze_demo::shot::Shot;
 
-use super::options::Backend;
+use super::backend::Backend;
 
 /// Times of one variant in seconds, ascending.
 pub struct Cost(Vec<f64>);

@@ -13,11 +13,11 @@ use haze_demo::tonemap_pass::tonemap;
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, DynamicImage, Frame, RgbImage, imageops};
 
+use super::backend::Backend;
 use super::contact_sheet::ContactSheet;
 use super::frame_range::FrameNames;
 use super::interrupt;
 use super::memory_check::check_memory;
-use super::options::Backend;
 use super::progress::with_progress;
 
 /// Range of frames. Frame 0 is at the preset's time.

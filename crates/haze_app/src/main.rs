@@ -1,59 +1,58 @@
-//! Entry point of the `haze` program.
+//! Entry point of the `haze` program, and of the tweaker on a page.
 
+#![cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page has no command line"))]
+
+mod backend;
+#[cfg(not(target_arch = "wasm32"))]
 mod bake_job;
+#[cfg(not(target_arch = "wasm32"))]
 mod bench;
+#[cfg(not(target_arch = "wasm32"))]
 mod command_line;
+#[cfg(not(target_arch = "wasm32"))]
 mod commands;
 mod contact_sheet;
 mod debug_view_sheet;
 mod file_kind;
+#[cfg(not(target_arch = "wasm32"))]
 mod file_watcher;
+#[cfg(not(target_arch = "wasm32"))]
 mod findings;
+#[cfg(not(target_arch = "wasm32"))]
 mod flip;
 mod frame_range;
+#[cfg(not(target_arch = "wasm32"))]
 mod frame_timer;
 mod image_export;
 mod inputs;
 mod interrupt;
+#[cfg(not(target_arch = "wasm32"))]
 mod medium_options;
 mod memory_check;
+#[cfg(not(target_arch = "wasm32"))]
 mod options;
+#[cfg(not(target_arch = "wasm32"))]
 mod output;
+#[cfg(not(target_arch = "wasm32"))]
 mod plot;
 mod progress;
+#[cfg(not(target_arch = "wasm32"))]
 mod puff_error;
 mod puff_sheet;
+mod recipe_files;
+mod share_link;
+mod sprite_by_name;
+#[cfg(not(target_arch = "wasm32"))]
+mod startup;
 mod text_drawing;
 mod tweak;
 
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    silence_wayland_without_session();
-    silence_decoder_panics();
-    interrupt::ignore_file_size_signal();
-    command_line::run(std::env::args_os())
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> std::process::ExitCode {
+    startup::run()
 }
 
-/// Points `XDG_RUNTIME_DIR` to a folder that does not exist if it is not set. A Vulkan layer of Mesa asks Wayland for
-/// the device of the display. If the variable is missing, as without a login session, libwayland prints an error; if
-/// the folder is missing, it does not.
-#[allow(unsafe_code, reason = "there is no other way to set a variable for a library in this process")]
-fn silence_wayland_without_session() {
-    const VARIABLE: &str = "XDG_RUNTIME_DIR";
-    let is_set = std::env::var_os(VARIABLE).is_some_and(|folder| std::path::Path::new(&folder).is_absolute());
-    if cfg!(target_os = "linux") && !is_set {
-        // SAFETY: this is the first call in `main`; no other thread exists yet that could read variables.
-        unsafe { std::env::set_var(VARIABLE, "/nonexistent") };
-    }
-}
-
-/// Prints nothing for a panic of an image decoder, which becomes an error that names the file.
-fn silence_decoder_panics() {
-    let print = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |panic| {
-        if !haze::image::is_decoding() {
-            print(panic);
-        }
-    }));
+#[cfg(target_arch = "wasm32")]
+fn main() {
+    tweak::open_page();
 }

@@ -1,18 +1,17 @@
 //! Options for the medium that smoke is made of, and for the quality of its path tracing.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use glam::Vec3;
-use haze::{Error, FieldError, builtin};
+use haze::{Error, FieldError};
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
-use haze_author::sprite::bake::SpriteRecipe;
 
 use super::options::{number, parse_seed, whole_number};
-use super::output::has_extension;
 use super::progress::with_changing_progress;
+use super::sprite_by_name::default_sprite;
 
 #[derive(Args)]
 pub struct MediumArguments {
@@ -148,23 +147,4 @@ impl PathTraceArguments {
             })
         })
     }
-}
-
-/// Loads a sprite recipe: a file, or a built-in one by name.
-///
-/// # Errors
-/// As [`SpriteRecipe::load`], and if the name is neither a file nor built in.
-pub fn sprite_recipe(name: &Path) -> Result<SpriteRecipe, Error> {
-    if has_extension(name, "json") {
-        return SpriteRecipe::load(name);
-    }
-    let builtin = name.to_str().and_then(|name| builtin::find(builtin::SPRITES, name));
-    let names: Vec<_> = builtin::SPRITES.iter().map(|sprite| sprite.name).collect();
-    let expected = || format!("a *.sprite.json file, or one of {}", names.join(", "));
-    SpriteRecipe::of_builtin(builtin.ok_or_else(|| FieldError::new("--sprite", name.display(), expected()))?)
-}
-
-/// The sprite that is traced if none is named.
-pub fn default_sprite() -> PathBuf {
-    "billow".into()
 }

@@ -1,24 +1,22 @@
 //! Options shared by several subcommands: a preset and changes to it, an image size, a renderer.
 
-use std::cell::RefCell;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use glam::{UVec2, Vec4};
-use haze::image::Image;
+use glam::UVec2;
 use haze::image::{CompressionEffort, write_png};
 use haze::preset::{AssetFolders, Preset};
 use haze::settings::{Choice, RenderPath, Technique, UnknownChoice, set_field};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_demo::headless::Headless;
-use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use image::RgbImage;
 
+use super::backend::Backend;
 use super::inputs::image_paths;
 use super::memory_check::check_memory;
 use super::output::{FileChecks, print_error, print_line};
@@ -116,19 +114,6 @@ enum BackendName {
     Cpu,
 }
 
-/// The renderer in use.
-pub enum Backend {
-    Gpu(Box<Gpu>),
-    Cpu,
-}
-
-/// A device, and the renderer on it, which is kept for all images.
-pub struct Gpu {
-    pub headless: Headless,
-    pub context: OffscreenContext,
-    renderer: RefCell<OffscreenRenderer>,
-}
-
 impl ShotArguments {
     /// Loads the preset, applies the changes, and builds the shot. Refuses `--output`, and `others` (option and path),
     /// if they cannot be written.
@@ -206,51 +191,6 @@ impl RunArguments {
                 Ok(Backend::Cpu)
             }
             Err(error) => Err(error),
-        }
-    }
-}
-
-impl Backend {
-    /// Opens the GPU if there is one, else the CPU, which cannot use custom shaders.
-    pub fn open(sources: Option<&Sources>) -> Result<Self, Error> {
-        match Headless::new() {
-            Ok(gpu) => Self::on(gpu, sources),
-            Err(Error::NoDevice(_) | Error::Device(_)) if sources.is_none() => Ok(Self::Cpu),
-            Err(error) => Err(error),
-        }
-    }
-
-    fn on(gpu: Headless, sources: Option<&Sources>) -> Result<Self, Error> {
-        let mut context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-        if let Some(sources) = sources {
-            context = context.with_shaders(sources)?;
-        }
-        let renderer = RefCell::new(OffscreenRenderer::new(&context, false)?);
-        Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, renderer })))
-    }
-
-    /// Renders an image in linear HDR.
-    pub fn render(&self, shot: &Shot) -> Result<Image<Vec4>, Error> {
-        match self {
-            Self::Gpu(gpu) => {
-                let mut renderer = gpu.renderer.borrow_mut();
-                let mut draw = || {
-                    renderer.warm_up(shot)?;
-                    renderer.draw(&gpu.headless, shot)?;
-                    renderer.read(&gpu.headless, shot)
-                };
-                // A texture for which memory ran out is also refused where it is bound: the first failure is the cause.
-                draw().map_err(|error| gpu.headless.check().err().unwrap_or(error))
-            }
-            Self::Cpu => shot.render_on_cpu(),
-        }
-    }
-
-    /// Describes the renderer in one line.
-    pub fn description(&self) -> String {
-        match self {
-            Self::Gpu(gpu) => gpu.headless.description(),
-            Self::Cpu => "the CPU renderer".into(),
         }
     }
 }

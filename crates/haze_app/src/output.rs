@@ -9,6 +9,8 @@ use haze::error::{alters_line, io_expected, io_problem};
 use haze::image::{FileIdentity, check_writable};
 use haze::{Error, FieldError};
 
+use super::recipe_files::has_extension;
+
 /// `println!` of one line that returns an error instead of panicking.
 macro_rules! print_line {
     ($($argument:tt)*) => { $crate::output::write_line(format_args!($($argument)*)) };
@@ -83,10 +85,6 @@ impl Failures {
 pub struct FileChecks {
     inputs: Vec<FileIdentity>,
     outputs: Vec<FileIdentity>,
-}
-
-pub fn has_extension(path: &Path, expected: &str) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
 }
 
 impl FileChecks {

@@ -1,10 +1,11 @@
 //! Prints the errors of ramps and six-way maps against path-traced smoke.
 
 use haze::Error;
-use haze_author::ramp::response::{DiffuseRamps, Puff, Response, light_angle};
+use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response, light_angle};
 
+use super::flip::flips;
 use super::output::print_line;
-use super::puff_sheet::{ComparedImages, mean_flip};
+use super::puff_sheet::{ComparedImages, image_pairs};
 
 /// Prints how far ramps are from path-traced smoke, in total and light by light.
 pub fn print_ramp_error(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
@@ -33,4 +34,11 @@ pub fn print_response_error(
         print_line!("{:7.1}°  traced {:.4}  shown {:.4}  {off:+.0} %", light_angle(index), light.truth, light.shown)?;
     }
     Ok(())
+}
+
+/// Mean FLIP over all lights.
+fn mean_flip(puff: &Puff, shown: &ComparedImages<'_>) -> f64 {
+    let pairs = image_pairs(puff, shown);
+    let pairs: Vec<_> = pairs.iter().map(|[truth, ours]| [truth, ours]).collect();
+    flips(&pairs).iter().sum::<f64>() / f64::from(LIGHTS)
 }

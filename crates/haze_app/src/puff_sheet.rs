@@ -8,7 +8,6 @@ use image::imageops::{FilterType, resize};
 use image::{Rgb, RgbImage};
 
 use super::contact_sheet::ContactSheet;
-use super::flip::flips;
 
 /// Linear background of the puffs: darker than most puffs, lighter than soot.
 const BACKGROUND: Vec3 = Vec3::splat(0.03);
@@ -95,11 +94,4 @@ fn image_pair(puff: &Puff, shown: &ComparedImages<'_>, white: f32, light: usize)
 pub fn image_pairs(puff: &Puff, shown: &ComparedImages<'_>) -> Vec<[RgbImage; 2]> {
     let white = white_level(puff);
     (0..LIGHTS as usize).map(|light| image_pair(puff, shown, white, light)).collect()
-}
-
-/// Mean FLIP over all lights.
-pub fn mean_flip(puff: &Puff, shown: &ComparedImages<'_>) -> f64 {
-    let pairs = image_pairs(puff, shown);
-    let pairs: Vec<_> = pairs.iter().map(|[truth, ours]| [truth, ours]).collect();
-    flips(&pairs).iter().sum::<f64>() / f64::from(LIGHTS)
 }

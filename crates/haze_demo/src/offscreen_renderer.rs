@@ -11,6 +11,7 @@ use super::offscreen_context::UploadedMaterial;
 use super::scene_renderer::{COLOR_FORMAT, DEPTH_FORMAT, SceneTargets, default_view, texture};
 use super::shadow_views::ShadowView;
 use super::shot::{ParticleSource, Shot};
+pub use super::texture_readback::PendingImage;
 use crate::headless::Headless;
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
@@ -299,6 +300,11 @@ impl OffscreenRenderer {
         let Some(picture) = self.picture(shot.debug_view) else { return Ok(Image::new(shot.size, Vec4::W)) };
         let size = UVec2::new(picture.width(), picture.height());
         Ok(Image { size, texels: gpu.read_rgba16float(picture)? })
+    }
+
+    /// Records a copy of the image of a debug view, to be read when the GPU is done. `None` if it was never drawn.
+    pub fn read_later(&self, encoder: &mut wgpu::CommandEncoder, stage: DebugView) -> Option<PendingImage> {
+        Some(PendingImage::record(&self.context.device, encoder, self.picture(stage)?))
     }
 
     /// Uploads images that are not on the GPU yet.

@@ -83,6 +83,11 @@ fn boxes_at(list: u32, point: vec3f) -> vec4u {
     return textureLoad(occluders, at, 0);
 }
 
+// Index of the lowest bit that is set, from the exponent of its value: WebGL2 has no firstTrailingBit().
+fn lowest_bit(bits: u32) -> u32 {
+    return (bitcast<u32>(f32(bits & (~bits + 1u))) >> 23u) - 127u;
+}
+
 // Returns the visible fraction of a light of angular size `spread` (radius / distance). A ray that misses a box is
 // dimmed by its angular distance to the box, which gives a penumbra from one ray. The penumbra is at least `pixel`
 // metres wide.
@@ -90,7 +95,7 @@ fn light_visibility(mask: vec4u, origin: vec3f, direction: vec3f, distance: f32,
     var visible = 1.0;
     for (var word = 0u; word < 3u; word++) {
         for (var bits = mask[word]; bits != 0u; bits &= bits - 1u) {
-            let i = word * 32u + firstTrailingBit(bits);
+            let i = word * 32u + lowest_bit(bits);
             if i >= scene.box_count { break; }
             let b = boxes[i];
             if b.surface == SURFACE_GLOW { continue; }
@@ -122,7 +127,7 @@ fn ambient_visibility(p: vec3f, n: vec3f) -> f32 {
     let mask = boxes_at(0u, p);
     for (var word = 0u; word < 3u; word++) {
         for (var bits = mask[word]; bits != 0u; bits &= bits - 1u) {
-            let i = word * 32u + firstTrailingBit(bits);
+            let i = word * 32u + lowest_bit(bits);
             if i >= scene.box_count { break; }
             let b = boxes[i];
             open_near = min(open_near, box_distance(b, to_local(b, near - b.centre)));

@@ -14,6 +14,30 @@ pub(super) struct TextureReadback {
     bytes: Arc<Mutex<Option<Vec<u8>>>>,
 }
 
+/// Pending readback of one image.
+#[derive(Clone, Debug)]
+pub struct PendingImage(TextureReadback);
+
+impl PendingImage {
+    /// Records a copy of a color texture.
+    pub(super) fn record(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) -> Self {
+        Self(TextureReadback::record(device, encoder, &[texture]))
+    }
+
+    /// True once the readback has finished or failed. Progresses only when the device is polled or work is submitted.
+    pub fn is_finished(&self) -> bool {
+        self.0.is_finished()
+    }
+
+    /// Takes the image. Returns `None` if the readback has not finished or has failed, and on every call after the first
+    /// success.
+    pub fn take(&self) -> Option<Image<Vec4>> {
+        let bytes = self.0.take()?;
+        let region = self.0.regions.first()?;
+        Some(region.colors(&bytes, 0, region.size()))
+    }
+}
+
 /// Location of one texture in the buffer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BufferRegion {

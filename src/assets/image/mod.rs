@@ -1,5 +1,6 @@
 //! Images in memory with parallel iteration over rows, and reading and writing of PNG files.
 
+#[cfg(not(target_arch = "wasm32"))]
 mod atomic_write;
 mod baked_png;
 mod color_space;
@@ -8,8 +9,11 @@ mod icc_profile;
 mod png;
 mod png_chunks;
 
+#[cfg(not(target_arch = "wasm32"))]
 #[doc(hidden)]
-pub use atomic_write::{FileIdentity, check_writable, write_file, write_state_file};
+pub use atomic_write::check_writable;
+#[doc(hidden)]
+pub use atomic_write::{FileIdentity, write_file, write_state_file};
 #[doc(hidden)]
 pub use baked_png::{is_baked_png, write_baked_png};
 pub use color_space::{color_conversion_notes, decode_color_png, read_color_png};
@@ -19,6 +23,8 @@ pub use decoder_panic::is_decoding;
 pub use png::{CompressionEffort, is_png, read_file, write_png};
 pub use png::{MAX_BYTES, MAX_SIDE, decode_png, read_png};
 
+#[cfg(target_arch = "wasm32")]
+use crate::assets::memory_files as atomic_write;
 use glam::{IVec2, UVec2, Vec3, Vec4};
 
 use crate::assets::parallel::{parallel_for_each, thread_count};

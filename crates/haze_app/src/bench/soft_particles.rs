@@ -11,8 +11,9 @@ use haze::read_only_depth_is_supported;
 use haze::settings::{DepthSource, Technique};
 use haze_demo::shot::Shot;
 
+use crate::backend::Backend;
 use crate::frame_timer::{FrameTimer, measure_interleaved, median_of};
-use crate::options::{Backend, RunArguments, whole_number};
+use crate::options::{RunArguments, whole_number};
 use crate::output::{print_error, print_line};
 
 #[derive(Args)]

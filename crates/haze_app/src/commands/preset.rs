@@ -12,7 +12,8 @@ use haze_author::preset::{check_files, no_effect_reason};
 
 use crate::file_kind::explain_wrong_kind;
 use crate::options::AssetsArguments;
-use crate::output::{Failures, has_extension, print_line, write_text};
+use crate::output::{Failures, print_line, write_text};
+use crate::recipe_files::has_extension;
 use crate::tweak::copy_assets;
 
 #[derive(Args)]

@@ -12,7 +12,8 @@ use haze_demo::tonemap_pass::tonemap;
 use crate::frame_range::{FrameNames, parse_frames, parse_rate, parse_sheet};
 use crate::image_export::{self, ExportProgress, Frames};
 use crate::options::{ShotArguments, choices};
-use crate::output::{has_extension, print_line};
+use crate::output::print_line;
+use crate::recipe_files::has_extension;
 
 #[derive(Args)]
 pub struct Arguments {

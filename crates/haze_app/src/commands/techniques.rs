@@ -13,9 +13,10 @@ use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
 use image::{Rgb, RgbImage, imageops};
 
+use crate::backend::Backend;
 use crate::contact_sheet::ContactSheet;
 use crate::frame_timer::{Cost, FrameTimer, measure_interleaved, median_of};
-use crate::options::{Backend, ShotArguments};
+use crate::options::ShotArguments;
 use crate::output::print_error;
 use crate::plot::{Curve, plot};
 

@@ -1,10 +1,16 @@
 //! `haze tweak`: interactive window for lighting smoke.
 
-// Disk, clock and threads only in platform/, which a build for browsers replaces.
+// Disk, clock and threads only in platform/, which a build for browsers replaces in part.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+#[cfg(not(target_arch = "wasm32"))]
+mod arguments;
 mod document;
 mod files;
+#[cfg(target_arch = "wasm32")]
+mod page;
+#[cfg(target_arch = "wasm32")]
+mod page_picture;
 mod panels;
 mod platform;
 mod session;
@@ -12,85 +18,11 @@ mod viewport;
 mod viewport_renderer;
 mod window;
 
-use std::path::PathBuf;
-
-use clap::Args;
-use eframe::egui;
-use glam::UVec2;
-use haze::Error;
-use haze::settings::set_field;
-
-use super::options::{AssetsArguments, parse_assignment, parse_size, with_option};
+#[cfg(not(target_arch = "wasm32"))]
+pub use arguments::{Arguments, run};
+#[cfg(not(target_arch = "wasm32"))]
 pub use document::copied_assets::copy_assets;
-use files::hot_reload::ShaderFolder;
-use files::persistence::{Layout, Persistence};
-use platform::file_dialog::Dialogs;
+#[cfg(target_arch = "wasm32")]
+pub use page::open_page;
+#[cfg(not(target_arch = "wasm32"))]
 pub use platform::file_dialog::is_dialog_target as is_of_dialogs;
-use platform::{asset_loading, state_folder};
-use session::Session;
-use window::Start;
-use window::open::open;
-
-#[derive(Args)]
-pub struct Arguments {
-    /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
-    #[arg(default_value = "column")]
-    preset: PathBuf,
-    /// Size of the window in points. Default: the last size, or 1280x800, or 1000x640 where the CPU draws.
-    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
-    size: Option<UVec2>,
-    /// Sets a field of the preset, as in `haze render`. May be given more than once.
-    #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
-    set: Vec<(String, String)>,
-    /// Folder with shaders that replace the built-in ones of the same file names, reloaded when they change. A program
-    /// started by `cargo run` uses the `shaders` folder of its checkout.
-    #[arg(long, value_name = "DIR")]
-    shaders: Option<PathBuf>,
-    #[command(flatten)]
-    assets: AssetsArguments,
-    /// Write an image of the window once it has settled, then close it.
-    #[arg(long, value_name = "FILE.png")]
-    screenshot: Option<PathBuf>,
-}
-
-impl Default for Arguments {
-    fn default() -> Self {
-        Self {
-            preset: "column".into(),
-            size: None,
-            set: Vec::new(),
-            shaders: None,
-            assets: AssetsArguments::default(),
-            screenshot: None,
-        }
-    }
-}
-
-pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut session = Session::open(&arguments.preset, arguments.assets.folder()?)?;
-    for (field, value) in &arguments.set {
-        set_field(&mut session.document.preset, field, value).map_err(|error| with_option("--set", error))?;
-    }
-    session.document.preset.validate()?;
-    session.screenshot = arguments.screenshot.clone();
-    let shaders = match &arguments.shaders {
-        Some(folder) => asset_loading::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
-        None => ShaderFolder::of_checkout(),
-    };
-    // A screenshot must not depend on the stored layout, so that it is the same on every machine.
-    let state = state_folder::state(|name| std::env::var_os(name)).filter(|_| arguments.screenshot.is_none());
-    let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::read(folder));
-    if let Some(error) = error {
-        session.messages.error("layout", error);
-    }
-    let size = arguments.size.map(|size| size.as_vec2().to_array()).or(layout.window);
-    let persistence = state.map(|folder| Persistence::new(folder, &mut session));
-    let start = Start {
-        session,
-        shaders,
-        persistence,
-        layout,
-        has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)),
-    };
-    open(start, size.map(egui::Vec2::from))
-}

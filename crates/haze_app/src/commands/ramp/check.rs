@@ -14,10 +14,12 @@ use haze_author::ramp::response::{DiffuseRamps, Puff};
 use super::ramp_io::{load_ramp_image, refuse_gradient};
 use crate::file_kind::explain_wrong_kind;
 use crate::findings::report_findings;
-use crate::medium_options::{PathTraceArguments, default_sprite, medium_by_name, medium_names, sprite_recipe};
+use crate::medium_options::{PathTraceArguments, medium_by_name, medium_names};
 use crate::options::choices;
-use crate::output::{Failures, has_extension};
+use crate::output::Failures;
 use crate::puff_error::print_ramp_error;
+use crate::recipe_files::has_extension;
+use crate::sprite_by_name::{default_sprite, sprite_recipe};
 
 #[derive(Args)]
 pub struct Arguments {

@@ -10,12 +10,14 @@ use haze_author::ramp::RampRecipe;
 use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
 
 use super::ramp_io::{check_recipe_output, write_recipe};
-use crate::bake_job::{PaintedPng, check_not_painted, image_path};
-use crate::medium_options::{PuffArguments, sprite_recipe};
+use crate::bake_job::{PaintedPng, check_not_painted};
+use crate::medium_options::PuffArguments;
 use crate::options::whole_number;
 use crate::output::{FileChecks, print_line};
 use crate::puff_error::print_ramp_error;
 use crate::puff_sheet::{ComparedImages, comparison_sheet};
+use crate::recipe_files::image_path;
+use crate::sprite_by_name::sprite_recipe;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -11,10 +11,12 @@ use haze_author::ramp::response::{FitShape, Puff, Response, ShadowShape, fit_sha
 use haze_demo::puff_cloud::{CloudShape, PuffKind, ring_of_lights};
 
 use super::ramp_io::{check_recipe_output, write_recipe};
-use crate::bake_job::{PaintedPng, check_not_painted, image_path};
-use crate::medium_options::{PuffArguments, sprite_recipe};
+use crate::bake_job::{PaintedPng, check_not_painted};
+use crate::medium_options::PuffArguments;
 use crate::options::{choices, whole_number};
 use crate::output::{FileChecks, print_line};
+use crate::recipe_files::image_path;
+use crate::sprite_by_name::sprite_recipe;
 
 /// Number of clouds that the ramp is fitted to: four of each shape, at other random places.
 const CLOUDS: usize = 12;

@@ -7,7 +7,8 @@ use haze::{Error, FieldError};
 use haze_author::ramp::RampRecipe;
 use image::DynamicImage;
 
-use crate::output::{FileChecks, has_extension};
+use crate::output::FileChecks;
+use crate::recipe_files::has_extension;
 
 /// Loads the image of a ramp: a PNG, or a recipe, which is baked and returned as well.
 pub fn load_ramp_image(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>), Error> {

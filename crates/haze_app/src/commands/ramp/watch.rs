@@ -10,10 +10,11 @@ use std::time::Duration;
 use clap::Args;
 use haze::Error;
 
-use crate::bake_job::{BakeJob, PaintedPng, RAMPS, image_path};
+use crate::bake_job::{BakeJob, PaintedPng, RAMPS};
 use crate::file_watcher::Watcher;
 use crate::interrupt;
 use crate::output::{Failures, FileChecks, print_error};
+use crate::recipe_files::image_path;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -10,9 +10,9 @@ use haze::{Error, FieldError};
 use haze_author::sprite::import_sprite::{ImportSource, ImportedSprite, arrange_sheet, import_sprite};
 use haze_author::sprite::y_direction::MIN_CONFIDENCE;
 
-use crate::bake_job::six_way_path;
 use crate::options::{choices, number, whole_number};
 use crate::output::{FileChecks, print_line};
+use crate::recipe_files::six_way_path;
 
 #[derive(Args)]
 pub struct Arguments {

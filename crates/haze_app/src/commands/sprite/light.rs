@@ -10,10 +10,11 @@ use haze_author::path_trace::PathTrace;
 use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
 use haze_author::sprite::bake::SpriteRecipe;
 
-use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
+use crate::medium_options::{MediumArguments, PathTraceArguments};
 use crate::output::{FileChecks, print_line};
 use crate::puff_error::print_response_error;
 use crate::puff_sheet::{ComparedImages, comparison_sheet, traced_sheet};
+use crate::sprite_by_name::{default_sprite, sprite_recipe};
 
 #[derive(Args)]
 pub struct Arguments {

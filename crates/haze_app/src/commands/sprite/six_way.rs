@@ -8,11 +8,13 @@ use haze::image::write_baked_png;
 use haze::{Error, FieldError, builtin};
 use haze_author::sprite::six_way::BakedSixWay;
 
-use crate::bake_job::{PaintedPng, check_not_painted, image_path, six_way_path};
-use crate::medium_options::{MediumNumbers, medium_names, sprite_recipe};
+use crate::bake_job::{PaintedPng, check_not_painted};
+use crate::medium_options::{MediumNumbers, medium_names};
 use crate::options::whole_number;
 use crate::output::{FileChecks, print_line};
 use crate::progress::with_changing_progress;
+use crate::recipe_files::{image_path, six_way_path};
+use crate::sprite_by_name::sprite_recipe;
 
 #[derive(Args)]
 pub struct SixWayArguments {

@@ -5,8 +5,8 @@ use std::path::Path;
 use haze::Error;
 use haze::preset::{AssetFolders, Preset};
 
-use crate::bake_job::recipe_paths;
 use crate::inputs::relative_image_paths;
+use crate::recipe_files::recipe_paths;
 use crate::tweak::platform::asset_loading::particle_file_paths;
 use crate::tweak::platform::file_io;
 

@@ -10,7 +10,7 @@ use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::preset::{no_effect_reason, role_warnings};
 
-use crate::bake_job::six_way_path;
+use crate::recipe_files::six_way_path;
 use crate::tweak::document::sprite_edits::sprite_source::{detail_of, recipe_of};
 use crate::tweak::platform::{asset_loading, file_io};
 

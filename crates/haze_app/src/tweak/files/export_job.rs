@@ -14,9 +14,9 @@ use haze_demo::shot::Shot;
 use image::RgbImage;
 
 use super::value_spread::spread_values;
+use crate::backend::Backend;
 use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
-use crate::options::Backend;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
 use crate::tweak::platform::render_job::{ExportProgress, Frames};
 use crate::tweak::platform::worker::Worker;
@@ -146,7 +146,7 @@ impl ExportJob {
                 progress.count.store(count, Ordering::Relaxed);
                 !progress.is_stopped.load(Ordering::Relaxed) && !ticket.is_cancelled()
             };
-            let made = Backend::open(shaders.as_ref()).and_then(|backend| {
+            let made = render_job::open_backend(shaders.as_ref()).and_then(|backend| {
                 make(&backend, &product, &shot, &options, &place, &ExportProgress::Callback(&go_on))
             });
             made.unwrap_or_else(ExportResult::Failed)
@@ -171,6 +171,7 @@ impl ExportJob {
             match done {
                 Some(ExportResult::Written(path)) => {
                     session.messages.info("export", format!("written: {}", path.display()));
+                    file_io::hand_over(&path);
                 }
                 Some(ExportResult::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
                 Some(ExportResult::Failed(error)) => session.messages.error("export", error),

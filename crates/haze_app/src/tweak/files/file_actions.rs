@@ -12,6 +12,7 @@ use crate::tweak::document::{Document, OnDisk, Saving};
 use crate::tweak::platform::asset_loading::{self, LoadedAssets};
 use crate::tweak::platform::clock::{self, Duration};
 use crate::tweak::platform::file_dialog::{Answer, Dialogs, Purpose};
+use crate::tweak::platform::file_io;
 use crate::tweak::platform::worker::Worker;
 use crate::tweak::session::Session;
 use crate::tweak::session::messages::truncate_middle;
@@ -112,8 +113,7 @@ impl FileActions {
                 }
             }
         }
-        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
-        if let Some(path) = dropped {
+        if let Some(path) = file_io::dropped_file(context) {
             self.take(path, session);
         }
         let is_baking = session.sprites.is_baking();
@@ -249,13 +249,14 @@ impl FileActions {
 
     fn saved(&mut self, saving: Saving, done: Result<(), Error>, session: &mut Session) {
         let then = self.then.take();
-        let path = saving.path().display().to_string();
+        let path = saving.path().to_owned();
         session.document.finish_saving(saving, done.is_ok());
         match done {
             Ok(()) => {
                 session.is_changed_on_disk = false;
                 session.messages.clear("preset");
-                session.messages.info("file", format!("saved: {path}"));
+                session.messages.info("file", format!("saved: {}", path.display()));
+                file_io::hand_over(&path);
                 // The document may have been changed during the save.
                 then.into_iter().for_each(|next| self.begin_or_ask(next, session));
             }

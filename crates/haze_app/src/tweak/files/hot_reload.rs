@@ -13,8 +13,8 @@ use haze_author::particle_files::ParticleFrames;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
-use crate::bake_job::recipe_paths;
 use crate::inputs::relative_image_paths;
+use crate::recipe_files::recipe_paths;
 use crate::tweak::document::OnDisk;
 use crate::tweak::document::loaded_materials::{LoadedMaterials, names};
 use crate::tweak::document::loaded_particles::{LoadedParticles, paths};

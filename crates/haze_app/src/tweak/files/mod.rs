@@ -6,6 +6,7 @@ pub mod file_actions;
 pub mod hot_reload;
 pub mod persistence;
 pub mod preset_thumbnails;
+pub mod shared_look;
 pub mod value_spread;
 pub mod window_screenshot;
 

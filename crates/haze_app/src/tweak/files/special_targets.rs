@@ -17,8 +17,8 @@ use haze_demo::shot::Shot;
 
 use super::persistence::Layout;
 use super::window_screenshot;
+use crate::backend::Backend;
 use crate::frame_range::FrameNames;
-use crate::options::Backend;
 use crate::tweak::document::copied_assets::copy_assets;
 use crate::tweak::document::recovery::Recovery;
 use crate::tweak::document::sprite_edits::sprite_source::{self, recipe_of_built_in};

@@ -6,10 +6,13 @@ use eframe::egui::{self, Key, Ui};
 
 use crate::tweak::files::file_actions::FileActions;
 use crate::tweak::platform::file_dialog::Purpose;
-use crate::tweak::platform::file_io;
+use crate::tweak::platform::{IS_PAGE, file_io};
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{ACTIONS, Action};
 use crate::tweak::session::messages::truncate_middle;
+
+/// Shown above a path that is typed.
+const NO_DIALOG: &str = "This system has no file dialog: type the path.";
 
 /// Draws the menu. Returns the chosen action.
 pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
@@ -36,14 +39,17 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
         }
         ui.separator();
         entry(ui, Action::Copy);
+        entry(ui, Action::CopyLink);
         entry(ui, Action::Paste);
         ui.separator();
         entry(ui, Action::Screenshot);
         entry(ui, Action::Seeds);
         entry(ui, Action::Export);
-        ui.separator();
-        if ui.button("Quit").clicked() {
-            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        if !IS_PAGE {
+            ui.separator();
+            if ui.button("Quit").clicked() {
+                ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+            }
         }
     });
     chosen
@@ -89,13 +95,13 @@ fn type_path(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
             Purpose::SaveAs => ("Save as", "Save"),
         };
         ui.heading(title);
-        ui.weak("This system has no file dialog: type the path.");
+        ui.weak(if IS_PAGE { "The browser downloads the file." } else { NO_DIALOG });
         let edit =
             egui::TextEdit::singleline(&mut typed.text).hint_text("Path of a JSON file").desired_width(f32::INFINITY);
         let edit = ui.add(edit);
         edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "path"));
         edit.request_focus();
-        if typed.purpose == Purpose::SaveAs {
+        if typed.purpose == Purpose::SaveAs && !IS_PAGE {
             ui.weak(format!("in {}", truncate_middle(&folder_of(&typed.text), 80)));
         }
         // Enter alone does not replace an existing file.

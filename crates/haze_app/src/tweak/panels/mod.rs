@@ -8,6 +8,7 @@ pub mod hint_popup;
 pub mod key_list;
 pub mod lights_panel;
 pub mod look_panel;
+pub mod narrow;
 pub mod notice_bar;
 pub mod performance_panel;
 pub mod preset_browser;

@@ -7,7 +7,7 @@ use haze_author::preset::no_effect_reason;
 
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
 use super::rows::{RowRequest, setting_rows, soft_fade_plot};
-use super::{lights_panel, look_panel, ramps_panel, sprite_panel};
+use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel};
 use crate::tweak::session::Session;
 use crate::tweak::session::messages::truncate_middle;
 use crate::tweak::session::setting_search::SMOKE_TAB_GROUPS;
@@ -56,14 +56,19 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
 }
 
 fn tab_row(ui: &mut Ui, session: &mut Session) {
-    // Small gaps, so that all tabs also fit into a narrow panel.
-    ui.horizontal_wrapped(|ui| {
+    let tabs = |ui: &mut Ui| {
+        // Small gaps, so that all tabs also fit into a narrow panel.
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().button_padding.x = 5.0;
         for (tab, name, tooltip) in TABS {
             ui.selectable_value(&mut session.view.tab, tab, name).on_hover_text(tooltip);
         }
-    });
+    };
+    if narrow::is_narrow(ui.ctx()) {
+        narrow::row(ui, "tabs", tabs);
+    } else {
+        ui.horizontal_wrapped(tabs);
+    }
 }
 
 /// Draws the choice of the system, and selects the system of a setting that was searched for.

@@ -5,12 +5,13 @@ use glam::UVec2;
 use haze::preset::Preset;
 use haze_author::preset::no_effect_reason;
 
+use super::narrow;
 use super::rows::icon_button::{self, Icon};
 use crate::tweak::session::Session;
 
 pub fn panel(ui: &mut Ui, session: &mut Session) {
     let playback = &mut session.playback;
-    ui.horizontal(|ui| {
+    narrow::row(ui, "timeline", |ui| {
         if icon_button::button(ui, Icon::Back, false, "A frame back (,)").clicked() {
             playback.step(-1.0);
         }

@@ -111,8 +111,12 @@ struct SecondDiff {
 impl Session {
     /// Opens a built-in preset by name, or a file. Images are looked up beside it and in `assets`.
     pub fn open(source: &Path, assets: Option<PathBuf>) -> Result<Self, Error> {
-        let document = Document::open(source)?;
-        let preset = &document.preset;
+        Self::show(Document::open(source)?, assets)
+    }
+
+    /// Shows a document. Images are looked up beside it and in `assets`.
+    pub fn show(document: Document, assets: Option<PathBuf>) -> Result<Self, Error> {
+        let (preset, source) = (&document.preset, document.path());
         let folders = AssetFolders::beside(source).with_shared(assets.clone());
         let (materials, caches) = asset_loading::all(preset, source, &folders)?;
         Ok(Self {

@@ -1,7 +1,7 @@
 //! Camera control by pointer and wheel, as in Maya and Blender: Alt and a button, or the middle button with Shift or
-//! Ctrl. The right button with WASD flies.
+//! Ctrl. The right button with WASD flies. On a touch screen one finger orbits, two pan and pinch.
 
-use eframe::egui::{Key, Modifiers, PointerButton, Response, Ui};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Response, Ui};
 use glam::Vec3;
 use haze::preset::Camera;
 
@@ -53,7 +53,9 @@ impl CameraInput {
     /// Moves the camera as the pointer over the image asks for. Returns true if the flight speed was changed.
     pub fn steer(&mut self, ui: &Ui, response: &Response, projection: &ScreenProjection, camera: &mut Camera) -> bool {
         let before = *camera;
-        self.drag(ui, response, camera);
+        if !self.touch(ui, response, camera) {
+            self.drag(ui, response, camera);
+        }
         self.fly(ui, response, camera);
         let is_faster = self.wheel(ui, response, projection, camera);
         let places = [camera.position, camera.target];
@@ -90,6 +92,20 @@ impl CameraInput {
             Some(Gesture::Fly) => look(camera, drag * LOOK),
             None => {}
         }
+    }
+
+    /// Pans and dollies with two fingers that began on the image. Returns true meanwhile.
+    fn touch(&mut self, ui: &Ui, response: &Response, camera: &mut Camera) -> bool {
+        let Some(touch) = ui.input(egui::InputState::multi_touch) else { return false };
+        if !response.rect.contains(touch.start_pos) {
+            return false;
+        }
+        // The finger that stays moves nothing more until it is lifted.
+        self.gesture = None;
+        let by = touch.translation_delta / response.rect.height().max(1.0);
+        pan(camera, glam::Vec2::new(by.x, by.y));
+        dolly(camera, camera.target, 1.0 / touch.zoom_delta.max(0.01));
+        true
     }
 
     fn fly(&mut self, ui: &Ui, response: &Response, camera: &mut Camera) {

@@ -11,8 +11,8 @@ use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::BakedSixWay;
 
-use crate::medium_options::{default_sprite, sprite_recipe};
 use crate::puff_sheet::{ComparedImages, image_pairs};
+use crate::sprite_by_name::{default_sprite, sprite_recipe};
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::session::Session;
 use crate::tweak::session::light_view::LightTurn;

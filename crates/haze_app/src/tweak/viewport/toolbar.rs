@@ -8,6 +8,7 @@ use glam::Vec3;
 use haze::settings::{Choice, FieldVisitor, Fields};
 use haze_author::preset::Tooltips;
 
+use crate::tweak::panels::narrow::is_narrow;
 use crate::tweak::panels::rows::with_spaces;
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{Action, InView, keys_of};
@@ -31,7 +32,9 @@ pub fn toolbar(ui: &mut Ui, rect: Rect, session: &mut Session) -> Option<InView>
         egui::Frame::new().fill(fill).corner_radius(4.0).inner_margin(3.0).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
-                for (action, name, tooltip) in SWITCHES {
+                // They would hide the image of a narrow window.
+                let switches = if is_narrow(ui.ctx()) { &[][..] } else { &SWITCHES };
+                for &(action, name, tooltip) in switches {
                     let keys = keys_of(Action::InView(action)).map(|keys| ui.ctx().format_shortcut(&keys));
                     let keys = keys.unwrap_or_default();
                     let button = ui.selectable_label(is_on(session, action), name);

@@ -23,6 +23,7 @@ use haze_demo::offscreen_renderer::OffscreenContext;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::TonemapPass;
 
+use crate::tweak::platform::IS_PAGE;
 use compared_side::ComparedSide;
 use device_health::DeviceHealth;
 use viewport_frame::RendererState;
@@ -59,7 +60,7 @@ impl ViewportRenderer {
     pub fn with_context(window: &eframe::CreationContext<'_>, context: OffscreenContext) -> Result<Self, Error> {
         let render = render_state(window)?;
         let health = DeviceHealth::watch(&render.device, &window.egui_ctx);
-        if render.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
+        if !IS_PAGE && render.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
             // Takes about 0.2 s on a GPU. A CPU adapter takes longer, and its paths cost about the same.
             context.measure_paths(|encoder| {
                 render.queue.submit([encoder.finish()]);

@@ -1,7 +1,11 @@
 //! Main window: its layout, and the order of work in a frame.
 
+mod device;
 pub mod drag_end;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod open;
+#[cfg(target_arch = "wasm32")]
+pub mod page_window;
 mod status_bar;
 pub mod surface_pacing;
 #[cfg(test)]
@@ -19,10 +23,11 @@ use crate::tweak::files::file_actions::FileActions;
 use crate::tweak::files::hot_reload::{HotReload, ShaderFolder};
 use crate::tweak::files::persistence::{Layout, Persistence};
 use crate::tweak::files::preset_thumbnails::PresetThumbnails;
+use crate::tweak::files::shared_look;
 use crate::tweak::files::window_screenshot::Screenshot;
 use crate::tweak::panels;
 use crate::tweak::panels::debug_view_strip::{debug_view_strip, next_debug_view};
-use crate::tweak::platform::clock;
+use crate::tweak::platform::{IS_PAGE, clock, file_io};
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{ACTIONS, Action};
 use crate::tweak::session::first_run_hints::WindowPart;
@@ -50,6 +55,10 @@ pub struct Window {
     probe_job: Option<ProbeJob>,
     screenshot: Screenshot,
 }
+
+/// Use of a copied link, for those who cannot guess it.
+const LINK_USE: &str =
+    if IS_PAGE { "" } else { "; open it with `haze 'LINK'`, or put it behind the address of a haze page" };
 
 /// State that a window starts with.
 pub struct Start {
@@ -162,6 +171,13 @@ impl Window {
                 context.copy_text(session.document.to_text());
                 session.messages.info("file", "copied: the preset as text");
             }
+            Action::CopyLink => match shared_look::fragment_of(session) {
+                Ok(fragment) => {
+                    context.copy_text(file_io::link_address(&fragment));
+                    session.messages.info("file", format!("copied: the look as a link{LINK_USE}"));
+                }
+                Err(error) => session.messages.error("file", error),
+            },
             Action::Screenshot => self.export_job.begin(ExportKind::Image, session),
             Action::Seeds => self.export_job.begin(ExportKind::Seeds, session),
             Action::Export => self.export_job.is_open = !self.export_job.is_open,
@@ -189,7 +205,7 @@ impl Window {
         panels::notice_bar::panel(ui, &mut self.session, self.persistence.as_mut());
         egui::Panel::bottom("status").show(ui, |ui| self.status_bar(ui));
         egui::Panel::bottom("time").show(ui, |ui| panels::timeline::panel(ui, &mut self.session));
-        if self.session.view.has_strip {
+        if self.session.view.has_strip && !panels::narrow::is_narrow(ui.ctx()) {
             let aspect = self.session.view.aspect;
             let height = self.layout.strip.unwrap_or((0.12 * ui.available_height()).max(80.0));
             let most = (0.25 * ui.available_height()).clamp(56.0, 320.0);
@@ -199,21 +215,34 @@ impl Window {
         }
     }
 
-    /// Draws the settings panel, and runs its requests.
+    /// Draws the settings panel: at the right, or below the image of a narrow window.
     fn settings(&mut self, ui: &mut Ui) {
+        if panels::narrow::is_narrow(ui.ctx()) {
+            let height = 0.4 * ui.available_height();
+            let panel = egui::Panel::bottom("settings_below").resizable(true).default_size(height);
+            let shown = panel
+                .size_range(80.0..=1.6 * height)
+                .show(ui, |ui| panels::settings_panel::panel(ui, &mut self.session));
+            return self.run_settings(shown.response.rect, shown.inner);
+        }
         let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(370.0, 440.0));
         // The image stays the largest part, even in a small window.
         let most = (0.45 * ui.available_width()).clamp(240.0, 560.0);
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=most);
         let shown = settings.show(ui, |ui| panels::settings_panel::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
-        self.session.hints.record_rect(WindowPart::Settings, shown.response.rect);
+        self.run_settings(shown.response.rect, shown.inner);
+    }
+
+    /// Runs the requests of the settings panel.
+    fn run_settings(&mut self, rect: egui::Rect, sheet_of: Option<String>) {
+        self.session.hints.record_rect(WindowPart::Settings, rect);
         let has_no_place = [&mut self.session.ramps.needs_saved_preset, &mut self.session.sprites.needs_saved_preset]
             .map(std::mem::take);
         if has_no_place.contains(&true) {
             self.file_actions.save_as(&self.session);
         }
-        if let Some(path) = shown.inner {
+        if let Some(path) = sheet_of {
             let is_seed = path.ends_with(".emitter.seed");
             let product = if is_seed { ExportKind::Seeds } else { ExportKind::Values(path) };
             self.export_job.begin(product, &mut self.session);

@@ -1,10 +1,11 @@
 //! Opens the window, and opens it again with the same session when the graphics device is lost.
 
-use eframe::{egui, egui_wgpu, wgpu};
+use eframe::{egui, egui_wgpu};
 use haze::Error;
 use haze::error::one_line;
 use haze_demo::headless::check_address_space;
 
+use super::device::setup;
 use super::drag_end::split_events_at_release;
 use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
@@ -172,27 +173,6 @@ fn write_recovery_and_fail(kept: &mut KeptState, reason: &str) -> Error {
         Ok(()) => format!("{reason}; unsaved work is kept for the next start"),
         Err(error) => format!("{reason}; unsaved work could not be kept: {error}"),
     })
-}
-
-/// Returns the setup for the fastest adapter, or for the one that WGPU_ADAPTER_NAME and WGPU_BACKEND name.
-fn setup() -> egui_wgpu::WgpuSetup {
-    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.device_descriptor = std::sync::Arc::new(device);
-    setup.into()
-}
-
-/// Returns the descriptor of a window's device, with compute shaders and timestamp queries if the adapter has them.
-pub fn device(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
-    // Those of `haze render`, so that the window draws the same image.
-    let usual = wgpu::Limits::default();
-    let limits = if usual.check_limits(&adapter.limits()) { usual } else { wgpu::Limits::downlevel_webgl2_defaults() };
-    let timing = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
-    wgpu::DeviceDescriptor {
-        label: Some("haze window"),
-        required_features: timing & adapter.features(),
-        required_limits: limits.using_resolution(adapter.limits()),
-        ..Default::default()
-    }
 }
 
 /// Returns an error if there is no display. Its text is clearer than that of the windowing library.

@@ -12,7 +12,7 @@ use haze::wgpu::Backends;
 use haze_demo::offscreen_renderer::OffscreenContext;
 use image::RgbaImage;
 
-use super::open::device;
+use super::device::device;
 use super::{Start, Window};
 use crate::tweak::files::hot_reload::ShaderFolder;
 use crate::tweak::files::persistence::Layout;

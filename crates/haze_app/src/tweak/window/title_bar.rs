@@ -12,7 +12,7 @@ use crate::tweak::session::messages::truncate_middle;
 impl Window {
     /// Draws the bar at the top: file menu, title, undo, comparison, and tools.
     pub(super) fn title_bar(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
+        panels::narrow::row(ui, "title", |ui| {
             if let Some(action) = panels::file_menu::menu(ui, &mut self.session) {
                 self.act(action, ui.ctx());
             }
@@ -42,7 +42,9 @@ impl Window {
             if inspect.on_hover_text("Values of the pixel under the pointer (I); a click keeps it").clicked() {
                 self.session.inspect.toggle();
             }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let is_narrow = panels::narrow::is_narrow(ui.ctx());
+            let layout = if is_narrow { egui::Layout::left_to_right } else { egui::Layout::right_to_left };
+            ui.with_layout(layout(egui::Align::Center), |ui| {
                 let keys = ui.button("?").on_hover_text("Keys and gestures");
                 self.session.hints.record_rect(WindowPart::Keys, keys.rect);
                 if keys.clicked() {

@@ -1,0 +1,69 @@
+// Loads the tweaker, with progress. `BUNDLES` is filled in by scripts/web: the bytes of each module.
+const BUNDLES = {};
+
+// WebGL reads zeros from a depth texture with the filter of a new texture, which blends mip levels, and wgpu leaves it so.
+const webgl = globalThis.WebGL2RenderingContext?.prototype ?? {};
+const createStorage = webgl.texStorage2D;
+webgl.texStorage2D = function (target, levels, format, width, height) {
+    createStorage.call(this, target, levels, format, width, height);
+    const { DEPTH_COMPONENT16, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH24_STENCIL8, DEPTH32F_STENCIL8 } = this;
+    const depths = [DEPTH_COMPONENT16, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH24_STENCIL8, DEPTH32F_STENCIL8];
+    if (depths.includes(format)) {
+        this.texParameteri(target, this.TEXTURE_MIN_FILTER, this.NEAREST);
+        this.texParameteri(target, this.TEXTURE_MAG_FILTER, this.NEAREST);
+    }
+};
+
+function fail(reason) {
+    if (document.body.dataset.state !== "failed") {
+        document.getElementById("reason").textContent = reason;
+        document.body.dataset.state = "failed";
+    }
+}
+
+// A link to another look, opened in the same tab.
+addEventListener("hashchange", () => location.reload());
+
+// A panic of the program ends its frames.
+addEventListener("error", (event) => {
+    if (event.error instanceof WebAssembly.RuntimeError) {
+        fail("it stopped by an internal error; a reload continues with the work of the last seconds.");
+    }
+});
+
+async function hasWebGpu() {
+    try {
+        return Boolean(await navigator.gpu?.requestAdapter());
+    } catch {
+        return false;
+    }
+}
+
+// A module as it arrives, and the share of its bytes that has.
+async function load(name) {
+    const response = await fetch(`${name}_bg.wasm`);
+    if (!response.ok) {
+        throw new Error(`${name}_bg.wasm: ${response.status} ${response.statusText}`);
+    }
+    const progress = document.getElementById("progress");
+    let bytes = 0;
+    const count = new TransformStream({
+        transform(part, out) {
+            bytes += part.length;
+            progress.value = bytes / BUNDLES[name];
+            out.enqueue(part);
+        },
+    });
+    return new Response(response.body.pipeThrough(count), { headers: { "Content-Type": "application/wasm" } });
+}
+
+try {
+    // The bundle without WebGL is smaller.
+    const asked = new URLSearchParams(location.search).get("api");
+    const name = asked !== "webgl" && (await hasWebGpu()) ? "haze" : "haze_webgl";
+    document.body.dataset.program = `./${name}.js`;
+    const [program, module_or_path] = await Promise.all([import(`./${name}.js`), load(name)]);
+    await program.default({ module_or_path });
+} catch (error) {
+    fail(String(error));
+}
