@@ -7,7 +7,7 @@ use crate::formula::ramp::sample_ramp_2d;
 use crate::settings::{Backlight, DiffuseMode, RampFilter, Settings, SoftScatterMode};
 
 /// Positions across a ramp that are compared, and rows of it.
-const POSITIONS: u32 = 65;
+const POSITIONS: u32 = 129;
 const ROWS: u32 = 9;
 
 /// Largest change of each ramp over a 64th of its width, of the ramp's brightest color, linear light: 1/64 for an even
@@ -62,11 +62,11 @@ pub(crate) fn largest_step(ramp: &Ramp) -> f32 {
                 let (along, across) = (place(position, POSITIONS), place(row, ROWS));
                 color(if turned { vec2(across, along) } else { vec2(along, across) })
             };
-            (0..POSITIONS).map(at).fold(None, |before: Option<Vec3>, color| {
-                brightest = brightest.max(color.max_element());
-                largest = largest.max(before.map_or(0.0, |before| (color - before).abs().max_element()));
-                Some(color)
-            });
+            let colors: [Vec3; POSITIONS as usize] = std::array::from_fn(|position| at(position as u32));
+            brightest = colors.iter().fold(brightest, |most, color| most.max(color.max_element()));
+            // Over two positions, so that a step is whole wherever it is.
+            let changes = colors.windows(3).map(|window| (window[2] - window[0]).abs().max_element());
+            largest = changes.fold(largest, f32::max);
         }
     }
     largest / brightest.max(1.0e-6)
