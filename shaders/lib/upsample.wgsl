@@ -162,7 +162,7 @@ fn depth_slope(line: DepthLine, fade: f32) -> vec4f {
 }
 
 // Weights of the four texels around a pixel, as in upsample_weights(): bilinear times a Gaussian of the depth
-// difference, of which SURFACE_DEPTH_TOLERANCE is two sigma. Never zero by depth, and not normalised: the sum is the
+// difference; SURFACE_DEPTH_TOLERANCE is two sigma. Never zero by depth, and not normalised: the sum is the
 // share of the texels that saw the pixel's surface.
 fn surface_weights(fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     let sigmas = (depths - depth) * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));

@@ -2,6 +2,7 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec3Swizzles, Vec4, vec3};
 
+use super::emitter::smoothstep_unit;
 use crate::settings::Upsample;
 
 /// Depths that differ by less than this share of the pixel's depth count as one surface.
@@ -189,7 +190,7 @@ pub fn depth_slope(line: &DepthLine, fade: f32) -> Vec4 {
 }
 
 /// Weights of the four texels around a pixel, as in [`upsample_weights`]: bilinear times a Gaussian of the depth
-/// difference, of which [`SURFACE_DEPTH_TOLERANCE`] is two sigma. Never zero by depth, and not normalised: the sum is
+/// difference; [`SURFACE_DEPTH_TOLERANCE`] is two sigma. Never zero by depth, and not normalised: the sum is
 /// the share of the texels that saw the pixel's surface.
 pub fn surface_weights(fraction: Vec2, depths: Vec4, depth: f32) -> Vec4 {
     let sigmas = (depths - depth) * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));
@@ -210,6 +211,5 @@ pub fn carried_value(weights: Vec4, values: Mat4, slopes: Mat4, depths: Vec4, de
 /// Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
 /// [`surface_weights`].
 pub fn four_texels_share(seen: f32) -> f32 {
-    let share = ((seen - 0.02) / 0.18).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
+    smoothstep_unit((seen - 0.02) / 0.18)
 }

@@ -7,17 +7,15 @@ use super::frame_bindings::DepthBindings;
 use super::gpu::Gpu;
 use super::gpu::record::begin_compute;
 use super::gpu::timing::Timing;
-use super::pass::Groups;
 use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
-use super::pass::depth_slopes::DepthSlopes;
 use super::pass::depth_sort::DepthSort;
 use super::pass::diffuse_bake::DiffuseBake;
 use super::pass::emit::Emit;
 use super::pass::forward::Forward;
-use super::pass::light_target::LightTarget;
 use super::pass::specular_scatter::SpecularScatter;
 use super::pass::transfer::Transfer;
+use super::pass::{Groups, TexelPass};
 use super::pipelines::Pipelines;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::sprite_instances::Sprites;
@@ -64,8 +62,8 @@ pub(crate) struct DeferredPasses {
     pub diffuse_bake: Option<DiffuseBake>,
     pub accumulate: AccumulatePasses,
     pub overdraw: Option<Accumulate>,
-    pub light_target: Option<LightTarget>,
-    pub depth_slopes: Option<DepthSlopes>,
+    pub light_target: Option<TexelPass>,
+    pub depth_slopes: Option<TexelPass>,
     pub transfer: Transfer,
     pub specular_scatter: Option<SpecularScatter>,
     pub sprites: Sprites,
@@ -149,6 +147,10 @@ impl PassBuilder<'_> {
             inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
             sprites: sprites.clone(),
         };
+        let texel_pass = |name, pipeline, target: &Option<wgpu::TextureView>, inputs: Option<&wgpu::BindGroup>| {
+            let (target, groups, inputs) = (target.clone()?, groups.clone(), inputs?.clone());
+            Some(TexelPass { name, pipeline, target, size, groups, inputs })
+        };
         let lights = setup.uniform.light_count;
         SystemPasses::Deferred(DeferredPasses {
             depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
@@ -172,22 +174,14 @@ impl PassBuilder<'_> {
                 _ => AccumulatePasses::Raster(accumulate(plan.accumulate, &accumulation.attachments)),
             },
             overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
-            light_target: plan.light_target.zip(accumulation.lit.as_ref()).map(|(key, target)| LightTarget {
-                pipeline: pipelines.light_target.get(key),
-                target: target.clone(),
-                size,
-                groups: groups.clone(),
-                inputs: inputs.transfer.clone(),
+            light_target: plan.light_target.and_then(|key| {
+                let pipeline = pipelines.light_target.get(key);
+                texel_pass("light_target", pipeline, &accumulation.lit, Some(&inputs.transfer))
             }),
-            depth_slopes: plan.depth_slopes.zip(accumulation.depth_slopes.as_ref()).zip(inputs.lit.as_ref()).map(
-                |((key, target), inputs)| DepthSlopes {
-                    pipeline: pipelines.depth_slopes.get(key),
-                    target: target.clone(),
-                    size,
-                    groups: groups.clone(),
-                    inputs: inputs.clone(),
-                },
-            ),
+            depth_slopes: plan.depth_slopes.and_then(|key| {
+                let pipeline = pipelines.depth_slopes.get(key);
+                texel_pass("depth_slopes", pipeline, &accumulation.depth_slopes, inputs.lit.as_ref())
+            }),
             transfer: transfer_pass(pipelines, plan, &groups, inputs),
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
                 pipeline: pipelines.specular_scatter.get(key),

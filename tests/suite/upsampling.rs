@@ -93,7 +93,7 @@ fn lighting_at_target_resolution_stays_close_to_full_resolution() {
         let shot = Shot::load(preset.name, SIZE).unwrap();
         let lit = |scale, resolution| render_lit(&shot, scale, Upsample::Bilinear, resolution);
         assert!(lit(1, LightingResolution::Target) == lit(1, LightingResolution::Full));
-        // The reduced target alone is at 48 to 75 dB. `explosion` is the worst preset here, at 66 and 59 dB.
+        // The reduced target alone is at 36 to 81 dB. `explosion` is the worst preset here, at 66 and 59 dB.
         for (scale, least) in [(2, 63.0), (4, 56.0)] {
             let [full, target] = [LightingResolution::Full, LightingResolution::Target].map(|r| lit(scale, r));
             let all = psnr(&target, &full);
@@ -120,6 +120,7 @@ fn carrying_texels_along_slopes_is_as_close_to_full_scale_as_a_fit_for_each_pixe
             };
             let (fitted, carried) = (error(LightingResolution::Full), error(LightingResolution::Target));
             println!("{} at scale {scale}: fitted {fitted:.1} dB, carried {carried:.1} dB", preset.name);
+            // `corridor` at scale 4 is the worst, 0.9 dB behind at 73 dB; `backlit_fog` is 0.8 dB behind.
             assert!(carried > fitted - 1.0, "{} at scale {scale}: {carried:.1} dB, fitted {fitted:.1}", preset.name);
         }
     }

@@ -1,17 +1,12 @@
-//! light_target: lights the accumulated smoke once per texel, if `lighting_resolution` selects it; transfer then
-//! upsamples the light.
+//! light_target: lights the accumulated smoke once per texel, if `lighting_resolution` selects it; transfer_lit
+//! then upsamples the light. `TexelPass` records it.
 //!
 //! Reads: accumulation target, lights, ramps.
 //! Writes: lit smoke, Rgba16Float.
 //! Blend: none.
 //! Source: OTEE "Transfer & lighting", at the target's resolution.
 
-use glam::UVec2;
-
-use super::Groups;
 use crate::renderer::gpu::pipeline::{Constant, RenderPipelineDescription, bool_constant, color_target, enum_constant};
-use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor};
-use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{LIT_FORMAT, attachment_constants};
 use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
 use crate::view_setup::{AttachmentRole, AttachmentSet};
@@ -57,28 +52,5 @@ pub(crate) fn describe(key: LightingKey) -> RenderPipelineDescription {
         sample_count: 1,
         targets: vec![color_target(LIT_FORMAT, None)],
         constants: key.constants([]),
-    }
-}
-
-/// The pass for one system.
-#[derive(Debug)]
-pub(crate) struct LightTarget {
-    pub pipeline: wgpu::RenderPipeline,
-    pub target: wgpu::TextureView,
-    /// Size of the part in use, texels.
-    pub size: UVec2,
-    pub groups: Groups,
-    /// Group 3: the accumulation target.
-    pub inputs: wgpu::BindGroup,
-}
-
-impl LightTarget {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        let mut pass = begin_pass(encoder, "light_target", &[color_attachment(&self.target)], None, timing);
-        set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
-        pass.set_pipeline(&self.pipeline);
-        self.groups.bind_for_lighting(&mut pass);
-        pass.set_bind_group(3, &self.inputs, &[]);
-        pass.draw(0..3, 0..1);
     }
 }

@@ -24,6 +24,11 @@ pub(crate) mod tile_refine;
 pub(crate) mod transfer;
 pub(crate) mod transfer_lit;
 
+use glam::UVec2;
+
+use super::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor};
+use super::gpu::timing::Timing;
+
 /// Bind groups 0 to 2 of a system's passes.
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
@@ -54,5 +59,30 @@ impl Groups {
         pass.set_bind_group(0, &self.frame, &[]);
         pass.set_bind_group(1, &self.system, &[]);
         pass.set_bind_group(2, &self.material, &[]);
+    }
+}
+
+/// A pass that computes every texel of a system's lit target: light_target, depth_slopes.
+#[derive(Debug)]
+pub(crate) struct TexelPass {
+    /// Name in times and captures.
+    pub name: &'static str,
+    pub pipeline: wgpu::RenderPipeline,
+    pub target: wgpu::TextureView,
+    /// Size of the part in use, texels.
+    pub size: UVec2,
+    pub groups: Groups,
+    /// Group 3.
+    pub inputs: wgpu::BindGroup,
+}
+
+impl TexelPass {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        let mut pass = begin_pass(encoder, self.name, &[color_attachment(&self.target)], None, timing);
+        set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
+        pass.set_pipeline(&self.pipeline);
+        self.groups.bind_for_lighting(&mut pass);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.draw(0..3, 0..1);
     }
 }

@@ -12,7 +12,7 @@ use super::files::hot_reload::ShaderFolder;
 use super::files::persistence::{Layout, Persistence};
 use super::files::shared_look;
 use super::platform::file_dialog::Dialogs;
-use super::platform::{asset_loading, state_folder};
+use super::platform::{asset_loading, file_io, state_folder};
 use super::session::Session;
 use super::window::Start;
 use super::window::open::open;
@@ -55,7 +55,9 @@ impl Default for Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let link = arguments.preset.to_str().and_then(share_link::fragment);
+    // A file may have the name of a link.
+    let link = arguments.preset.to_str().filter(|_| !file_io::exists(&arguments.preset));
+    let link = link.and_then(share_link::fragment);
     let mut session = match link {
         Some(fragment) => shared_look::open(fragment, &link_folder(fragment))?,
         None => Session::open(&arguments.preset, arguments.assets.folder()?)?,

@@ -16,8 +16,7 @@ use super::ramp_io::{is_recipe, load_ramp_image};
 use crate::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
 use crate::options::{ShotArguments, choices};
 use crate::output::{Failures, FileChecks, print_error};
-use crate::recipe_files::has_extension;
-use crate::recipe_files::image_path;
+use crate::recipe_files::{has_extension, image_path};
 
 #[derive(Args)]
 #[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is this size divided by the number of columns")))]

@@ -171,7 +171,7 @@ impl ExportJob {
             match done {
                 Some(ExportResult::Written(path)) => {
                     session.messages.info("export", format!("written: {}", path.display()));
-                    file_io::hand_over(&path);
+                    file_io::offer_download(&path);
                 }
                 Some(ExportResult::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
                 Some(ExportResult::Failed(error)) => session.messages.error("export", error),

@@ -256,7 +256,7 @@ impl FileActions {
                 session.is_changed_on_disk = false;
                 session.messages.clear("preset");
                 session.messages.info("file", format!("saved: {}", path.display()));
-                file_io::hand_over(&path);
+                file_io::offer_download(&path);
                 // The document may have been changed during the save.
                 then.into_iter().for_each(|next| self.begin_or_ask(next, session));
             }

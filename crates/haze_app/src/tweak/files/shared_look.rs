@@ -43,7 +43,7 @@ pub fn fragment_of(session: &mut Session) -> Result<String, FieldError> {
     if own.is_some() {
         return look.to_fragment();
     }
-    // A file may be made from any of them.
+    // Any built-in preset may be nearest to a file.
     let others = builtin::PRESETS.iter().filter_map(|base| Look { base: base.name, ..look.clone() }.to_fragment().ok());
     others.min_by_key(String::len).map_or_else(|| look.to_fragment(), Ok)
 }

@@ -51,8 +51,8 @@ pub fn dropped_file(context: &egui::Context) -> Option<PathBuf> {
     context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()))
 }
 
-/// Gives a written file to the user, who has it already: it lies on the disk.
-pub fn hand_over(_: &Path) {}
+/// Does nothing: a written file is on the user's disk.
+pub fn offer_download(_: &Path) {}
 
 /// Returns a link without the address of a page, which a program does not know.
 pub fn link_address(fragment: &str) -> String {

@@ -6,23 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::clock::{Duration, Instant};
+pub use super::dialog_answer::{Answer, Purpose};
 use super::worker::Worker;
-
-/// Purpose of a file dialog.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    Open,
-    SaveAs,
-}
-
-/// Result of a file dialog.
-#[derive(Debug, PartialEq, Eq)]
-pub enum Answer {
-    Chosen(PathBuf),
-    Cancelled,
-    /// The system turned out to have no dialogs.
-    NoDialogs,
-}
 
 /// File dialogs, one at a time.
 pub struct Dialogs {

@@ -10,7 +10,7 @@ use haze::preset::Preset;
 use haze_author::particle_files;
 
 pub use super::disk::{
-    Stamp, Watcher, absolute, dropped_file, exists, hand_over, is_same, is_taken, link_address, list, make_folder,
+    Stamp, Watcher, absolute, dropped_file, exists, is_same, is_taken, link_address, list, make_folder, offer_download,
     remove,
 };
 

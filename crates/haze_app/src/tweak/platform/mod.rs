@@ -6,6 +6,7 @@
 
 pub mod asset_loading;
 pub mod clock;
+mod dialog_answer;
 #[cfg(not(target_arch = "wasm32"))]
 mod disk;
 #[cfg(not(target_arch = "wasm32"))]

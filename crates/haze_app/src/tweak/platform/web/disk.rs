@@ -123,8 +123,8 @@ pub fn dropped_file(context: &egui::Context) -> Option<PathBuf> {
     next
 }
 
-/// Gives a written file to the user as a download; of a folder, each of its files.
-pub fn hand_over(path: &Path) {
+/// Offers a written file as a download; of a folder, each file.
+pub fn offer_download(path: &Path) {
     let files = if exists(path) { vec![path.to_owned()] } else { list(path) };
     for file in files {
         page::download(&file);

@@ -7,21 +7,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::page;
-
-/// Purpose of a file dialog.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    Open,
-    SaveAs,
-}
-
-/// Result of a file dialog.
-#[derive(Debug, PartialEq, Eq)]
-pub enum Answer {
-    Chosen(PathBuf),
-    Cancelled,
-    NoDialogs,
-}
+pub use crate::tweak::platform::dialog_answer::{Answer, Purpose};
 
 /// File pickers, one at a time.
 pub struct Dialogs {

@@ -12,7 +12,7 @@ use web_sys::{Document, HtmlAnchorElement, HtmlCanvasElement, HtmlInputElement};
 /// Event of a canvas.
 const LOST: &str = "webglcontextlost";
 
-/// Largest file that is handed over.
+/// Largest file to download.
 const MAX_BYTES: u64 = 1 << 30;
 
 fn document() -> Option<Document> {

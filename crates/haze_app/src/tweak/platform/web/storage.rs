@@ -35,7 +35,11 @@ pub fn load() {
 /// Keeps the files that have changed since the last call. Returns false if one could not be kept.
 pub fn save_changed() -> bool {
     let changed = memory_files::take_changed();
-    let Some(storage) = local_storage() else { return changed.is_empty() };
+    // The usual case, in every frame.
+    if changed.is_empty() {
+        return true;
+    }
+    let Some(storage) = local_storage() else { return false };
     let keep = |path: &Path| {
         let key = format!("{PREFIX}{}", path.display());
         if !memory_files::is_taken(path) {
