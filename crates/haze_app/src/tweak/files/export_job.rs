@@ -19,7 +19,7 @@ use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
 use crate::tweak::platform::render_job::{ExportProgress, Frames};
-use crate::tweak::platform::worker::Worker;
+use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::platform::{file_io, render_job};
 use crate::tweak::session::Session;
 use crate::tweak::session::macro_param::MacroParam;
@@ -140,15 +140,17 @@ impl ExportJob {
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
         let (options, shaders) = (self.options.clone(), session.shaders.clone());
-        self.worker.submit(move |ticket| {
+        self.worker.submit_async(async move |ticket: Ticket| {
             let go_on = |done, count| {
                 progress.done.store(done, Ordering::Relaxed);
                 progress.count.store(count, Ordering::Relaxed);
                 !progress.is_stopped.load(Ordering::Relaxed) && !ticket.is_cancelled()
             };
-            let made = render_job::open_backend(shaders.as_ref()).and_then(|backend| {
-                make(&backend, &product, &shot, &options, &place, &ExportProgress::Callback(&go_on))
-            });
+            let progress = ExportProgress::Callback(&go_on);
+            let made = match render_job::open_backend(shaders.as_ref()) {
+                Ok(backend) => make(&backend, &product, &shot, &options, &place, &progress).await,
+                Err(error) => Err(error),
+            };
             made.unwrap_or_else(ExportResult::Failed)
         });
     }
@@ -214,7 +216,7 @@ fn write(path: PathBuf, picture: RgbImage) -> Result<ExportResult, Error> {
     Ok(ExportResult::Written(path))
 }
 
-fn make(
+async fn make(
     backend: &Backend,
     product: &ExportKind,
     shot: &Shot,
@@ -223,13 +225,13 @@ fn make(
     watch: &ExportProgress<'_>,
 ) -> Result<ExportResult, Error> {
     let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate };
-    let sheet = |name: &str, cells: Vec<(String, Shot)>| {
+    let sheet = async |name: &str, cells: Vec<(String, Shot)>| {
         let path = place.free(name, ".png");
         let columns = render_job::column_count(cells.len());
         let size = (shot.size / columns).max(UVec2::ONE);
         let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
         let cells: Vec<_> = cells.into_iter().map(small).collect();
-        let mut sheet = render_job::render_sheet(backend, &cells, columns, &path, watch)?;
+        let mut sheet = render_job::render_sheet(backend, &cells, columns, &path, watch).await?;
         sheet.add_footer(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
         Ok(ExportResult::Sheet(sheet.picture, path))
     };
@@ -237,33 +239,35 @@ fn make(
         ExportKind::Image => {
             let path = place.free("", ".png");
             let one = Frames { range: 0..=0, rate: 1.0 };
-            write(path.clone(), render_job::render_flipbook(backend, shot, &one, UVec2::ONE, &path, watch)?)
+            let picture = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, &path, watch).await?;
+            write(path, picture)
         }
         ExportKind::Sequence => {
             let folder = place.free("frames", "");
             file_io::make_folder(&folder)?;
             let names = FrameNames::parse(&folder.join("%04d.png"))?;
-            render_job::write_sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch)?;
+            render_job::write_sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch).await?;
             Ok(ExportResult::Written(folder))
         }
         ExportKind::Flipbook => {
             render_job::check_flipbook(shot.size, &frames, options.cells)?;
             let path = place.free("flipbook", ".png");
-            write(path.clone(), render_job::render_flipbook(backend, shot, &frames, options.cells, &path, watch)?)
+            let picture = render_job::render_flipbook(backend, shot, &frames, options.cells, &path, watch).await?;
+            write(path, picture)
         }
         ExportKind::Gif => {
             let path = place.free("", ".gif");
-            render_job::write_gif(backend, shot, &frames, &path, watch)?;
+            render_job::write_gif(backend, shot, &frames, &path, watch).await?;
             Ok(ExportResult::Written(path))
         }
-        ExportKind::DebugView => sheet("shade_tree", debug_view_sheet::stages(shot)),
-        ExportKind::Seeds => sheet("seeds", seeds(shot)),
+        ExportKind::DebugView => sheet("shade_tree", debug_view_sheet::stages(shot)).await,
+        ExportKind::Seeds => sheet("seeds", seeds(shot)).await,
         ExportKind::Values(path) => {
             let cells = variations(shot, path);
             if cells.is_empty() {
                 return Err(FieldError::new("export", path, "a number, a choice, or an on/off setting").into());
             }
-            sheet(path.rsplit('.').next().unwrap_or(path), cells)
+            sheet(path.rsplit('.').next().unwrap_or(path), cells).await
         }
     }
 }

@@ -6,7 +6,6 @@ use haze::MaterialAssets;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::ramp::Ramp;
 use haze::settings::{ImageRole, RampFilter, set_field};
-use haze_author::preset::no_effect_reason;
 use haze_reference::SystemProbe;
 
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
@@ -46,10 +45,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     let is_forward = system.settings.is_forward();
     let survey = session.inspect.survey.clone().filter(|_| !is_forward);
     let survey = survey.as_deref();
-    let reason_without_effect = |session: &Session, field: &str| {
-        let path = format!("systems[{index}].material.{field}");
-        no_effect_reason(&session.document.preset, &path, session.view.size)
-    };
+    let reason_without_effect =
+        |session: &Session, field: &str| session.no_effect_reason(&format!("systems[{index}].material.{field}"));
     let mut ramp_place = None;
     ui.weak("Point at a ramp to highlight the smoke that samples it. Point at smoke to mark its place.");
     if is_forward {
