@@ -1,7 +1,8 @@
 //! Names of fields and choices as panels, undo steps and the search show them.
 
 /// Fields, groups and choices whose names in files are abbreviations, or terms of programmers.
-const SPELLED_OUT: [(&str, &str); 15] = [
+const SPELLED_OUT: [(&str, &str); 16] = [
+    ("accumulate", "Smoke buffer"),
     ("cache", "Particles from files"),
     ("environment", "Sky and scene"),
     ("fbm", "Fractal noise"),

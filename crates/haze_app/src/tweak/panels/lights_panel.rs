@@ -6,6 +6,7 @@ use haze::frame::MAX_LIGHTS;
 use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind, LightRole};
 
+use super::comparison_bar::width;
 use super::rows::setting_rows::RowContext;
 use super::rows::{Row, setting_rows, value_control};
 use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
@@ -30,7 +31,7 @@ pub fn panel(
     for (index, light) in preset.lights.iter_mut().enumerate() {
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
-    ui.horizontal(|ui| tools(ui, preset, shown, seen));
+    ui.horizontal_wrapped(|ui| tools(ui, preset, shown, seen));
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
         ui.weak(if preset.lights.is_empty() { "This preset has no lights." } else { "Select a light to edit it." });
@@ -48,6 +49,9 @@ pub fn panel(
     }
 }
 
+/// Gap between the buttons of roles, points.
+const GAP: f32 = 2.0;
+
 /// Draws the roles of a light side by side, so that one click changes the role.
 fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Light) {
     let path = format!("lights[{index}].role");
@@ -61,9 +65,17 @@ fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Lig
         reason_without_effect: None,
     };
     let (begin, tooltips) = (ui.cursor().min, context.tooltips);
-    let request = row.show(ui, |ui, _| {
-        ui.spacing_mut().item_spacing.x = 2.0;
-        ui.spacing_mut().button_padding.x = 4.0;
+    let request = row.show(ui, |ui, label| {
+        let usual = ui.spacing().clone();
+        (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (GAP, 4.0);
+        // In a narrow panel, the roles are in a list.
+        let button = |role: &LightRole| width(ui, role_name(*role)) + GAP;
+        if LightRole::ALL.iter().map(button).sum::<f32>() > ui.available_width() {
+            *ui.spacing_mut() = usual;
+            let tooltip = |choice: &str| tooltips.choice("lights.role", choice);
+            value_control::choice(ui, &mut light.role, &path, tooltip).labelled_by(label.id);
+            return;
+        }
         for &role in LightRole::ALL {
             let tooltip = tooltips.choice("lights.role", role.name()).unwrap_or_default();
             ui.selectable_value(&mut light.role, role, role_name(role)).on_hover_text(tooltip);
@@ -164,6 +176,8 @@ fn angles(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut L
         };
         let refused = &mut context.refused;
         let request = row.show(ui, |ui, label| {
+            ui.spacing_mut().item_spacing.x = GAP;
+            ui.spacing_mut().button_padding.x = 4.0;
             value_control::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
         });
         context.requests.extend(request.map(|request| (request, path.clone())));

@@ -238,7 +238,7 @@ mod tests {
         harness.run_steps(3);
         let place = |name: &str| harness.get_all_by_label(name).next().unwrap().rect().top();
         let before = ["Technique", "Boost", "Sprite", "Volumetric"].map(place).into_iter().fold(0.0, f32::max);
-        assert!(["Path", "Blend mode", "Accumulate"].into_iter().all(|name| place(name) > before));
+        assert!(["Path", "Blend mode", "Smoke buffer"].into_iter().all(|name| place(name) > before));
         for name in super::SMOKE_TAB_GROUPS {
             // The strip below the image has labels of its own.
             let is_row = |node: &Node<'_>| node.rect().left() > 900.0;
