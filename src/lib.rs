@@ -89,7 +89,7 @@ pub use assets::material_assets::MaterialAssets;
 pub use assets::{builtin, image, noise, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{
-    AliveCount, Bounds, EmitterSnapshot, FrameInput, Light, LightKind, Material, Particle, ParticleBuffer,
+    AliveCount, Bounds, EmitterSnapshot, FrameInput, Light, LightKind, LightRole, Material, Particle, ParticleBuffer,
     ParticleSystem, Particles, SceneDepth, ShadowMap, ShadowProjection, SpriteExtent, View,
 };
 pub use renderer::{

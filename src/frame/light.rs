@@ -23,6 +23,25 @@ choice! {
     }
 }
 
+choice! {
+    /// Part that a light plays in the lighting of a shot. It names the light for people and tools; the picture does not
+    /// depend on it.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
+    LightRole {
+        /// No part of its own.
+        #[default]
+        None = "none",
+        /// Main light, which gives the smoke its shape. At most one light of a preset.
+        Key = "key",
+        /// Weak light that brightens the shadows of the key light.
+        Fill = "fill",
+        /// Light from behind, which draws the outline of the smoke.
+        Rim = "rim",
+        /// Light that is seen in the picture: a lamp, a window, a fire.
+        Practical = "practical",
+    }
+}
+
 settings! {
     /// One light. A white, unshadowed texel of a diffuse ramp sends `color · intensity / distance²` to the viewer, or
     /// `color · intensity` under a directional light: candela or lux, divided by π, light smoke as a white matte surface.
@@ -58,6 +77,8 @@ settings! {
         specular_scatter: f32 = 1.0, number(0.0..=100.0, "");
         /// Lets smoke shade this light, if it is one of the three brightest. Off: the light shines through all smoke.
         smoke_shadow: bool = true, flag;
+        /// Part that the light plays: key, fill, rim or practical. Names the light; the picture stays as it is.
+        role: LightRole = LightRole::None, choice;
     }
 }
 

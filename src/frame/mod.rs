@@ -15,7 +15,7 @@ mod view;
 pub use bounds::Bounds;
 pub use emitter_snapshot::EmitterSnapshot;
 pub use frame_input::{AliveCount, FrameInput, ParticleBuffer, ParticleSystem, Particles, SceneDepth};
-pub use light::{Light, LightKind, MAX_LIGHTS};
+pub use light::{Light, LightKind, LightRole, MAX_LIGHTS};
 pub use material::Material;
 pub use particle::{MAX_MAGNITUDE, Particle, particle_bounds};
 pub use shadow_map::{ShadowMap, ShadowProjection};

@@ -15,7 +15,7 @@ use crate::assets::{builtin, json};
 use crate::emitter::{Emitter, MAX_PARTICLES};
 use crate::error::{Error, FieldError, display_path};
 use crate::frame::validate_input::validate_lights;
-use crate::frame::{EmitterSnapshot, Light};
+use crate::frame::{EmitterSnapshot, Light, LightRole};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
 use crate::view_setup::AttachmentSet;
 
@@ -217,6 +217,11 @@ impl Preset {
             return Err(FieldError::new("camera.target", self.camera.target, "a point other than camera.position"));
         }
         validate_lights(&self.lights)?;
+        let mut keys = (0..self.lights.len()).filter(|&index| self.lights[index].role == LightRole::Key);
+        if let Some(second) = keys.nth(1) {
+            let problem = "a second key light";
+            return Err(FieldError::from_problem(format!("lights[{second}].role"), problem, "at most one key light"));
+        }
         if self.systems.len() > MAX_SYSTEMS {
             let problem = format!("{} systems are too many", self.systems.len());
             return Err(FieldError::from_problem("systems", problem, format!("at most {MAX_SYSTEMS}")));
@@ -314,6 +319,10 @@ mod tests {
             "my.json: systems[2].emitter.rate: at this rate, 1500000 particles of all systems are alive at once; \
              expected at most 1048576"
         );
+        let keys = parse(
+            r#"{"version": 1, "name": "x", "lights": [{"role": "key"}, {"role": "fill"}, {"role": "key"}, {"role": "key"}]}"#,
+        );
+        assert_eq!(keys, "my.json: lights[2].role: a second key light; expected at most one key light");
         let unknown = Preset::load("colunm").unwrap_err().to_string();
         assert!(unknown.contains("column, backlit_fog"), "{unknown}");
     }

@@ -169,7 +169,9 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
 const PARTICLES: &str = "particles_##.csv";
 
 /// Fields whose alternatives give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 7] = [
+const SAME: [&str; 8] = [
+    // Names the light for people and tools.
+    "lights[0].role",
     // Shades the scene, which these pictures do not have.
     "systems[0].settings.shadow.scene",
     // A light that the host adds to its own.
@@ -186,7 +188,8 @@ const SAME: [&str; 7] = [
 
 /// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
-const NOT_ALWAYS: [&str; 23] = [
+const NOT_ALWAYS: [&str; 24] = [
+    "lights[0].role",
     // Particles may be white, and those of files may rest.
     "systems[0].settings.sprite.tint",
     "systems[0].settings.sprite.stretch",

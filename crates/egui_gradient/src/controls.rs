@@ -14,7 +14,7 @@ use haze_author::ramp::template::TEMPLATES;
 use haze_author::ramp::{Blend, Curve, HexColor, RampStop};
 
 /// Hover texts of the curves, in the order of [`Curve::ALL`].
-const CURVES: [&str; 4] = ["smooth, without overshoot", "linear", "flat at both ends", "a hard edge at the next stop"];
+const CURVES: [&str; 4] = ["Smooth, without overshoot", "Linear", "Flat at both ends", "Hard edge at the next stop"];
 
 /// Draws the controls. `at` is the position of the row, for copied text.
 pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
@@ -50,15 +50,21 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
     });
 }
 
+/// Returns a name whose first letter is a capital.
+fn sentence_case(name: &str) -> String {
+    let mut letters = name.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
 fn position_field(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
     let (response, typed) = number::field(ui, lead.at, |ui, field| {
         let field = field.range(0.0..=1.0).speed(0.001).max_decimals(4);
         ui.add_sized([64.0, ui.spacing().interact_size.y], field)
     });
-    let label = ui.label("place");
+    let label = ui.label("Position");
     response
         .labelled_by(label.id)
-        .on_hover_text("0 to 1: drag, or click and type. +0.1, -0.1, *2 and /2 change the current number");
+        .on_hover_text("0 to 1. Drag it, or click and type: +0.1, -0.1, *2 and /2 change the current number");
     match typed {
         None => {}
         Some(NumberInput::Multiply(times)) => {
@@ -73,7 +79,7 @@ fn position_field(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
 
 fn color_and_curve(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
     let (mut color, mut curve) = (lead.color, lead.curve);
-    let label = ui.label("color");
+    let label = ui.label("Color");
     if ui.color_edit_button_srgb(&mut color.0).labelled_by(label.id).changed() {
         context.recolor(color);
     }
@@ -89,11 +95,13 @@ fn color_and_curve(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) 
     } else if field.has_focus() {
         context.editor.typed = Some(text);
     }
-    let label = ui.label("then");
-    let combo = egui::ComboBox::from_id_salt("curve").selected_text(curve.name()).width(ui.available_width() - 8.0);
+    let label = ui.label("Curve");
+    let combo = egui::ComboBox::from_id_salt("curve")
+        .selected_text(sentence_case(curve.name()))
+        .width(ui.available_width() - 8.0);
     let combo = combo.show_ui(ui, |ui| {
         for (entry, about) in Curve::ALL.iter().zip(CURVES) {
-            ui.selectable_value(&mut curve, *entry, entry.name()).on_hover_text(about);
+            ui.selectable_value(&mut curve, *entry, sentence_case(entry.name())).on_hover_text(about);
         }
     });
     combo.response.labelled_by(label.id).on_hover_text("Interpolation to the next stop");
@@ -121,7 +129,10 @@ fn hsv_fields(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
             label: Some(name.into()),
             ..egui::WidgetInfo::drag_value(true, number)
         });
-        response.on_hover_text(format!("{name} of the sRGB color; +10 or *0.5 changes each selected stop"));
+        response.on_hover_text(format!(
+            "{} of the sRGB color. +10 or *0.5 changes each selected stop",
+            sentence_case(name)
+        ));
         if let Some(typed) = typed {
             let changed = |hsv: Vec3| {
                 let mut hsv = hsv;
@@ -181,14 +192,14 @@ fn eyedropper_button(ui: &mut Ui, context: &mut EditContext<'_>) {
                  along it. Wheel, or 1, 3 and 5: pixels across that are averaged. Keys: arrows move, with Shift ten times as far; \
                  Enter takes the color, Space begins a stroke. Escape cancels";
     let is_on = context.editor.eyedropper.is_some();
-    if ui.selectable_label(is_on, "Take a color").on_hover_text(about).clicked() {
+    if ui.selectable_label(is_on, "Pick color").on_hover_text(about).clicked() {
         context.editor.eyedropper = Some(Eyedropper::default());
     }
 }
 
 fn snap_controls(ui: &mut Ui, context: &mut EditContext<'_>) {
     let snap = &mut context.editor.snap;
-    ui.checkbox(&mut snap.is_on, "Snap").on_hover_text("Snap positions without Ctrl; Ctrl then turns it off");
+    ui.checkbox(&mut snap.is_on, "Snap").on_hover_text("Snaps positions. Ctrl turns it off meanwhile.");
     let field = egui::DragValue::new(&mut snap.parts).range(2..=100).speed(0.1).suffix(" parts");
     let response = ui.add(field.update_while_editing(false));
     response.on_hover_text("Number of equal parts that positions snap to");

@@ -197,7 +197,7 @@ impl EditContext<'_> {
             match (clipboard::color(&pasted), clipboard::parse(&pasted)) {
                 (Ok(color), _) => self.recolor(color),
                 (_, Ok(stops)) => self.replace("paste stops", stops),
-                (_, Err(error)) => self.refused = Some(format!("nothing is pasted: {error}")),
+                (_, Err(error)) => self.refused = Some(format!("Cannot paste: {error}")),
             }
         }
     }

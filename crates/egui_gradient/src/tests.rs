@@ -131,14 +131,14 @@ fn positions_and_colors_can_be_typed() {
     let mut harness = host(&[(0.0, 0), (0.5, 10), (1.0, 20)]);
     harness.get_by_label("next stop").click();
     harness.run_steps(2);
-    harness.get_by_role_and_label(Role::SpinButton, "place").click();
+    harness.get_by_role_and_label(Role::SpinButton, "Position").click();
     harness.run_steps(2);
     harness.event(Event::Text("0.125".into()));
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
     assert_eq!((places(&harness), steps(&harness)), (vec![0.0, 0.125, 1.0], vec!["move a stop"]));
     for (text, is_good) in [("#ff8000", true), ("orange", false)] {
-        harness.get_by_role_and_label(Role::TextInput, "color").click();
+        harness.get_by_role_and_label(Role::TextInput, "Color").click();
         harness.run_steps(2);
         key(&mut harness, Key::A, Modifiers::COMMAND);
         harness.event(Event::Text(text.into()));
@@ -156,7 +156,7 @@ fn a_curve_is_set_for_the_selected_stop_only() {
     let mut harness = host(&[(0.0, 0), (1.0, 20)]);
     harness.get_by_role(Role::ComboBox).click();
     harness.run_steps(3);
-    harness.get_by_label("constant").click();
+    harness.get_by_label("Constant").click();
     harness.run_steps(3);
     assert_eq!(harness.state().row.stops[0].curve, Curve::Constant);
     assert_eq!(harness.state().row.stops[1].curve, Curve::Monotone);
@@ -245,7 +245,7 @@ fn screenshots_of_the_editor() {
         harness.run_steps(3);
         harness.render().unwrap().save(folder.join(format!("gradient_drag_{name}.png"))).unwrap();
         button(&mut harness, from + Vec2::new(40.0, 0.0), false, NONE);
-        harness.get_by_label("Take a color").click();
+        harness.get_by_label("Pick color").click();
         harness.run_steps(5);
         let at = on_strip(&harness, 0.6);
         harness.hover_at(at);

@@ -26,11 +26,7 @@ fn stops_are_copied_and_pasted_as_text() {
     harness.event(Event::Paste("no row".into()));
     harness.run_steps(3);
     assert_eq!(harness.state().row, before);
-    assert!(
-        harness.state().refused[0].starts_with("nothing is pasted: pasted text:1:"),
-        "{:?}",
-        harness.state().refused
-    );
+    assert!(harness.state().refused[0].starts_with("Cannot paste: pasted text:1:"), "{:?}", harness.state().refused);
     // A paste while another widget has focus is ignored, unless it was requested by the button.
     harness.get_by_label("Distribute").focus();
     harness.run_steps(2);

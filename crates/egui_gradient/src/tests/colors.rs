@@ -50,7 +50,7 @@ fn a_pasted_color_is_applied_to_the_selected_stop() {
 
 /// Activates the eyedropper with press and release in one frame.
 fn begin(harness: &mut Harness<'_, Host>) {
-    let pos = harness.get_by_label("Take a color").rect().center();
+    let pos = harness.get_by_label("Pick color").rect().center();
     harness.hover_at(pos);
     harness.step();
     let button = |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: NONE };
@@ -137,7 +137,7 @@ fn the_eyedropper_has_a_magnifier_and_is_moved_by_keys() {
     assert_eq!(steps(&harness), ["color of a stop"]);
     assert!(before.starts_with(&String::from(HexColor(color(&harness, 0)))), "{before}");
     // A stroke by keys alone.
-    harness.get_by_label("Take a color").focus();
+    harness.get_by_label("Pick color").focus();
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
     harness.hover_at(at);

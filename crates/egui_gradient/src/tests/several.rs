@@ -109,7 +109,7 @@ fn buttons_and_fields_change_several_stops() {
     press(&mut harness, "Mirror");
     assert_eq!(greys(&harness), [0, 30, 20, 10, 20, 30, 40]);
     assert_eq!(selected(&harness), [1, 2, 3, 4, 5]);
-    harness.get_by_role_and_label(Role::TextInput, "color").click();
+    harness.get_by_role_and_label(Role::TextInput, "Color").click();
     harness.run_steps(2);
     key(&mut harness, Key::A, CTRL);
     harness.event(Event::Text("#070707".into()));
@@ -139,7 +139,7 @@ fn the_middle_button_removes_a_stop() {
 }
 
 fn type_place(harness: &mut Harness<'_, Host>, text: &str) {
-    harness.get_by_role_and_label(Role::SpinButton, "place").click();
+    harness.get_by_role_and_label(Role::SpinButton, "Position").click();
     harness.run_steps(2);
     harness.event(Event::Text(text.into()));
     harness.run_steps(2);

@@ -7,7 +7,9 @@ use glam::UVec2;
 use haze::image::{CompressionEffort, read_png, write_png};
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
+use haze_author::finding::Finding;
 use haze_author::sprite::import_sprite::{ImportSource, ImportedSprite, arrange_sheet, import_sprite};
+use haze_author::sprite::lint::lint_sprite;
 use haze_author::sprite::y_direction::MIN_CONFIDENCE;
 
 use crate::options::{choices, number, whole_number};
@@ -70,6 +72,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
     let ImportedSprite { picture, six_way, y_direction, not_normals, border } =
         import_sprite(path, &sheets, *source, layout, *y_down, *strength)?;
+    let findings = lint_sprite(output, &picture, layout)?;
+    if let Some(reason) = refusal(*source, not_normals, &findings) {
+        return Err(Error::Image { path: path.into(), reason });
+    }
     write_png(output, &picture.into(), CompressionEffort::Small)?;
     print_line!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
     if let Some(maps) = six_way {
@@ -80,8 +86,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     if let Some((frame, alpha)) = border {
         print_line!("  border: alpha up to {alpha} in frame {frame} was cleared; leave more room around the smoke")?;
     }
-    if let Some(doubt) = not_normals {
-        print_line!("  {doubt}; set --from to the contents of the image")?;
+    for Finding { description, .. } in findings.iter().filter(|finding| !["y_down", "normals"].contains(&finding.name))
+    {
+        print_line!("  {description}")?;
     }
     let direction = |is_down| if is_down { "down and was flipped" } else { "up" };
     match (y_down, y_direction) {
@@ -98,6 +105,28 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         }
         (None, None) => Ok(()),
     }
+}
+
+/// Returns the reason why an image makes no sprite, so that nothing is written that `haze sprite check` refuses.
+fn refusal(source: ImportSource, not_normals: Option<&str>, findings: &[Finding]) -> Option<String> {
+    // Normals from light maps lean to the sides that were lit, which the check takes for colors.
+    let kinds: &[&str] = if source.needs_two_images() { &["empty"] } else { &["normals", "empty"] };
+    let useless = findings.iter().find(|finding| kinds.contains(&finding.name));
+    let found = not_normals.or(useless.map(|finding| finding.description.as_str()))?;
+    let problem = found.split("; ").next().unwrap_or(found);
+    Some(match source {
+        ImportSource::Normals => {
+            format!(
+                "{problem}; expected normals, or --from with the contents of the image: height, alpha or light maps"
+            )
+        }
+        ImportSource::Height => {
+            "these heights make no puff; expected a puff that is highest in its middle, or --from alpha".into()
+        }
+        ImportSource::Alpha | ImportSource::SixWayUnity | ImportSource::SixWayRltBbf => {
+            format!("{problem}; expected a puff in the middle of each frame")
+        }
+    })
 }
 
 /// Sorts frames by number if their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.

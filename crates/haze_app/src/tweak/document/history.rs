@@ -56,7 +56,7 @@ impl<T: Clone + PartialEq> History<T> {
     /// Undoes the last step, or the one in progress, and returns its name.
     pub fn undo(&mut self, current: &mut T) -> Option<&str> {
         if self.is_changed(current) {
-            let name = self.open.take().unwrap_or_else(|| "change".into());
+            let name = self.open.take().unwrap_or_else(|| "Change".into());
             self.close(current.clone(), name);
         }
         let UndoStep { name, value } = self.past.pop_back()?;
@@ -146,7 +146,7 @@ mod tests {
         // The same before a frame has seen the change.
         value = 2;
         assert_eq!(history.redo(&mut value), None);
-        assert_eq!(history.undo(&mut value), Some("change"));
+        assert_eq!(history.undo(&mut value), Some("Change"));
         assert_eq!(value, 1);
     }
 

@@ -1,13 +1,33 @@
 //! Names of lights, and the light that is added to a preset.
 
-use haze::{Light, LightKind};
+use haze::{Light, LightKind, LightRole};
 
-/// Returns the display name of a light, which contains its index plus one.
+/// Returns the display name of a kind of light, for a name or inside a sentence.
+pub fn kind_name(kind: LightKind) -> &'static str {
+    match kind {
+        LightKind::Directional => "Sun",
+        LightKind::Spot => "Spot",
+        _ => "Point",
+    }
+}
+
+/// Returns the display name of a role.
+pub fn role_name(role: LightRole) -> &'static str {
+    match role {
+        LightRole::Key => "Key",
+        LightRole::Fill => "Fill",
+        LightRole::Rim => "Rim",
+        LightRole::Practical => "Practical",
+        _ => "None",
+    }
+}
+
+/// Returns the display name of a light, with its role and its index plus one: "Key (Point 1)".
 pub fn light_name(index: usize, light: &Light) -> String {
-    let number = index + 1;
-    match light.kind {
-        LightKind::Directional => format!("sun {number}"),
-        kind => format!("lamp {number} ({})", kind.name()),
+    let name = format!("{} {}", kind_name(light.kind), index + 1);
+    match light.role {
+        LightRole::None => name,
+        role => format!("{} ({name})", role_name(role)),
     }
 }
 

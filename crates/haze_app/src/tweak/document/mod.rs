@@ -1,9 +1,11 @@
 //! Edited preset: its file, its undo history, its recovery after a crash, and the files that belong to it.
 
 pub mod copied_assets;
+pub mod display_names;
 pub mod history;
 pub mod light_angles;
 pub mod light_defaults;
+pub mod light_roles;
 pub mod loaded_materials;
 pub mod loaded_particles;
 pub mod preset_diff;
@@ -104,7 +106,7 @@ impl Document {
             stamp: None,
             writing: Weak::new(),
         });
-        document.put(preset, "recover");
+        document.put(preset, "Recover");
         document
     }
 
@@ -149,6 +151,11 @@ impl Document {
         self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
+    /// Returns the name of the file, or of the built-in preset, for questions.
+    pub fn file_name(&self) -> String {
+        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     /// Begins to save to another file, which becomes the document's file once it is written.
     pub fn begin_saving_as(&mut self, path: &Path) -> Result<Saving, Error> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
@@ -179,7 +186,7 @@ impl Document {
     pub fn revert(&mut self) -> Result<(), Error> {
         let Self { preset, text, stamp, .. } = Self::open(&self.path)?;
         (self.text, self.stamp, self.saved) = (text, stamp, Some(preset.clone()));
-        self.put(preset, "revert");
+        self.put(preset, "Revert");
         Ok(())
     }
 
@@ -213,7 +220,7 @@ impl Document {
 
     /// Replaces the preset by that of a text, as one step. An invalid text changes nothing.
     pub fn paste(&mut self, text: &str) -> Result<(), Error> {
-        self.put(Preset::parse(Path::new("pasted text"), text)?, "paste");
+        self.put(Preset::parse(Path::new("pasted text"), text)?, "Paste");
         Ok(())
     }
 

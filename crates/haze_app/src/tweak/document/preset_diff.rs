@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use haze::preset::Preset;
 use haze::settings::{FieldValue, field_path, field_values, for_each_field};
 
+use super::display_names::{display_name, sentence_case};
 use super::light_defaults::light_name;
 
 /// Returns the paths of the fields that differ, such as `systems[0].settings.boost`. A list whose length differs counts
@@ -50,11 +51,11 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
 /// Fields that a camera move changes.
 const MOVES: [&str; 2] = ["camera.position", "camera.target"];
 
-/// Returns a name for the step between two presets: "boost of smoke", "color of sun 2", "camera", "3 fields of smoke",
-/// "light added".
+/// Returns a name for the step between two presets: "Boost of smoke", "Color of Sun 2", "Camera", "3 settings of smoke",
+/// "Light added".
 pub fn step_name(before: &Preset, after: &Preset) -> String {
     let changed = changed_fields(before, after);
-    let Some(first) = changed.first() else { return "change".into() };
+    let Some(first) = changed.first() else { return "Change".into() };
     let owner = owner_of(first);
     let of = owner.map(|(list, index)| match (list, after.systems.get(index), after.lights.get(index)) {
         ("systems", Some(system), _) if !system.name.is_empty() => format!(" of {}", system.name),
@@ -64,12 +65,12 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
     let of = of.unwrap_or_default();
     let length = |preset| lists(preset).into_iter().find(|(list, _)| list == first).map(|(_, length)| length);
     match changed.as_slice() {
-        [list] if length(before) < length(after) => format!("{} added", singular(list)),
-        [list] if length(before) > length(after) => format!("{} removed", singular(list)),
-        fields if fields.iter().all(|field| MOVES.contains(&field.as_str())) => "camera".into(),
-        [field] => format!("{}{of}", field.rsplit('.').next().unwrap_or(field)),
-        fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} fields{of}", fields.len()),
-        fields => format!("{} fields", fields.len()),
+        [list] if length(before) < length(after) => format!("{} added", sentence_case(singular(list))),
+        [list] if length(before) > length(after) => format!("{} removed", sentence_case(singular(list))),
+        fields if fields.iter().all(|field| MOVES.contains(&field.as_str())) => "Camera".into(),
+        [field] => format!("{}{of}", display_name(field.rsplit('.').next().unwrap_or(field))),
+        fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} settings{of}", fields.len()),
+        fields => format!("{} settings", fields.len()),
     }
 }
 
@@ -114,20 +115,20 @@ mod tests {
             (changed.join(" "), name)
         };
         let expect = |said: (String, String), fields: &str, name: &str| assert_eq!(said, (fields.into(), name.into()));
-        expect(said(|_| {}), "", "change");
-        expect(said(|preset| preset.systems[0].settings.boost = 2.0), "systems[0].settings.boost", "boost of smoke");
-        expect(said(|preset| preset.lights[1].color.x = 0.0), "lights[1].color", "color of sun 2");
-        expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "exposure");
-        expect(said(|preset| preset.camera.target.x += 1.0), "camera.target", "camera");
-        expect(said(|preset| preset.lights.push(Light::default())), "lights", "light added");
-        expect(said(|preset| preset.lights.truncate(2)), "lights", "light removed");
-        expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "system added");
+        expect(said(|_| {}), "", "Change");
+        expect(said(|preset| preset.systems[0].settings.boost = 2.0), "systems[0].settings.boost", "Boost of smoke");
+        expect(said(|preset| preset.lights[1].color.x = 0.0), "lights[1].color", "Color of Fill (Sun 2)");
+        expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "Exposure");
+        expect(said(|preset| preset.camera.target.x += 1.0), "camera.target", "Camera");
+        expect(said(|preset| preset.lights.push(Light::default())), "lights", "Light added");
+        expect(said(|preset| preset.lights.truncate(2)), "lights", "Light removed");
+        expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "System added");
         expect(
             said(|preset| (preset.lights[1].color.x, preset.lights[1].intensity) = (0.0, 0.0)),
             "lights[1].color lights[1].intensity",
-            "2 fields of sun 2",
+            "2 settings of Fill (Sun 2)",
         );
-        expect(said(|preset| (preset.time, preset.camera.fov) = (0.0, 20.0)), "time camera.fov", "2 fields");
+        expect(said(|preset| (preset.time, preset.camera.fov) = (0.0, 20.0)), "time camera.fov", "2 settings");
         // A NaN counts as a change once, and not in every frame.
         let nan = |preset: &mut Preset| preset.systems[0].settings.boost = f32::NAN;
         let mut preset = Preset::load("column").unwrap();

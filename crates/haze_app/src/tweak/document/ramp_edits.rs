@@ -27,6 +27,8 @@ pub struct RampEdits {
     wanted: Option<(usize, &'static str)>,
     /// The preset must first be saved to a file.
     pub needs_saved_preset: bool,
+    /// Ramp whose image another program has replaced, so that its stops can no longer be edited. For a message.
+    pub replaced: Option<String>,
 }
 
 /// Origin of a ramp, which decides whether it can be edited.
@@ -37,7 +39,10 @@ pub enum RampOrigin {
     /// Made from a recipe, whose stops can be edited.
     Recipe(RampRecipe),
     /// Painted: there is no recipe beside it that produces the image.
-    Painted,
+    Painted {
+        /// A recipe is beside it and makes another image: another program has changed one of the two.
+        has_recipe: bool,
+    },
     /// Unreadable. The reason is reported elsewhere.
     Missing,
 }
@@ -87,6 +92,11 @@ impl RampEdits {
         (self.wanted, self.needs_saved_preset) = (Some((system, field)), is_built_in);
     }
 
+    /// Forgets the requested copy.
+    pub fn cancel_copy(&mut self) {
+        self.wanted = None;
+    }
+
     /// Writes the requested copy and names it in the preset, as soon as the preset is a file.
     pub fn write_requested_copy(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, field)) = self.wanted.filter(|_| !document.is_built_in()) else { return Ok(()) };
@@ -121,8 +131,12 @@ impl RampEdits {
                 known.is_stale = false;
                 if known.stamps != stamps(&known.picture) {
                     // A change by another program takes precedence.
+                    let was_recipe = matches!(known.source, RampOrigin::Recipe(_));
                     *known = EditedRamp::read(name, folders);
                     document.recipes.ramps.forget(name);
+                    if was_recipe && matches!(known.source, RampOrigin::Painted { .. }) {
+                        self.replaced = Some(name.clone());
+                    }
                 }
             }
             let RampOrigin::Recipe(recipe) = &known.source else { continue };
@@ -180,7 +194,7 @@ impl EditedRamp {
             match (asset_loading::ramp(&picture), asset_loading::ramp_recipe(&recipe_of(&picture))) {
                 (Err(_), _) => RampOrigin::Missing,
                 (Ok(ramp), Ok(recipe)) if makes(&recipe, &ramp) => RampOrigin::Recipe(recipe),
-                _ => RampOrigin::Painted,
+                (Ok(_), recipe) => RampOrigin::Painted { has_recipe: recipe.is_ok() },
             }
         };
         let written = if let RampOrigin::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };

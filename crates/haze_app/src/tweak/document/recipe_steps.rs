@@ -7,6 +7,7 @@ use haze::preset::Preset;
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 
+use super::display_names::sentence_case;
 use super::preset_diff::step_name;
 
 /// Edited recipes of every kind. Cheap to clone.
@@ -57,12 +58,12 @@ pub type GradientStep = (String, &'static str);
 pub fn step_name_of_work(before: &Work, after: &Work, step: Option<&GradientStep>) -> String {
     // A changed recipe also changes the preset's columns and rows, so recipes are tested first.
     if let Some(name) = after.1.sprites.changed(&before.1.sprites) {
-        return format!("recipe of {name}");
+        return format!("Recipe of {name}");
     }
     match after.1.ramps.changed(&before.1.ramps) {
         Some(name) if before.0 == after.0 => match step.filter(|(of, _)| of == name) {
-            Some((_, step)) => format!("{step}: {name}"),
-            None => format!("stops of {name}"),
+            Some((_, step)) => format!("{}: {name}", sentence_case(step)),
+            None => format!("Stops of {name}"),
         },
         _ => step_name(&before.0, &after.0),
     }

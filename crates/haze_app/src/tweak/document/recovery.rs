@@ -206,7 +206,7 @@ mod tests {
         let one = offered.remove(0);
         let recovered = Document::recovered(one.preset.clone(), &one.source);
         assert!(recovered.is_dirty() && recovered.is_built_in() && recovered.preset == document.preset);
-        assert_eq!(recovered.history().undo_name(), Some("recover"));
+        assert_eq!(recovered.history().undo_name(), Some("Recover"));
         one.discard();
         assert_eq!(names(&state), ["recovery-2.json", "recovery-2.lock"]);
         beside.finish();

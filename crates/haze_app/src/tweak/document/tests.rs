@@ -88,10 +88,10 @@ fn undo_works_across_save_revert_and_paste() {
     document.paste(&Preset::load("fence").unwrap().to_text("")).unwrap();
     assert!(document.is_dirty());
     let names: Vec<_> = std::iter::from_fn(|| document.undo().map(str::to_owned)).collect();
-    assert_eq!(names, ["paste", "revert", "light removed", "exposure"]);
+    assert_eq!(names, ["Paste", "Revert", "Light removed", "Exposure"]);
     assert_eq!(document.preset, first);
-    assert_eq!((document.history().undo_name(), document.history().redo_name()), (None, Some("exposure")));
-    assert_eq!(document.redo(), Some("exposure"));
+    assert_eq!((document.history().undo_name(), document.history().redo_name()), (None, Some("Exposure")));
+    assert_eq!(document.redo(), Some("Exposure"));
     assert!(!document.is_dirty());
 }
 
@@ -100,13 +100,13 @@ fn a_pasted_preset_is_validated_like_a_file() {
     let mut document = Document::open(Path::new("column")).unwrap();
     let text = document.to_text();
     for (from, to, said) in [
-        ("\"boost\": 1.5", "\"boost\": NaN", "pasted text:130:18: systems: not a value; expected a number"),
+        ("\"boost\": 1.5", "\"boost\": NaN", "pasted text:133:18: systems: not a value; expected a number"),
         (
             "\"boost\": 1.5",
             "\"boost\": 99",
             "pasted text: systems[0].settings.boost: 99 is not valid; expected 0 to 16",
         ),
-        ("\"boost\"", "\"bost\"", "pasted text:130:14: systems[0].settings: unknown field `bost`"),
+        ("\"boost\"", "\"bost\"", "pasted text:133:14: systems[0].settings: unknown field `bost`"),
         ("\"version\": 1", "\"version\": 2", "pasted text:2:3: version 2 is newer"),
         (text.as_str(), "", "pasted text:1:1: the file ends where a value should be"),
     ] {

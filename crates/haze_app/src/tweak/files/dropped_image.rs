@@ -36,8 +36,8 @@ impl DroppedImage {
             FieldError::from_problem("dropped file", problem, expected).into()
         };
         let Some((folder, name)) = place_of(path, folders) else {
-            let expected = "a picture in the preset's folder or a shared one, or a preset file";
-            return Err(refuse("is not in a folder of the preset", expected));
+            let expected = "an image in the folder of the preset, or a preset file";
+            return Err(refuse("is in another folder", expected));
         };
         if let Some(field) = field_of_name(path) {
             let (fields, doubt) = checked(field, &folder, &name, material)?;
@@ -71,10 +71,10 @@ impl DroppedImage {
         let of = preset.systems.get(system).map_or("", |system| &system.name);
         let said = self.fields.first().map(|(field, name)| {
             let idle = no_effect_reason(preset, &path(field), size);
-            let idle = idle.map(|reason| format!("; without effect here: {reason}")).unwrap_or_default();
-            format!("{name} is the {} of {of} now{idle}", field.replace('_', " "))
+            let idle = idle.map(|reason| format!(", but has no effect now: {reason}")).unwrap_or_default();
+            format!("{name} is now the {} of {of}{idle}", field.replace('_', " "))
         });
-        let doubt = self.doubt.map(|doubt| format!("; doubtful: {doubt}")).unwrap_or_default();
+        let doubt = self.doubt.map(|doubt| format!(". Check it: {doubt}")).unwrap_or_default();
         Ok(said.unwrap_or_default() + &doubt)
     }
 }
@@ -201,18 +201,18 @@ mod tests {
         ];
         for (name, told, field) in all {
             let (said, material) = drop(name).unwrap();
-            assert!(said.starts_with(&format!("{name} is the {told} now")), "{said}");
+            assert!(said.starts_with(&format!("{name} is now the {told}")), "{said}");
             assert_eq!(field(&material), name);
         }
         let said = drop("specular_a.png").unwrap().0;
-        assert!(said.contains("specular ramp of smoke now; doubtful: specular_a.png: its one row"), "{said}");
-        assert!(drop("scatter_a.png").unwrap().0.contains("without effect here: "));
+        assert!(said.contains("now the specular ramp of smoke. Check it: specular_a.png: its one row"), "{said}");
+        assert!(drop("scatter_a.png").unwrap().0.contains("has no effect now: "));
         let error = drop("down.png").err().unwrap().to_string();
         assert!(error.contains("such as diffuse_down.png; down.png: painted from top to bottom"), "{error}");
         let error = drop("opaque.png").err().unwrap().to_string();
         assert!(error.contains("looks like the normals of a sprite"), "{error}");
         assert!(drop("broken.png").err().unwrap().to_string().contains("not a PNG"));
         let elsewhere = DroppedImage::read(Path::new("/elsewhere/a.png"), &folders, &MaterialNames::default());
-        assert!(elsewhere.err().unwrap().to_string().contains("a picture in the preset's folder"));
+        assert!(elsewhere.err().unwrap().to_string().contains("an image in the folder of the preset"));
     }
 }

@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::preset::Preset;
 use haze::settings::set_field;
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
@@ -17,10 +16,11 @@ use super::value_spread::spread_values;
 use crate::backend::Backend;
 use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
 use crate::tweak::platform::render_job::{ExportProgress, Frames};
 use crate::tweak::platform::worker::{Ticket, Worker};
-use crate::tweak::platform::{file_io, render_job};
+use crate::tweak::platform::{IS_PAGE, file_io, render_job};
 use crate::tweak::session::Session;
 use crate::tweak::session::macro_param::MacroParam;
 
@@ -36,6 +36,26 @@ pub enum ExportKind {
     Seeds,
     /// Sheet of one field at several values; holds the path of the field.
     Values(String),
+}
+
+impl ExportKind {
+    /// Returns true for sheets, which are shown before they are saved.
+    pub fn is_sheet(&self) -> bool {
+        matches!(self, Self::DebugView | Self::Seeds | Self::Values(_))
+    }
+
+    /// Returns what the name of the file says about its content, and the ending.
+    fn file_ending(&self) -> (&str, &'static str) {
+        match self {
+            Self::Image => ("", ".png"),
+            Self::Sequence => ("frames", ""),
+            Self::Flipbook => ("flipbook", ".png"),
+            Self::Gif => ("", ".gif"),
+            Self::DebugView => ("debug_views", ".png"),
+            Self::Seeds => ("seeds", ".png"),
+            Self::Values(path) => (path.rsplit('.').next().unwrap_or(path), ".png"),
+        }
+    }
 }
 
 /// Parameters of an export.
@@ -71,13 +91,26 @@ pub struct ExportJob {
     pub wanted: String,
     /// Finished sheet that is shown.
     pub sheet: Option<Sheet>,
+    /// Folder of the last export.
+    pub folder: Option<PathBuf>,
+    /// Export that waits for the user's choice of a path.
+    waiting: Option<Waiting>,
+    /// Suggested path, until the user is asked.
+    question: Option<PathBuf>,
+}
+
+/// Export that waits for a path.
+enum Waiting {
+    Export(ExportKind),
+    /// The shown sheet.
+    Sheet,
 }
 
 /// Finished sheet.
 pub struct Sheet {
     pub picture: RgbImage,
-    /// Path to save it under.
-    path: PathBuf,
+    /// Kind, for the name of its file.
+    kind: ExportKind,
     /// GPU texture, made when the sheet is first shown.
     pub texture: Option<egui::TextureHandle>,
 }
@@ -91,16 +124,16 @@ struct Progress {
 
 enum ExportResult {
     Written(PathBuf),
-    Sheet(RgbImage, PathBuf),
+    Sheet(RgbImage, ExportKind),
     Failed(Error),
 }
 
 impl ExportJob {
-    /// `wake` is called from the worker thread when a result is ready.
+    /// `wake` is called from the worker thread when a result is ready. `folder` is that of the last export.
     ///
     /// # Errors
     /// [`Error::Io`] if the system cannot start another thread.
-    pub fn new(wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
+    pub fn new(wake: impl Fn() + Send + 'static, folder: Option<PathBuf>) -> Result<Self, Error> {
         let worker = Worker::new("haze export", wake);
         let worker = worker.map_err(|error| Error::Io { path: "a thread to export".into(), error })?;
         Ok(Self {
@@ -111,6 +144,9 @@ impl ExportJob {
             options: ExportOptions::default(),
             wanted: String::new(),
             sheet: None,
+            folder,
+            waiting: None,
+            question: None,
         })
     }
 
@@ -125,18 +161,70 @@ impl ExportJob {
         self.progress.is_stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Starts an export of the current view.
-    pub fn begin(&mut self, product: ExportKind, session: &mut Session) {
+    /// Starts an export of the current view. A sheet is made at once; for anything else, the user is asked for a path.
+    /// On a page, the browser downloads the file.
+    pub fn order(&mut self, product: ExportKind, session: &mut Session) {
         if self.worker.is_busy() {
-            return session.messages.error("export", "an export is running; stop it or wait for it");
+            session.messages.error("export", "An export is running. Stop it, or wait until it ends.");
+        } else if product.is_sheet() {
+            // It has no path yet.
+            self.begin(product, PathBuf::new(), session);
+        } else {
+            self.ask(Waiting::Export(product), session);
         }
+    }
+
+    /// Asks where to save the shown sheet.
+    pub fn order_sheet(&mut self, session: &mut Session) {
+        self.ask(Waiting::Sheet, session);
+    }
+
+    fn ask(&mut self, waiting: Waiting, session: &mut Session) {
+        let kind = match (&waiting, &self.sheet) {
+            (Waiting::Export(kind), _) => kind,
+            (Waiting::Sheet, Some(sheet)) => &sheet.kind,
+            (Waiting::Sheet, None) => return,
+        };
+        let suggested = free_path(self.folder.as_deref(), session, kind);
+        self.waiting = Some(waiting);
+        if IS_PAGE {
+            self.answer(Some(suggested), session);
+        } else {
+            self.question = Some(suggested);
+        }
+    }
+
+    /// Returns the path to suggest to the user, once.
+    pub fn take_question(&mut self) -> Option<PathBuf> {
+        self.question.take()
+    }
+
+    /// Continues with the path that the user has chosen; `None` cancels the export.
+    pub fn answer(&mut self, path: Option<PathBuf>, session: &mut Session) {
+        let Some((waiting, path)) = self.waiting.take().zip(path) else { return };
+        self.folder = path.parent().map(Path::to_owned);
+        match waiting {
+            Waiting::Export(kind) => {
+                let path = with_ending(path, kind.file_ending().1);
+                self.begin(kind, path, session);
+            }
+            Waiting::Sheet => {
+                if let Some(Sheet { picture, .. }) = self.sheet.take() {
+                    let path = with_ending(path, ".png");
+                    self.worker.submit(move |_| write(path, picture).unwrap_or_else(ExportResult::Failed));
+                }
+            }
+        }
+    }
+
+    fn begin(&mut self, product: ExportKind, path: PathBuf, session: &Session) {
         let mut size = self.options.size;
         if product == ExportKind::Image {
             // A single image has the aspect ratio of the viewport.
             size.x = ((size.y as f32 * session.view.aspect).round() as u32).clamp(1, MAX_PIXELS);
         }
         let shot = session.shot(size);
-        let place = ExportPath::new(session.document.path(), &shot.preset);
+        let target = Target { path, title: session.document.title() };
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
         let (options, shaders) = (self.options.clone(), session.shaders.clone());
@@ -148,7 +236,7 @@ impl ExportJob {
             };
             let progress = ExportProgress::Callback(&go_on);
             let made = match render_job::open_backend(shaders.as_ref()) {
-                Ok(backend) => make(&backend, &product, &shot, &options, &place, &progress).await,
+                Ok(backend) => make(&backend, product, &shot, &options, &target, &progress).await,
                 Err(error) => Err(error),
             };
             made.unwrap_or_else(ExportResult::Failed)
@@ -160,55 +248,52 @@ impl ExportJob {
         self.sheet.take().is_some() || std::mem::take(&mut self.is_open)
     }
 
-    /// Writes the shown sheet to its file and closes it.
-    pub fn save_sheet(&mut self) {
-        if let Some(Sheet { picture, path, .. }) = self.sheet.take() {
-            self.worker.submit(move |_| write(path, picture).unwrap_or_else(ExportResult::Failed));
-        }
-    }
-
     /// Reports finished exports. Call once a frame.
     pub fn advance(&mut self, session: &mut Session) {
         while let Some(done) = self.worker.poll() {
             match done {
                 Some(ExportResult::Written(path)) => {
-                    session.messages.info("export", format!("written: {}", path.display()));
+                    session.messages.info("export", format!("Exported {}", path.display()));
                     file_io::offer_download(&path);
                 }
-                Some(ExportResult::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
+                Some(ExportResult::Sheet(picture, kind)) => self.sheet = Some(Sheet { picture, kind, texture: None }),
                 Some(ExportResult::Failed(error)) => session.messages.error("export", error),
-                None => session.messages.error("export", "nothing exported: internal error on the export thread"),
+                None => session.messages.error("export", "Not exported: internal error"),
             }
         }
     }
 }
 
-/// Folder and name prefix of exported files.
-struct ExportPath {
-    folder: PathBuf,
-    stem: String,
+/// Path of an export, and title of the document.
+struct Target {
+    path: PathBuf,
+    title: String,
 }
 
-impl ExportPath {
-    /// Uses the folder of the preset's file, and the preset's name and time.
-    fn new(document: &Path, preset: &Preset) -> Self {
-        let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
-        let name: String = preset.name.chars().map(plain).take(60).collect();
-        let folder = document.parent().unwrap_or(Path::new("")).to_owned();
-        Self { folder, stem: format!("{name}_{:.2}s", preset.time) }
-    }
+/// Returns a path that does not exist yet: in the folder of the last export or of the document, with the name of the
+/// document and the time.
+fn free_path(folder: Option<&Path>, session: &Session, kind: &ExportKind) -> PathBuf {
+    let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
+    let title: String = session.document.title().chars().map(plain).take(60).collect();
+    let stem = format!("{title}_{:.2}s", session.playback.time);
+    let folder = folder.or(session.document.path().parent()).unwrap_or(Path::new(""));
+    let (what, end) = kind.file_ending();
+    let what = if what.is_empty() { String::new() } else { format!("_{what}") };
+    let name = |number| match number {
+        1 => format!("{stem}{what}{end}"),
+        _ => format!("{stem}{what}_{number}{end}"),
+    };
+    let paths = (1..10_000).map(|number| folder.join(name(number)));
+    let path = paths.into_iter().find(|path| !file_io::is_taken(path)).unwrap_or_else(|| folder.join(name(1)));
+    file_io::absolute(&path)
+}
 
-    /// Returns a path that does not exist yet.
-    fn free(&self, what: &str, end: &str) -> PathBuf {
-        let what = if what.is_empty() { String::new() } else { format!("_{what}") };
-        let name = |number| match number {
-            1 => format!("{}{what}{end}", self.stem),
-            _ => format!("{}{what}_{number}{end}", self.stem),
-        };
-        let paths = (1..10_000).map(|number| self.folder.join(name(number)));
-        let path = paths.into_iter().find(|path| !file_io::is_taken(path)).unwrap_or_else(|| self.folder.join(name(1)));
-        file_io::absolute(&path)
+/// Returns a path with an ending, unless it has one.
+fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
+    if ending.is_empty() || path.extension().is_some() {
+        return path;
     }
+    path.with_extension(ending.trim_start_matches('.'))
 }
 
 fn write(path: PathBuf, picture: RgbImage) -> Result<ExportResult, Error> {
@@ -218,58 +303,52 @@ fn write(path: PathBuf, picture: RgbImage) -> Result<ExportResult, Error> {
 
 async fn make(
     backend: &Backend,
-    product: &ExportKind,
+    product: ExportKind,
     shot: &Shot,
     options: &ExportOptions,
-    place: &ExportPath,
+    Target { path, title }: &Target,
     watch: &ExportProgress<'_>,
 ) -> Result<ExportResult, Error> {
     let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate };
-    let sheet = async |name: &str, cells: Vec<(String, Shot)>| {
-        let path = place.free(name, ".png");
-        let columns = render_job::column_count(cells.len());
-        let size = (shot.size / columns).max(UVec2::ONE);
-        let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
-        let cells: Vec<_> = cells.into_iter().map(small).collect();
-        let mut sheet = render_job::render_sheet(backend, &cells, columns, &path, watch).await?;
-        sheet.add_footer(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
-        Ok(ExportResult::Sheet(sheet.picture, path))
-    };
-    match product {
+    let cells = match &product {
         ExportKind::Image => {
-            let path = place.free("", ".png");
             let one = Frames { range: 0..=0, rate: 1.0 };
-            let picture = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, &path, watch).await?;
-            write(path, picture)
+            let picture = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, path, watch).await?;
+            return write(path.clone(), picture);
         }
         ExportKind::Sequence => {
-            let folder = place.free("frames", "");
-            file_io::make_folder(&folder)?;
-            let names = FrameNames::parse(&folder.join("%04d.png"))?;
+            file_io::make_folder(path)?;
+            let names = FrameNames::parse(&path.join("%04d.png"))?;
             render_job::write_sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch).await?;
-            Ok(ExportResult::Written(folder))
+            return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::Flipbook => {
             render_job::check_flipbook(shot.size, &frames, options.cells)?;
-            let path = place.free("flipbook", ".png");
-            let picture = render_job::render_flipbook(backend, shot, &frames, options.cells, &path, watch).await?;
-            write(path, picture)
+            let picture = render_job::render_flipbook(backend, shot, &frames, options.cells, path, watch).await?;
+            return write(path.clone(), picture);
         }
         ExportKind::Gif => {
-            let path = place.free("", ".gif");
-            render_job::write_gif(backend, shot, &frames, &path, watch).await?;
-            Ok(ExportResult::Written(path))
+            render_job::write_gif(backend, shot, &frames, path, watch).await?;
+            return Ok(ExportResult::Written(path.clone()));
         }
-        ExportKind::DebugView => sheet("shade_tree", debug_view_sheet::stages(shot)).await,
-        ExportKind::Seeds => sheet("seeds", seeds(shot)).await,
-        ExportKind::Values(path) => {
-            let cells = variations(shot, path);
+        ExportKind::DebugView => debug_view_sheet::stages(shot),
+        ExportKind::Seeds => seeds(shot),
+        ExportKind::Values(field) => {
+            let cells = variations(shot, field);
             if cells.is_empty() {
-                return Err(FieldError::new("export", path, "a number, a choice, or an on/off setting").into());
+                return Err(FieldError::new("export", field, "a number, a choice, or an on/off setting").into());
             }
-            sheet(path.rsplit('.').next().unwrap_or(path), cells).await
+            cells
         }
-    }
+    };
+    let name = product.file_ending().0.to_owned();
+    let columns = render_job::column_count(cells.len());
+    let size = (shot.size / columns).max(UVec2::ONE);
+    let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
+    let cells: Vec<_> = cells.into_iter().map(small).collect();
+    let mut sheet = render_job::render_sheet(backend, &cells, columns, Path::new(&name), watch).await?;
+    sheet.add_footer(&format!("{}; {title}, {}", display_name(&name), backend.description()));
+    Ok(ExportResult::Sheet(sheet.picture, product))
 }
 
 /// Returns nine shots: with the present seed and the eight after it.

@@ -12,8 +12,8 @@ use crate::tweak::document::{Document, OnDisk, Saving};
 use crate::tweak::platform::asset_loading::{self, LoadedAssets};
 use crate::tweak::platform::clock::{self, Duration};
 use crate::tweak::platform::file_dialog::{Answer, Dialogs, Purpose};
-use crate::tweak::platform::file_io;
 use crate::tweak::platform::worker::Worker;
+use crate::tweak::platform::{IS_PAGE, file_io};
 use crate::tweak::session::Session;
 use crate::tweak::session::messages::truncate_middle;
 
@@ -21,14 +21,16 @@ use crate::tweak::session::messages::truncate_middle;
 pub struct FileActions {
     worker: Worker<FileResult>,
     dialogs: Dialogs,
-    /// Purpose of the open dialog.
-    purpose: Purpose,
+    /// Purpose of the open dialog, if one is open.
+    purpose: Option<(Purpose, PathBuf)>,
     /// Action that waits for the user's decision about unsaved work.
     pub waiting: Option<AfterUnsaved>,
     /// Action that follows a successful save.
     then: Option<AfterUnsaved>,
     /// Path that the user types, on systems without file dialogs.
     pub typed: Option<TypedPath>,
+    /// Path that the user has chosen for an export; the outer `Some` ends the question.
+    exported: Option<Option<PathBuf>>,
     /// The window may close without a question about unsaved work.
     may_close: bool,
     /// The window closes as soon as the sprite that is being baked is written.
@@ -75,7 +77,8 @@ impl FileActions {
         Ok(Self {
             worker: Worker::new("haze files", move || its()).map_err(thread)?,
             dialogs: Dialogs::new(has_dialogs, move || wake()).map_err(thread)?,
-            purpose: Purpose::Open,
+            purpose: None,
+            exported: None,
             waiting: None,
             then: None,
             typed: None,
@@ -87,11 +90,13 @@ impl FileActions {
 
     /// Handles answers of dialogs, results of the file thread, dropped files and requests to close. Call once a frame.
     pub fn advance(&mut self, session: &mut Session, context: &egui::Context) {
-        match self.dialogs.poll() {
-            Some(Answer::Chosen(path)) => self.chosen(self.purpose, &path, session),
-            Some(Answer::NoDialogs) => self.type_path(self.purpose, session),
-            Some(Answer::Cancelled) => self.then = None,
-            None => {}
+        if let Some(answer) = self.dialogs.poll() {
+            let (purpose, near) = self.purpose.take().map_or((Purpose::Open, PathBuf::new()), |asked| asked);
+            match answer {
+                Answer::Chosen(path) => self.chosen(purpose, &path, session),
+                Answer::NoDialogs => self.type_path(purpose, &near),
+                Answer::Cancelled => self.cancelled(purpose, session),
+            }
         }
         while let Some(done) = self.worker.poll() {
             match done {
@@ -109,7 +114,7 @@ impl FileActions {
                 Some(FileResult::LayoutWritten(Err(error))) => session.messages.error("remembered", error),
                 Some(FileResult::Failed(error)) => session.messages.error("file", error),
                 None => {
-                    session.messages.error("file", "file not read or written: internal error");
+                    session.messages.error("file", "The file was not read or written: internal error");
                 }
             }
         }
@@ -125,7 +130,7 @@ impl FileActions {
             // A second request closes without waiting; the sprite file then stays as it was.
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.closes_after_baking = true;
-            session.messages.info("file", "a sprite is being baked: the window closes when it is written");
+            session.messages.info("file", "A sprite is being baked. The window closes when it is written.");
         } else if is_asked_to_close
             && (session.document.is_dirty() || session.document.is_being_saved())
             && session.screenshot.is_none()
@@ -206,13 +211,13 @@ impl FileActions {
 
     /// Asks for a preset to open.
     pub fn ask_open(&mut self, session: &Session) {
-        self.ask(Purpose::Open, session);
+        self.ask(Purpose::Open, suggested(session));
     }
 
     /// Saves the document, or asks for a path if it is a built-in preset.
     pub fn save(&mut self, session: &mut Session) {
         if session.document.is_being_saved() {
-            return session.messages.info("file", "a save is already running");
+            return session.messages.info("file", "Saving already");
         }
         if session.document.is_built_in() {
             return self.save_as(session);
@@ -220,7 +225,9 @@ impl FileActions {
         if session.document.on_disk() == OnDisk::Changed {
             session.is_changed_on_disk = true;
             self.then = None;
-            return session.messages.error("file", "not saved: the file has changed on disk; choose a version");
+            return session
+                .messages
+                .error("file", "Not saved: another program changed the file. Choose a version above.");
         }
         let begun = session.document.begin_saving();
         self.write(begun, session);
@@ -237,6 +244,7 @@ impl FileActions {
             }
             Err(error) => {
                 self.then = None;
+                session.cancel_copies();
                 session.messages.error("file", error);
             }
         }
@@ -244,7 +252,7 @@ impl FileActions {
 
     /// Asks for a path to save under.
     pub fn save_as(&mut self, session: &Session) {
-        self.ask(Purpose::SaveAs, session);
+        self.ask(Purpose::SaveAs, suggested(session));
     }
 
     fn saved(&mut self, saving: Saving, done: Result<(), Error>, session: &mut Session) {
@@ -255,35 +263,65 @@ impl FileActions {
             Ok(()) => {
                 session.is_changed_on_disk = false;
                 session.messages.clear("preset");
-                session.messages.info("file", format!("saved: {}", path.display()));
+                session.messages.info("file", format!("Saved {}", path.display()));
                 file_io::offer_download(&path);
                 // The document may have been changed during the save.
                 then.into_iter().for_each(|next| self.begin_or_ask(next, session));
             }
-            Err(error) => session.messages.error("file", error),
+            Err(error) => {
+                session.cancel_copies();
+                session.messages.error("file", error);
+            }
         }
     }
 
-    fn ask(&mut self, purpose: Purpose, session: &Session) {
-        self.purpose = purpose;
-        if !self.dialogs.ask(purpose, &suggested(session)) {
-            self.type_path(purpose, session);
+    /// Asks where to export to, and suggests a path.
+    pub fn ask_export(&mut self, suggested: PathBuf) {
+        self.ask(Purpose::Export, suggested);
+    }
+
+    /// Returns the answer to [`Self::ask_export`], once; the inner `None` means that the user has cancelled.
+    pub fn take_exported(&mut self) -> Option<Option<PathBuf>> {
+        self.exported.take()
+    }
+
+    fn ask(&mut self, purpose: Purpose, near: PathBuf) {
+        // The answer belongs to the dialog that is open. A browser does not tell when its picker is closed.
+        if self.purpose.is_some() && !IS_PAGE {
+            return;
+        }
+        if self.dialogs.ask(purpose, &near) {
+            self.purpose = Some((purpose, near));
+        } else {
+            self.type_path(purpose, &near);
         }
     }
 
-    fn type_path(&mut self, purpose: Purpose, session: &Session) {
+    fn type_path(&mut self, purpose: Purpose, near: &Path) {
         let text = match purpose {
             Purpose::Open => String::new(),
-            Purpose::SaveAs => suggested(session).display().to_string(),
+            Purpose::SaveAs | Purpose::Export => near.display().to_string(),
         };
         self.typed = Some(TypedPath { purpose, text });
+    }
+
+    /// Forgets what would have followed an answer.
+    fn cancelled(&mut self, purpose: Purpose, session: &mut Session) {
+        match purpose {
+            Purpose::Export => self.exported = Some(None),
+            Purpose::Open | Purpose::SaveAs => {
+                self.then = None;
+                session.cancel_copies();
+            }
+        }
     }
 
     /// Handles the typed path; `None` cancels.
     pub fn finish_typing(&mut self, path: Option<&Path>, session: &mut Session) {
         match (self.typed.take(), path) {
             (Some(typed), Some(path)) => self.chosen(typed.purpose, path, session),
-            _ => self.then = None,
+            (Some(typed), None) => self.cancelled(typed.purpose, session),
+            (None, _) => {}
         }
     }
 
@@ -295,6 +333,7 @@ impl FileActions {
                 let begun = session.document.begin_saving_as(&path);
                 self.write(begun, session);
             }
+            Purpose::Export => self.exported = Some(Some(path.into())),
         }
     }
 }

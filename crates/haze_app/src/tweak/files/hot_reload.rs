@@ -250,7 +250,7 @@ impl HotReload {
                 }
             }
             None => {
-                session.messages.error("reload", "a changed file was not loaded: internal error");
+                session.messages.error("reload", "A changed file was not loaded: internal error");
             }
         }
     }
@@ -312,7 +312,7 @@ fn changed_on_disk(session: &mut Session) {
         }
         OnDisk::Gone => {
             let name = session.document.path().display();
-            session.messages.error("preset", format!("{name}: the file is gone; Save writes it again"));
+            session.messages.error("preset", format!("{name} was deleted. Save writes it again."));
         }
         OnDisk::Changed if session.document.is_dirty() => session.is_changed_on_disk = true,
         OnDisk::Changed => session.revert(),

@@ -32,15 +32,35 @@ const LAYOUT_WRITE_INTERVAL: Duration = Duration::from_secs(1);
 pub struct Layout {
     /// Inner size of the window.
     pub window: Option<[f32; 2]>,
-    /// Width of the settings panel.
-    pub settings: Option<f32>,
-    /// Height of the debug view strip.
-    pub strip: Option<f32>,
+    /// Width of the settings panel, if the user has chosen one.
+    pub settings_width: Option<PanelSize>,
+    /// Height of the debug view strip, likewise.
+    pub strip_height: Option<PanelSize>,
     pub has_strip: Option<bool>,
+    /// Folder of the last export.
+    pub export_folder: Option<PathBuf>,
     /// `dark`, `light` or `system`.
     pub theme: Option<String>,
     /// Names of the hints that are still to be shown.
     pub hints: Option<Vec<String>>,
+}
+
+/// Size of a panel that the user has chosen, and the size of the window along the panel, in points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PanelSize {
+    pub size: f32,
+    pub room: f32,
+}
+
+/// Largest ratio of two windows that share the size of a panel.
+const MAX_ROOM_RATIO: f32 = 1.5;
+
+impl PanelSize {
+    /// Returns the size for a window; `None` if it was chosen in a much smaller or larger one.
+    pub fn in_room(self, room: f32) -> Option<f32> {
+        let ratio = room.max(self.room) / room.min(self.room).max(1.0);
+        (ratio <= MAX_ROOM_RATIO && self.size > 0.0).then_some(self.size)
+    }
 }
 
 /// egui themes by their names in the layout file.
@@ -57,18 +77,20 @@ impl Layout {
     /// Reads the layout without implausible values. The error tells why the file could not be read.
     pub fn read(folder: &Path) -> (Self, Option<Error>) {
         let (found, error): (Self, _) = json_store::read(folder, LAYOUT);
-        let side = |side: Option<f32>, most: f32| side.filter(|side| (1.0..=most).contains(side));
         let window = found.window.filter(|sides| sides.iter().all(|side| (320.0..=16_384.0).contains(side)));
-        (Self { window, settings: side(found.settings, 560.0), strip: side(found.strip, 320.0), ..found }, error)
+        let is_finite = |panel: &PanelSize| panel.size.is_finite() && panel.room.is_finite();
+        let (settings_width, strip_height) =
+            (found.settings_width.filter(is_finite), found.strip_height.filter(is_finite));
+        (Self { window, settings_width, strip_height, ..found }, error)
     }
 
     pub fn theme(&self) -> Option<egui::ThemePreference> {
         THEMES.into_iter().find(|(name, _)| self.theme.as_deref() == Some(name)).map(|(_, theme)| theme)
     }
 
-    /// Returns the fields other than sizes.
-    fn chosen(&self) -> (Option<bool>, Option<&str>, Option<&[String]>) {
-        (self.has_strip, self.theme.as_deref(), self.hints.as_deref())
+    /// Returns the layout without sizes.
+    fn chosen(&self) -> Self {
+        Self { window: None, settings_width: None, strip_height: None, ..self.clone() }
     }
 
     /// Records the present layout of the window.

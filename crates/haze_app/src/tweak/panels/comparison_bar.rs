@@ -13,11 +13,11 @@ const GAP: f32 = 2.0;
 pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
     let row: f32 = COMPARE_OPTIONS.iter().map(|offer| width(ui, offer.short) + GAP).sum();
     let row = row + width(ui, "Compare") + ui.spacing().item_spacing.x;
-    let beside = ["Difference", "x 256.0", "Use", "Swap"].map(|name| width(ui, name) + ui.spacing().item_spacing.x);
+    let beside = ["Difference", "256.0×", "Use B", "Swap"].map(|name| width(ui, name) + ui.spacing().item_spacing.x);
     let beside: f32 = beside.iter().sum();
     // The layout does not depend on whether a comparison is on, so that buttons do not move.
     let has_row = row + beside <= room;
-    let has_tools = has_row || width(ui, "full resolution") + beside <= room;
+    let has_tools = has_row || width(ui, "Full resolution") + beside <= room;
     let against = session.compare.against.as_ref();
     let is_in_row =
         has_row && against.is_some_and(|against| COMPARE_OPTIONS.iter().any(|offer| offer.against == *against));
@@ -30,7 +30,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
         }
     })
     .response
-    .on_hover_text("Shows a second picture at the right of a divider");
+    .on_hover_text("Compares the image (A) with a second one (B)");
     if has_row {
         ui.scope(|ui| {
             ui.spacing_mut().item_spacing.x = GAP;
@@ -65,9 +65,9 @@ fn menu(ui: &mut Ui, session: &mut Session) {
             ui.close();
         }
     };
-    entry(ui, None, "Nothing", "One picture", String::new());
-    let tooltip = "Keeps the present settings as the second picture; later changes show in the first";
-    entry(ui, Some(kept), "As it is now", tooltip, String::new());
+    entry(ui, None, "Off", "Shows one image", String::new());
+    let tooltip = "Copies the current settings to image B. Later changes show in image A only.";
+    entry(ui, Some(kept), "Current settings", tooltip, String::new());
     for CompareOption { against, name, tooltip, .. } in &COMPARE_OPTIONS {
         entry(ui, Some(against.clone()), name, tooltip, keys(ui, against));
     }
@@ -78,19 +78,19 @@ fn tools(ui: &mut Ui, session: &mut Session) {
     let compare = &mut session.compare;
     let mut is_difference = compare.difference > 0.0;
     let difference = ui.toggle_value(&mut is_difference, "Difference");
-    if difference.on_hover_text("Difference of the two pictures, multiplied by a factor").changed() {
+    if difference.on_hover_text("Shows the amplified difference of the two images").changed() {
         compare.difference = if is_difference { 8.0 } else { 0.0 };
     }
     if is_difference {
-        let times = egui::DragValue::new(&mut compare.difference).range(1.0..=256.0).speed(0.2).prefix("x ");
-        ui.add(times).on_hover_text("Factor of the difference");
+        let times = egui::DragValue::new(&mut compare.difference).range(1.0..=256.0).speed(0.2).suffix("×");
+        ui.add(times).on_hover_text("Amplification of the difference");
     }
     let Some(against) = compare.against.clone() else { return };
     let Some(second) = against.settings(session.saved()).cloned() else { return };
-    if ui.button("Use").on_hover_text("Replaces the preset by the second; Undo restores it").clicked() {
+    if ui.button("Use B").on_hover_text("Replaces the settings by those of image B. Undo restores them.").clicked() {
         session.document.preset = second.clone();
     }
-    if ui.button("Swap").on_hover_text("Swaps the two: the second is edited, beside the present settings").clicked() {
+    if ui.button("Swap").on_hover_text("Swaps the settings of the two images").clicked() {
         session.compare.against =
             Some(CompareWith::Kept(Box::new(std::mem::replace(&mut session.document.preset, second))));
     }

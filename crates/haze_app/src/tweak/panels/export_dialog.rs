@@ -27,14 +27,14 @@ pub fn panel(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
         Some((done, count)) => {
             let share = done as f32 / count.max(1) as f32;
             ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
-            if ui.button("Stop").on_hover_text("Files that are already written are complete").clicked() {
+            if ui.button("Stop").on_hover_text("Files that are already written stay").clicked() {
                 export_job.stop();
             }
         }
         None => order(ui, export_job, session),
     });
     export_job.is_open = is_open;
-    sheet(ui, export_job);
+    sheet(ui, export_job, session);
 }
 
 fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
@@ -46,9 +46,9 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
         ("Sequence", ExportKind::Sequence),
         ("Flipbook", ExportKind::Flipbook),
         ("GIF", ExportKind::Gif),
-        ("Shade tree", ExportKind::DebugView),
-        ("Nine seeds", ExportKind::Seeds),
-        ("Values of a setting", ExportKind::Values(values)),
+        ("Debug Views", ExportKind::DebugView),
+        ("Nine Seeds", ExportKind::Seeds),
+        ("Values of a Setting", ExportKind::Values(values)),
     ];
     ui.horizontal_wrapped(|ui| {
         for (name, product) in products {
@@ -72,7 +72,7 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
             row("Frames", [(&mut options.first, 0..=99_999), (&mut options.last, 0..=99_999)]);
         }
         if *product == ExportKind::Flipbook {
-            row("Rows, columns", [(&mut options.cells.x, 1..=64), (&mut options.cells.y, 1..=64)]);
+            row("Rows × columns", [(&mut options.cells.x, 1..=64), (&mut options.cells.y, 1..=64)]);
         }
         if is_moving {
             let label = ui.label("Frames per second").id;
@@ -82,23 +82,25 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     });
     if let ExportKind::Values(path) = product {
         let edit = egui::TextEdit::singleline(&mut export_job.wanted).hint_text("Find a setting");
-        ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "setting to vary"));
+        ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Setting to vary"));
         let found = matches(&session.document.preset, &session.tooltips, &session.view.lights, &export_job.wanted);
         for found in found.into_iter().take(6) {
             let is_chosen = found.path == *path;
-            if ui.selectable_label(is_chosen, &found.path).on_hover_text(&found.tooltip).clicked() {
+            if ui.selectable_label(is_chosen, &found.name).on_hover_text(&found.tooltip).clicked() {
                 path.clone_from(&found.path);
             }
         }
     }
     let is_ready = *product != ExportKind::Values(String::new());
-    if ui.add_enabled(is_ready, egui::Button::new("Make")).clicked() {
+    // A sheet is shown first, and saved from there.
+    let text = if product.is_sheet() { "Preview" } else { "Export…" };
+    if ui.add_enabled(is_ready, egui::Button::new(text)).clicked() {
         let product = product.clone();
-        export_job.begin(product, session);
+        export_job.order(product, session);
     }
 }
 
-fn sheet(ui: &Ui, export_job: &mut ExportJob) {
+fn sheet(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
     let Some(Sheet { picture, texture, .. }) = &mut export_job.sheet else { return };
     // Uploaded once.
     let texture = texture.get_or_insert_with(|| {
@@ -110,13 +112,12 @@ fn sheet(ui: &Ui, export_job: &mut ExportJob) {
     let room = ui.ctx().content_rect().size() - egui::Vec2::new(60.0, 160.0);
     let window = egui::Window::new("Sheet").default_pos(CORNER).open(&mut is_open).collapsible(false);
     window.show(ui.ctx(), |ui| {
-        is_saved = ui.button("Save").on_hover_text("Beside the preset").clicked();
-        ui.add(egui::Image::new(&*texture).max_size(room).alt_text("sheet"));
+        is_saved = ui.button("Save…").clicked();
+        ui.add(egui::Image::new(&*texture).max_size(room).alt_text("Image of the sheet"));
     });
     if is_saved {
-        export_job.save_sheet();
-    }
-    if is_saved || !is_open {
+        export_job.order_sheet(session);
+    } else if !is_open {
         export_job.sheet = None;
     }
 }

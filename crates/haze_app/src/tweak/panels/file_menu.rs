@@ -12,7 +12,7 @@ use crate::tweak::session::action::{ACTIONS, Action};
 use crate::tweak::session::messages::truncate_middle;
 
 /// Shown above a path that is typed.
-const NO_DIALOG: &str = "This system has no file dialog: type the path.";
+const NO_DIALOG: &str = "This system has no file dialog. Type the path.";
 
 /// Draws the menu. Returns the chosen action.
 pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
@@ -33,7 +33,7 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
         entry(ui, Action::SaveAs);
         let can_revert = session.document.is_dirty() && session.document.saved().is_some();
         let revert = ui.add_enabled(can_revert, egui::Button::new("Revert"));
-        if revert.on_hover_text("Reads the file again; Undo restores your changes").clicked() {
+        if revert.on_hover_text("Reloads the saved file. Undo restores your changes.").clicked() {
             session.revert();
             ui.close();
         }
@@ -68,10 +68,10 @@ pub fn questions(ui: &Ui, file_actions: &mut FileActions, session: &mut Session)
 fn unsaved(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
     let mut answer = None;
     let response = egui::Modal::new(egui::Id::unique("unsaved")).show(ui.ctx(), |ui| {
-        ui.heading(format!("Save the changes of {}?", truncate_middle(&session.document.preset.name, 60)));
+        ui.heading(format!("Save changes to {}?", truncate_middle(&session.document.file_name(), 60)));
         ui.add_space(8.0);
         ui.horizontal(|ui| {
-            for (text, value) in [("Save", Some(true)), ("Discard", Some(false)), ("Cancel", None)] {
+            for (text, value) in [("Save", Some(true)), ("Don't Save", Some(false)), ("Cancel", None)] {
                 if ui.button(text).clicked() {
                     answer = Some(value);
                 }
@@ -90,19 +90,21 @@ fn type_path(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
     let response = egui::Modal::new(egui::Id::unique("path")).show(ui.ctx(), |ui| {
         ui.set_width(460.0);
         let (title, button) = match typed.purpose {
-            Purpose::Open => ("Open a preset", "Open"),
-            Purpose::SaveAs if file_io::exists(Path::new(&typed.text)) => ("Save as", "Replace"),
-            Purpose::SaveAs => ("Save as", "Save"),
+            Purpose::Open => ("Open", "Open"),
+            Purpose::SaveAs if file_io::exists(Path::new(&typed.text)) => ("Save As", "Replace"),
+            Purpose::SaveAs => ("Save As", "Save"),
+            Purpose::Export if file_io::exists(Path::new(&typed.text)) => ("Export", "Replace"),
+            Purpose::Export => ("Export", "Export"),
         };
         ui.heading(title);
         ui.weak(if IS_PAGE { "The browser downloads the file." } else { NO_DIALOG });
-        let edit =
-            egui::TextEdit::singleline(&mut typed.text).hint_text("Path of a JSON file").desired_width(f32::INFINITY);
+        let hint = if typed.purpose == Purpose::Export { "Path to export to" } else { "Path of a JSON file" };
+        let edit = egui::TextEdit::singleline(&mut typed.text).hint_text(hint).desired_width(f32::INFINITY);
         let edit = ui.add(edit);
-        edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "path"));
+        edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Path"));
         edit.request_focus();
-        if typed.purpose == Purpose::SaveAs && !IS_PAGE {
-            ui.weak(format!("in {}", truncate_middle(&folder_of(&typed.text), 80)));
+        if typed.purpose != Purpose::Open && !IS_PAGE {
+            ui.weak(format!("In {}", truncate_middle(&folder_of(&typed.text), 80)));
         }
         // Enter alone does not replace an existing file.
         let is_entered = button != "Replace" && ui.input(|input| input.key_pressed(Key::Enter));

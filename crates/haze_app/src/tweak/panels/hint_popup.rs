@@ -36,10 +36,10 @@ pub fn panel(ui: &Ui, session: &mut Session, is_pressing: bool, is_dragging_ligh
             ui.set_width(WIDTH);
             ui.label(with_key(ui, hint, text));
             ui.horizontal(|ui| {
-                if ui.button("Got it").on_hover_text("Escape does the same").clicked() {
+                if ui.button("Got it").on_hover_text("Or press Escape").clicked() {
                     answer = Some(true);
                 }
-                let all = ui.button("No more hints").on_hover_text("They can be shown again from the list of keys");
+                let all = ui.button("Skip hints").on_hover_text("The list of keys shows them again");
                 if all.clicked() {
                     answer = Some(false);
                 }
@@ -139,10 +139,10 @@ mod tests {
         harness.key_press(Key::Questionmark);
         harness.run_steps(3);
         assert_eq!(shown(&harness), None);
-        harness.get_by_label("Show the hints again").click();
+        harness.get_by_label("Show hints again").click();
         harness.run_steps(3);
         assert_eq!(shown(&harness), Some(Hint::Orbit));
-        harness.get_by_label("No more hints").click();
+        harness.get_by_label("Skip hints").click();
         harness.run_steps(3);
         assert_eq!(shown(&harness), None);
     }
@@ -158,7 +158,7 @@ mod tests {
         drop(harness);
         let mut harness = start(folder.path(), vec2(1000.0, 640.0), Theme::Light);
         assert_eq!(shown(&harness), Some(Hint::Light));
-        harness.get_by_label("No more hints").click();
+        harness.get_by_label("Skip hints").click();
         harness.run_steps(3);
         let window = harness.state_mut();
         window.persistence.take().unwrap().finish(&window.layout().clone());

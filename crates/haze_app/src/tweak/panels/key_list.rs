@@ -15,8 +15,8 @@ pub fn panel(ui: &Ui, session: &mut Session) {
     }
     let response = egui::Modal::new(egui::Id::unique("help")).show(ui.ctx(), |ui| {
         ui.horizontal(|ui| {
-            ui.heading("Keys and gestures");
-            if ui.button("Show the hints again").on_hover_text("The hints of the first start").clicked() {
+            ui.heading("Keyboard and Mouse");
+            if ui.button("Show hints again").on_hover_text("Shows the hints of the first start").clicked() {
                 session.hints.begin();
                 session.view.help = false;
             }

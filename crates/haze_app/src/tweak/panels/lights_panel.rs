@@ -4,12 +4,14 @@ use eframe::egui::{self, Ui};
 use glam::UVec2;
 use haze::frame::MAX_LIGHTS;
 use haze::preset::{Camera, Preset};
-use haze::{Bounds, Light, LightKind};
+use haze::{Bounds, Light, LightKind, LightRole};
 
+use super::comparison_bar::width;
 use super::rows::setting_rows::RowContext;
 use super::rows::{Row, setting_rows, value_control};
 use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
-use crate::tweak::document::light_defaults::{light_name, new_light};
+use crate::tweak::document::light_defaults::{kind_name, light_name, new_light, role_name};
+use crate::tweak::document::light_roles::{keep_one_key, light_of};
 use crate::tweak::session::light_view::LightView;
 use crate::tweak::session::smoke_geometry::{SmokeGeometry, place_behind};
 
@@ -24,22 +26,65 @@ pub fn panel(
 ) {
     shown.follow(&preset.lights);
     // If a setting of a light was searched for, that light is selected.
-    let sought = context.searched_path.and_then(|path| path.strip_prefix("lights[")?.split_once(']')?.0.parse().ok());
+    let sought = context.searched_path.and_then(light_of);
     shown.selected = sought.or(shown.selected).filter(|&index| index < preset.lights.len());
     for (index, light) in preset.lights.iter_mut().enumerate() {
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
-    ui.horizontal(|ui| tools(ui, preset, shown, seen));
+    ui.horizontal_wrapped(|ui| tools(ui, preset, shown, seen));
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
-        ui.weak(if preset.lights.is_empty() { "The preset has no lights." } else { "Select a light to edit it." });
+        ui.weak(if preset.lights.is_empty() { "This preset has no lights." } else { "Select a light to edit it." });
         return;
     };
     ui.separator();
+    let before = light.role;
+    role(ui, context, index, light);
     if light.kind != LightKind::Point {
         angles(ui, context, index, light);
     }
-    setting_rows::show(ui, context, &[("lights", Some(index))], light);
+    setting_rows::show_where(ui, context, &[("lights", Some(index))], light, &|name| name != "role");
+    if light.role != before {
+        keep_one_key(&mut preset.lights, index);
+    }
+}
+
+/// Gap between the buttons of roles, points.
+const GAP: f32 = 2.0;
+
+/// Draws the roles of a light side by side, so that one click changes the role.
+fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Light) {
+    let path = format!("lights[{index}].role");
+    let second = context.second(&path, "");
+    let row = Row {
+        name: "role",
+        tooltip: context.tooltips.field("lights.role").unwrap_or_default(),
+        is_changed: context.changed.contains(&path),
+        second: second.as_ref().map(Option::as_deref),
+        sheet: None,
+        reason_without_effect: None,
+    };
+    let (begin, tooltips) = (ui.cursor().min, context.tooltips);
+    let request = row.show(ui, |ui, label| {
+        let usual = ui.spacing().clone();
+        (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (GAP, 4.0);
+        // In a narrow panel, the roles are in a list.
+        let button = |role: &LightRole| width(ui, role_name(*role)) + GAP;
+        if LightRole::ALL.iter().map(button).sum::<f32>() > ui.available_width() {
+            *ui.spacing_mut() = usual;
+            let tooltip = |choice: &str| tooltips.choice("lights.role", choice);
+            value_control::choice(ui, &mut light.role, &path, tooltip).labelled_by(label.id);
+            return;
+        }
+        for &role in LightRole::ALL {
+            let tooltip = tooltips.choice("lights.role", role.name()).unwrap_or_default();
+            ui.selectable_value(&mut light.role, role, role_name(role)).on_hover_text(tooltip);
+        }
+    });
+    if context.searched_path == Some(path.as_str()) {
+        setting_rows::scroll_to_and_mark(ui, begin);
+    }
+    context.requests.extend(request.map(|request| (request, path)));
 }
 
 /// Draws a light of the list.
@@ -49,35 +94,35 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
     let button = egui::Button::selectable(is_selected, &name);
     let height = ui.spacing().interact_size.y;
     // The width that the rest of the row leaves.
-    let width = (ui.available_width() - 200.0).clamp(40.0, 104.0);
+    let width = (ui.available_width() - 200.0).clamp(40.0, 130.0);
     let button = ui.add_sized([width, height], button.truncate()).on_hover_text(&name);
     if button.clicked() {
-        shown.selected = (!is_selected).then_some(index);
+        shown.selected = Some(index);
     }
-    value_control::swatch(ui, &mut light.color).accessible_name(format!("color of {name}"));
+    value_control::swatch(ui, &mut light.color).accessible_name(format!("Color of {name}"));
     let speed = 0.01 * light.intensity.max(0.1);
     let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
     let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));
-    intensity.on_hover_text("Intensity").accessible_name(format!("intensity of {name}"));
+    intensity.on_hover_text("Intensity").accessible_name(format!("Intensity of {name}"));
     if let Some(mute_solo) = shown.mute_solo(index) {
         let mut toggle = |sign: &str, is_on: &mut bool, what: &str| {
             let button = ui.add(egui::Button::selectable(*is_on, sign).min_size(egui::vec2(22.0, height)));
-            let button = button.on_hover_text(format!("{what}. Not saved in the preset."));
-            if button.accessible_name(format!("{what}, {name}")).clicked() {
+            let button = button.on_hover_text(format!("{what}. The preset does not change."));
+            if button.accessible_name(format!("{what}: {name}")).clicked() {
                 *is_on = !*is_on;
             }
         };
-        toggle("S", &mut mute_solo.is_solo, "Show this light alone");
-        toggle("M", &mut mute_solo.is_muted, "Leave this light out");
+        toggle("S", &mut mute_solo.is_solo, "Solo: show only this light");
+        toggle("M", &mut mute_solo.is_muted, "Mute: hide this light");
     }
 }
 
 /// Draws the buttons for the list and the selected light.
 fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&dyn Fn() -> SmokeGeometry, UVec2)) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
-        ui.menu_button("Add", |ui| {
+        ui.menu_button("Add light", |ui| {
             for &kind in LightKind::ALL {
-                if ui.button(kind.name()).clicked() {
+                if ui.button(kind_name(kind)).clicked() {
                     let light = beside(new_light(kind, &preset.lights), &preset.camera, &smoke().bounds());
                     let end = preset.lights.len();
                     shown.insert(&mut preset.lights, end, light);
@@ -94,7 +139,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
     if ui.button("Delete").clicked() {
         shown.remove(&mut preset.lights, index);
     }
-    let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as seen by the camera");
+    let behind = ui.button("Move behind smoke").on_hover_text("Moves the light behind the smoke, seen from the camera");
     if behind.clicked() {
         let smoke = smoke();
         let (eye, point) = (preset.camera.position, smoke.visible_centre(&preset.camera, size));
@@ -131,12 +176,24 @@ fn angles(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut L
         };
         let refused = &mut context.refused;
         let request = row.show(ui, |ui, label| {
+            ui.spacing_mut().item_spacing.x = GAP;
+            ui.spacing_mut().button_padding.x = 4.0;
             value_control::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
         });
         context.requests.extend(request.map(|request| (request, path.clone())));
     };
-    angle("azimuth", &mut edited.azimuth, 180.0, "Side that the light comes from: 0 is +z, 90 is +x.");
-    angle("elevation", &mut edited.elevation, 90.0, "Angle of the light above the horizon; 0 is level.");
+    angle(
+        "azimuth",
+        &mut edited.azimuth,
+        180.0,
+        "Horizontal direction that the light comes from: 0° is +z, 90° is +x.",
+    );
+    angle(
+        "elevation",
+        &mut edited.elevation,
+        90.0,
+        "Height of the light above the horizon: 0° is level, 90° straight above.",
+    );
     if edited != before {
         let elevation = edited.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION);
         light.direction = from_angles(Angles { elevation, ..edited });

@@ -1,8 +1,8 @@
 //! Look tab: the few controls that determine a look.
 
 use eframe::egui::Ui;
+use haze::LightRole;
 use haze::preset::{Preset, PresetSystem};
-use haze::{Light, LightKind};
 
 use super::rows::setting_rows::{FIVE_VALUES, RowContext, show_named};
 use super::rows::{self, Row, RowRequest, setting_rows, value_control};
@@ -14,10 +14,12 @@ use crate::tweak::session::macro_param::MacroParam;
 /// Draws the look of one system of the preset.
 pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, shown: &mut LightView, index: usize) {
     shown.follow(&preset.lights);
-    let key = shown.key_light(index, || key_light(preset, index));
+    // While the slider is held, it does not pass on to another light.
+    let is_held = ui.input(|input| input.pointer.any_down()) || ui.memory(|memory| memory.focused().is_some());
+    let key = shown.held_key_light(preset, index, is_held);
     let Preset { systems, lights, camera, .. } = preset;
     let Some(system) = systems.get_mut(index) else {
-        ui.weak("The preset has no smoke.");
+        ui.weak("This preset has no smoke.");
         return;
     };
     let path = [("systems", Some(index))];
@@ -31,16 +33,26 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
             }
             ControlTarget::KeyLight(field, usual) => {
                 let Some((key, light)) = key.and_then(|key| Some((key, lights.get_mut(key)?))) else { continue };
-                show_named(ui, context, &[("lights", Some(key))], light, (name, field, usual));
-                let marks = if context.second.is_some() { 2.0 } else { 1.0 };
-                rows::note(ui, marks, &light_name(key, light)).on_hover_text(KEY);
+                let is_key = light.role == LightRole::Key;
+                let title = if is_key { name } else { BRIGHTEST };
+                show_named(ui, context, &[("lights", Some(key))], light, (title, field, usual));
+                rows::note(ui, if context.second.is_some() { 2.0 } else { 1.0 }, |ui| {
+                    ui.weak(light_name(key, light)).on_hover_text(if is_key { KEY } else { NO_KEY });
+                    if !is_key && ui.small_button("Make it the key light").on_hover_text(KEY).clicked() {
+                        light.role = LightRole::Key;
+                    }
+                });
             }
         }
     }
 }
 
-/// Tooltip: definition of the key light.
-const KEY: &str = "The light that was brightest at the emitter when the preset was opened";
+/// Name of the slider in a preset without a key light.
+const BRIGHTEST: &str = "brightest light";
+
+/// Tooltips of the name of the light.
+const KEY: &str = "The key light is the main light of the preset. Change it on the Light tab.";
+const NO_KEY: &str = "No light has the role Key, so this is the light that is brightest at the emitter now.";
 
 /// Draws the row of a value that several settings make.
 fn macro_row(ui: &mut Ui, context: &mut RowContext<'_>, system: &mut PresetSystem, index: usize, param: &MacroParam) {
@@ -71,31 +83,21 @@ fn macro_row(ui: &mut Ui, context: &mut RowContext<'_>, system: &mut PresetSyste
     }
 }
 
-/// Returns the light that is brightest at the emitter.
-fn key_light(preset: &Preset, system: usize) -> Option<usize> {
-    let at = preset.systems.get(system)?.emitter.position;
-    let brightness = |light: &Light| {
-        let falloff =
-            if light.kind == LightKind::Directional { 1.0 } else { light.position.distance_squared(at).max(0.1) };
-        light.intensity * light.color.max_element() / falloff
-    };
-    let lights = preset.lights.iter().enumerate();
-    lights.max_by(|a, b| brightness(a.1).total_cmp(&brightness(b.1))).map(|(index, _)| index)
-}
-
 #[cfg(test)]
 mod tests {
     use eframe::egui::{Key, Modifiers, Role, Theme, Vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
+    use haze::LightRole;
 
+    use crate::tweak::document::display_names::display_name;
     use crate::tweak::session::look_controls::LOOK_CONTROLS;
     use crate::tweak::session::view_options::Tab;
     use crate::tweak::window::Window;
     use crate::tweak::window::testing::window;
 
-    fn set_key(harness: &mut Harness<'_, Window>, value: f64) {
-        let sliders = harness.get_all_by_label("key light");
+    fn set_key(harness: &mut Harness<'_, Window>, name: &str, value: f64) {
+        let sliders = harness.get_all_by_label(name);
         let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider);
         slider.unwrap().set_value_accesskit(value);
         harness.run_steps(3);
@@ -106,40 +108,45 @@ mod tests {
     }
 
     #[test]
-    fn the_key_light_stays_the_same_when_it_becomes_darker_than_another_and_is_named() {
+    fn the_key_light_is_the_one_that_the_preset_names_and_else_the_brightest_says_so() {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let before = intensities(&harness);
-        set_key(&mut harness, 50.0);
-        let bright = intensities(&harness);
-        let key = (0..before.len()).find(|&index| (bright[index] - before[index]).abs() > 1.0e-3).unwrap();
-        let name = super::light_name(key, &harness.state().session.document.preset.lights[key]);
-        assert!(harness.query_by_label(&name).is_some(), "{name}");
-        for value in [0.0, 1.0] {
-            set_key(&mut harness, value);
+        // Darker than all others, it is still the key light.
+        for value in [50.0, 0.0, 1.0] {
+            set_key(&mut harness, "Key light", value);
         }
         let mut expected = before;
-        expected[key] = 1.0;
+        expected[0] = 1.0;
         assert_eq!(intensities(&harness), expected);
-        // After it is removed, another light is the key light.
-        harness.state_mut().session.document.preset.lights.remove(key);
+        assert!(harness.query_by_label("Key (Point 1)").is_some());
+        // Without a key light, the slider has another name and drives the light that is brightest now.
+        let lights = &mut harness.state_mut().session.document.preset.lights;
+        lights[0].role = LightRole::None;
+        (lights[0].intensity, lights[2].intensity) = (0.1, 900.0);
         harness.run_steps(3);
-        assert!(harness.query_by_label(&name).is_none(), "{name}");
-        set_key(&mut harness, 7.0);
-        assert!(intensities(&harness).contains(&7.0));
+        assert!(harness.query_all_by_label("Key light").next().is_none());
+        assert!(harness.query_by_label("Practical (Point 3)").is_some());
+        set_key(&mut harness, "Brightest light", 800.0);
+        assert!((intensities(&harness)[2] - 800.0).abs() < 1e-3);
+        harness.get_by_label("Make it the key light").click();
+        harness.run_steps(3);
+        assert!(harness.query_by_label("Key (Point 3)").is_some());
+        set_key(&mut harness, "Key light", 0.0);
+        assert!(intensities(&harness)[2].abs() < 1e-3);
     }
 
     #[test]
     fn sliders_have_names_for_artists_and_are_found_by_either_name() {
         let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
-        let has = |harness: &Harness<'_, Window>, name| harness.query_all_by_label(name).next().is_some();
+        let has = |harness: &Harness<'_, Window>, name: &str| harness.query_all_by_label(name).next().is_some();
         for control in LOOK_CONTROLS {
-            assert!(has(&harness, control.name), "{}", control.name);
+            assert!(has(&harness, &display_name(control.name)), "{}", control.name);
         }
-        assert!(!has(&harness, "radius start"));
+        assert!(!has(&harness, "Radius start"));
         let find = |harness: &mut Harness<'_, Window>, text: &str| {
             harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
             harness.run_steps(2);
-            harness.get_by_label("find a setting").type_text(text);
+            harness.get_by_label("Find a setting").type_text(text);
             harness.run_steps(2);
             harness.key_press(Key::Enter);
             harness.run_steps(8);
@@ -158,7 +165,7 @@ mod tests {
             assert_eq!(harness.state().session.view.tab, tab, "{text}");
         }
         // Undo and files use the field's own name, and the tooltip shows it.
-        let sliders = harness.get_all_by_label("rise");
+        let sliders = harness.get_all_by_label("Rise");
         let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect();
         harness.hover_at(slider.left_center() - Vec2::new(115.0, 0.0));
         harness.run_steps(8);

@@ -1,6 +1,7 @@
 //! Panels of the window: settings as rows made from the table of fields, menus and dialogs.
 
 pub mod comparison_bar;
+pub mod copy_question;
 pub mod debug_view_strip;
 pub mod export_dialog;
 pub mod file_menu;

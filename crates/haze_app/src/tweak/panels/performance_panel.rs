@@ -6,6 +6,7 @@ use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
 use super::rows::setting_rows::{self, RowContext};
 use super::rows::value_text::grouped;
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::session::Session;
 use crate::tweak::viewport_renderer::RenderStats;
 use crate::tweak::viewport_renderer::cached_render::set_scale;
@@ -41,27 +42,30 @@ fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
 /// Draws the time of each pass, and the stacked times of the last images.
 fn times(ui: &mut Ui, timings: &FrameTimings) {
     if timings.stats.is_timed {
-        ui.label("GPU time of the smoke, by pass");
+        ui.label("GPU time of the smoke by pass");
     } else {
-        ui.label("CPU time of frames: this device cannot measure GPU time");
+        ui.label("CPU time of each frame (this device cannot measure GPU time)");
     }
     plot(ui, timings);
     egui::Grid::new("passes").num_columns(3).min_col_width(0.0).striped(true).show(ui, |ui| {
         for (index, name) in timings.names.iter().enumerate() {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
             ui.painter().rect_filled(rect, 1.0, COLORS[index % COLORS.len()]);
-            ui.label(*name);
+            ui.label(display_name(name));
             ui.monospace(format!("{:6.3} ms", timings.mean(index)));
             ui.end_row();
         }
         ui.label("");
-        ui.strong("total");
+        ui.strong("Total");
         // The sum of an empty iterator is -0.
         let sum = (0..timings.names.len()).map(|index| timings.mean(index)).sum::<f32>().max(0.0);
         ui.monospace(format!("{sum:6.3} ms"));
         ui.end_row();
     });
-    ui.weak(format!("Mean of the last {} pictures", timings.frame_times.len()));
+    ui.weak(match timings.frame_times.len() {
+        0 | 1 => "Last frame".into(),
+        count => format!("Average of the last {count} frames"),
+    });
 }
 
 fn plot(ui: &mut Ui, timings: &FrameTimings) {
@@ -69,7 +73,7 @@ fn plot(ui: &mut Ui, timings: &FrameTimings) {
     let limit = timings.is_held.then_some(timings.budget.milliseconds);
     let sums = timings.frame_times.iter().map(|picture| picture.iter().sum::<f32>());
     let most = sums.fold(limit.unwrap_or(0.0), f32::max).max(0.001) * 1.1;
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "time of the last pictures"));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Time of the last frames"));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
     let height = |ms: f32| ms / most * rect.height();
@@ -97,9 +101,9 @@ fn plot(ui: &mut Ui, timings: &FrameTimings) {
 
 fn budget(ui: &mut Ui, session: &mut Session) {
     let timings = &mut session.timings;
-    let hint = "Lowers the resolution of the shown smoke until it is within the budget; the preset does not change";
+    let hint = "Lowers the resolution of the smoke until it meets the budget. The preset does not change.";
     ui.add_enabled_ui(timings.stats.is_timed, |ui| {
-        let text = format!("Hold {} ms", timings.budget.milliseconds);
+        let text = format!("Keep GPU time under {} ms", timings.budget.milliseconds);
         ui.checkbox(&mut timings.is_held, text)
             .on_hover_text(hint)
             .on_disabled_hover_text("This device cannot measure GPU time");
@@ -124,9 +128,13 @@ fn budget(ui: &mut Ui, session: &mut Session) {
     let of_preset = preset.systems.first().map_or(1, |system| system.settings.accumulate.scale);
     let Some(scale) = timings.scale() else { return };
     ui.horizontal_wrapped(|ui| {
-        ui.label(format!("Shown at scale {scale}; the preset has {of_preset}."));
-        let keep = egui::Button::new("Keep this scale");
-        if ui.add_enabled(scale != of_preset, keep).on_hover_text("Copies this scale to every system").clicked() {
+        ui.label(format!("Current scale: {scale} (preset: {of_preset})"));
+        let keep = egui::Button::new("Use this scale");
+        if ui
+            .add_enabled(scale != of_preset, keep)
+            .on_hover_text("Sets this scale in every system of the preset")
+            .clicked()
+        {
             set_scale(preset, scale);
         }
     });
@@ -138,20 +146,24 @@ fn drawn(ui: &mut Ui, timings: &FrameTimings) {
         ui,
         "drawn",
         &[
-            ("systems in sight", counts.systems.to_string(), "Systems in view"),
-            ("sprites", grouped(counts.sprites), "Sprites of these systems"),
+            ("Visible systems", counts.systems.to_string(), "Systems in the image"),
+            ("Sprites", grouped(counts.sprites), "Sprites of these systems"),
             (
-                "fragments",
+                "Fragments",
                 grouped(overdraw.fragments.round() as u64),
-                "Area of all sprites in texels; each texel is shaded unless the scene hides it",
+                "Area of all sprites in texels. Each texel is shaded unless the scene hides it.",
             ),
-            ("mean overdraw", format!("{:.2}", overdraw.mean()), "Sprites on top of each other, mean over their box"),
-            ("texels", grouped(counts.texels), "Texels of the accumulation targets in use: each is lit once"),
+            (
+                "Average overdraw",
+                format!("{:.2}", overdraw.mean()),
+                "Sprites on top of each other, averaged over their box",
+            ),
+            ("Texels", grouped(counts.texels), "Texels of the smoke buffers in use"),
         ],
     );
     // Empty for a system whose path is not `auto`.
     for choice in &timings.stats.choices {
-        ui.label(format!("Path auto: {choice}"));
+        ui.label(format!("Automatic path: {choice}"));
     }
 }
 
@@ -161,16 +173,16 @@ fn memory(ui: &mut Ui, timings: &FrameTimings) {
         ui,
         "memory",
         &[
-            ("targets", size(memory.smoke.targets), "Accumulation targets, reduced depths and baked light"),
-            ("buffers", size(memory.smoke.buffers), "Particles and uniforms"),
+            ("Smoke buffers", size(memory.smoke.targets), "Accumulation targets, reduced depths and baked light"),
+            ("Particles", size(memory.smoke.buffers), "Buffers of particles and uniforms"),
             (
-                "of these, tiled path",
+                "Of these, tiled path",
                 size(memory.smoke.tiled.total()),
-                "Of the buffers: particles in the view, sorted keys, lists",
+                "Path: the way sprites are drawn. `tiled` keeps sorted lists of the visible particles.",
             ),
-            ("materials", size(memory.materials), "Ramps and sprites"),
-            ("scene", size(memory.scene), "The scene's own targets, and the picture"),
-            ("strip and second picture", size(beside), "Memory of the strip below and of the second picture"),
+            ("Materials", size(memory.materials), "Ramps and sprites"),
+            ("Scene", size(memory.scene), "Buffers of the scene, and the image"),
+            ("Thumbnails and image B", size(beside), "Debug views below the image, and the compared image"),
         ],
     );
 }
@@ -229,16 +241,17 @@ mod tests {
         let of_all = ["depth_downsample", "accumulate", "light_target", "depth_slopes", "transfer", "specular_scatter"];
         assert_eq!(names, [of_shadow.as_slice(), &of_all].concat());
         for name in names.iter().chain(&[
-            "targets",
-            "buffers",
-            "materials",
-            "scene",
-            "sprites",
-            "fragments",
-            "mean overdraw",
-            "texels",
+            "Smoke buffers",
+            "Particles",
+            "Materials",
+            "Scene",
+            "Sprites",
+            "Fragments",
+            "Average overdraw",
+            "Texels",
         ]) {
-            harness.get_by_label(name);
+            let name = display_name(name);
+            assert!(harness.query_all_by_label(&name).next().is_some(), "{name}");
         }
         assert!(memory.smoke.targets > 0 && memory.smoke.buffers > 0 && memory.materials > 0 && memory.scene > 0);
         harness.get_by_label("Look").click();
@@ -256,16 +269,16 @@ mod tests {
         session.timings.budget = haze::settings::Budget { milliseconds: 0.05, ..Default::default() };
         harness.run_steps(2);
         assert_eq!(scale(&mut harness), None);
-        harness.get_by_label("Hold 0.05 ms").click();
+        harness.get_by_label("Keep GPU time under 0.05 ms").click();
         settle(&mut harness);
         let of_preset = before.systems[0].settings.accumulate.scale;
         assert_eq!(scale(&mut harness), Some(8), "the coarsest that the budget allows");
         assert!(of_preset < 8 && harness.state_mut().session_mut().document.preset == before);
-        harness.get_by_label("Keep this scale").click();
+        harness.get_by_label("Use this scale").click();
         settle(&mut harness);
         assert_eq!(harness.state_mut().session_mut().document.preset.systems[0].settings.accumulate.scale, 8);
         // Without the budget, the preset's scale is shown again.
-        harness.get_by_label("Hold 0.05 ms").click();
+        harness.get_by_label("Keep GPU time under 0.05 ms").click();
         settle(&mut harness);
         assert_eq!(scale(&mut harness), None);
     }

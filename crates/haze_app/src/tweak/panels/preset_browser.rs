@@ -21,7 +21,7 @@ pub fn panel(ui: &Ui, thumbnails: &mut PresetThumbnails) -> Option<Option<PathBu
     let room = ui.ctx().content_rect().size() - Vec2::new(80.0, 140.0);
     let response = egui::Modal::new(egui::Id::unique("presets")).show(ui.ctx(), |ui| {
         ui.set_width(room.x.min(3.0 * (CELL.x + 12.0)));
-        ui.heading("Begin with a preset");
+        ui.heading("New from Preset");
         ui.add_space(6.0);
         egui::ScrollArea::vertical().max_height(room.y).show(ui, |ui| {
             let columns = (ui.available_width() / (CELL.x + ui.spacing().item_spacing.x)).max(1.0) as usize;
@@ -40,7 +40,9 @@ pub fn panel(ui: &Ui, thumbnails: &mut PresetThumbnails) -> Option<Option<PathBu
 /// Draws an image with its name. Returns true if it was chosen.
 fn cell(ui: &mut Ui, entry: &PresetEntry) -> bool {
     let (rect, response) = ui.allocate_exact_size(CELL, Sense::click());
-    let name = entry.shown.as_ref().map_or_else(|| file_name(&entry.path), |shown| shown.name.clone());
+    // A file is known by its name: a preset that was saved as another keeps the name inside.
+    let shown = entry.shown.as_ref().filter(|_| entry.path.extension().is_none());
+    let name = shown.map_or_else(|| file_name(&entry.path), |shown| shown.name.clone());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name.clone()));
     let visuals = ui.style().interact(&response);
     let place =

@@ -1,16 +1,18 @@
 //! Stops of a ramp that has a recipe, and ways to get a recipe for one that has none.
 
+use std::path::Path;
+
 use eframe::egui::{self, Color32, Ui};
 use egui_gradient::DisplayOptions;
 use haze_author::ramp::{Blend, RampRecipe, RampRow};
 
 use super::rows::value_control;
 use crate::tweak::document::ramp_edits::RampOrigin;
-use crate::tweak::session::Session;
+use crate::tweak::session::{CopiedImage, CopyRequest, Session};
 
 /// Tooltip about saving.
 const WRITTEN: &str =
-    "Shown at once. The recipe and its PNG are written when a step is complete, and again when it is undone";
+    "Changes are visible at once. The ramp's files, a recipe and a PNG, are written after each step and each undo.";
 
 /// Ramp of the preset.
 #[derive(Clone, Copy)]
@@ -80,8 +82,8 @@ pub fn editor(
 /// Draws the choice of the color space for blending. Returns true if it was changed.
 fn blend(ui: &mut Ui, blend: &mut Blend, field: &str) -> bool {
     let before = *blend;
-    let label = ui.label("blended in");
-    value_control::choice(ui, blend, &format!("blend of {field}"), |_| None).labelled_by(label.id);
+    let label = ui.label("Blend in");
+    value_control::choice(ui, blend, &format!("Blend of {field}"), |_| None).labelled_by(label.id);
     *blend != before
 }
 
@@ -101,23 +103,23 @@ fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
     }
     let before = recipe.rows.clone();
     ui.horizontal_wrapped(|ui| {
-        ui.label("row at");
+        ui.label("Row at");
         for (place, of) in recipe.rows.iter().enumerate() {
-            ui.selectable_value(index, place, format!("{:.2}", of.at)).on_hover_text("On the second axis");
+            ui.selectable_value(index, place, format!("{:.2}", of.at)).on_hover_text("Position on the vertical axis");
         }
         if has_times {
-            let about = "A gradient along the second axis that multiplies the rows";
-            ui.selectable_value(index, recipe.rows.len(), "times").on_hover_text(about);
+            let about = "A gradient along the vertical axis that multiplies the rows";
+            ui.selectable_value(index, recipe.rows.len(), "Multiplier").on_hover_text(about);
         }
     });
     let Some(chosen) = recipe.rows.get_mut(*index) else { return false };
     let (mut is_added, mut is_removed) = (false, false);
     ui.horizontal(|ui| {
-        let label = ui.label("position");
+        let label = ui.label("Position");
         let field = egui::DragValue::new(&mut chosen.at).range(0.0..=1.0).speed(0.002).update_while_editing(false);
-        ui.add(field).labelled_by(label.id).on_hover_text("On the second axis, 0 to 1");
-        is_added = ui.button("Add a row").on_hover_text("A copy of this one, half way to the next").clicked();
-        is_removed = ui.add_enabled(before.len() > 1, egui::Button::new("Remove the row")).clicked();
+        ui.add(field).labelled_by(label.id).on_hover_text("Position on the vertical axis, 0 to 1");
+        is_added = ui.button("Add row").on_hover_text("Copies this row half way to the next").clicked();
+        is_removed = ui.add_enabled(before.len() > 1, egui::Button::new("Remove row")).clicked();
     });
     if is_added {
         let above = before.iter().map(|row| row.at).filter(|at| *at > chosen.at).fold(1.0, f32::min);
@@ -136,26 +138,35 @@ pub fn offer_stops(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
     let folders = session.folders();
     match session.ramps.source(ramp.name, &folders) {
         RampOrigin::BuiltIn => {
-            let about = "Writes a copy of this ramp and its recipe beside the preset, to be edited here; a preset that is \
-                         built in is saved first";
-            if button(ui, "Make my own", ramp, about) {
-                session.ramps.request_copy(ramp.system, ramp.field, session.document.is_built_in());
+            let about = "Built-in ramps cannot be changed. Makes an editable copy; asks first.";
+            if button(ui, "Make my own…", ramp, about) {
+                let (system, name, image) = (ramp.system, ramp.name.to_owned(), CopiedImage::Ramp(ramp.field));
+                session.copy_request = Some(CopyRequest { system, name, image });
             }
         }
-        RampOrigin::Painted => {
-            let about = "No recipe beside it makes this picture. Finds stops that do; the picture does not change until a stop is edited";
-            if button(ui, "Fit stops to the picture", ramp, about) {
+        RampOrigin::Painted { has_recipe } => {
+            let recipe = Path::new(ramp.name).with_extension("ramp.json");
+            if *has_recipe {
+                ui.label(format!(
+                    "The image does not match {}: another program changed one of them.",
+                    recipe.display()
+                ));
+            } else {
+                ui.weak("A painted image has no stops.");
+            }
+            let about = "Finds stops that make this image. The image stays as it is until you edit a stop.";
+            if button(ui, "Fit stops to image", ramp, about) {
                 match session.ramps.fit(ramp.name) {
                     Ok((count, error)) => {
                         let name = ramp.name;
-                        session.messages.info("ramp", format!("{name}: {count} stops, at most {error:.1}/255 off"));
+                        session.messages.info("ramp", format!("{name}: {count} stops, largest error {error:.1}/255"));
                     }
                     Err(error) => session.messages.error("ramp", error),
                 }
             }
         }
         RampOrigin::Recipe(_) => {
-            ui.weak("Saved with each step").on_hover_text(WRITTEN);
+            ui.weak("Saved automatically").on_hover_text(WRITTEN);
         }
         RampOrigin::Missing => {}
     }

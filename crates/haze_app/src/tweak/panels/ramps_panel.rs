@@ -4,13 +4,14 @@ use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2}
 use glam::UVec2;
 use haze::MaterialAssets;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::preset::Preset;
 use haze::ramp::Ramp;
-use haze::settings::{ImageRole, RampFilter, set_field};
+use haze::settings::{FieldValue, ImageRole, RampFilter, field_values, set_field};
 use haze_reference::SystemProbe;
 
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
 use super::rows::picture_gallery::gallery;
-use super::rows::with_spaces;
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::session::inspection::PixelValues;
 use crate::tweak::session::ramp_survey::{Histogram, RampPlace, RampSurvey, SIDE};
 use crate::tweak::session::{Session, ramp_survey};
@@ -45,33 +46,27 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     let is_forward = system.settings.is_forward();
     let survey = session.inspect.survey.clone().filter(|_| !is_forward);
     let survey = survey.as_deref();
-    let reason_without_effect =
-        |session: &Session, field: &str| session.no_effect_reason(&format!("systems[{index}].material.{field}"));
     let mut ramp_place = None;
-    ui.weak("Point at a ramp to highlight the smoke that samples it. Point at smoke to mark its place.");
+    ui.weak(
+        "Hover a ramp to highlight the smoke that uses that color. Hover the smoke to mark its place on the ramps.",
+    );
     if is_forward {
-        ui.weak("Forward smoke is lit sprite by sprite: no texels to count.");
+        ui.weak("No histograms: the forward path lights each sprite by itself.");
     }
-    for (field, title, name) in [
-        ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
-        ("backlight_ramp", "Diffuse, lit from behind", &system.material.backlight_ramp),
-        ("shadow_ramp", "Shadow, by smoke before the light and its angle", &system.material.shadow_ramp),
-        ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
-        ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
-        ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),
-        ("age_ramp", "Age, from birth to death", &system.material.age_ramp),
-        ("heat_ramp", "Heat, from birth to death", &system.material.heat_ramp),
-        ("fire_ramp", "Fire, by heat and amount", &system.material.fire_ramp),
-    ] {
+    for RampEntry { field, title, tooltip, switch } in &RAMPS {
+        let field = *field;
+        let path = format!("systems[{index}].material.{field}");
+        let Some(name) = ramp_name(&session.document.preset, &path) else { continue };
+        let name = name.as_str();
         ui.add_space(6.0);
-        choose(ui, session, title, &format!("systems[{index}].material.{field}"), name);
-        if let Some(reason) = reason_without_effect(session, field) {
-            ui.weak(format!("Not used: {reason}"));
+        choose(ui, session, (title, tooltip), &path, name);
+        if let Some(reason) = session.no_effect_reason(&session.document.preset, &path) {
+            off(ui, session, index, field, switch.as_ref(), reason);
             continue;
         }
         let ramp = NamedRamp { system: index, field, name };
         ramp_stops::offer_stops(ui, session, ramp);
-        let spoken = with_spaces(field);
+        let spoken = display_name(field);
         let ink = ui.visuals().text_color();
         if field == "specular_ramp" {
             let density = survey.map(|survey| survey.by_glow(index));
@@ -87,7 +82,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
             continue;
         }
         if field == "shadow_ramp" {
-            let axes = "across: smoke before the light; up: from a light on this side to one behind the smoke";
+            let axes = "Across: smoke in front of the light. Up: light from the viewer's side to light from behind.";
             plane(ui, (&spoken, axes), (&material.shadow_ramp, filter), None, None);
             ramp_stops::editor(ui, session, ramp, &AxisSamples::default(), &AxisSamples::default());
             continue;
@@ -121,7 +116,123 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
 }
 
 /// Axes of the specular ramp.
-const GLOW_AXES: &str = "across: distance² from the light; up: amount";
+const GLOW_AXES: &str = "Across: squared distance from the light. Up: amount.";
+
+/// Ramp of a system, as the tab shows it.
+struct RampEntry {
+    field: &'static str,
+    title: &'static str,
+    tooltip: &'static str,
+    switch: Option<RampSwitch>,
+}
+
+/// Setting that turns a ramp on: its path below the system, and the value to set.
+struct RampSwitch {
+    label: &'static str,
+    setting: &'static str,
+    value: &'static str,
+}
+
+const fn ramp(
+    field: &'static str,
+    title: &'static str,
+    tooltip: &'static str,
+    switch: Option<RampSwitch>,
+) -> RampEntry {
+    RampEntry { field, title, tooltip, switch }
+}
+
+const fn switch(label: &'static str, setting: &'static str, value: &'static str) -> Option<RampSwitch> {
+    Some(RampSwitch { label, setting, value })
+}
+
+/// Explanation of two terms in the titles.
+const AMOUNT: &str = "Amount: smoke along the line of sight, 0 (none) to 1 (opaque)";
+const COVERAGE: &str = "Coverage: how much the smoke hides. Boost multiplies the amount into it.";
+
+/// All ramps, in the order of the tab.
+const RAMPS: [RampEntry; 9] = [
+    ramp("diffuse_ramp", "Diffuse", "Color by the angle between the surface of the smoke and the light", None),
+    ramp(
+        "backlight_ramp",
+        "Diffuse, backlit",
+        "Color of smoke between the viewer and the light",
+        switch("Turn on backlight ramp", "settings.diffuse.backlight", "ramp"),
+    ),
+    ramp(
+        "shadow_ramp",
+        "Shadow",
+        "Light that remains behind smoke, by the smoke in front of the light and the angle of the light",
+        switch("Turn on shadows", "settings.shadow.strength", "1"),
+    ),
+    ramp(
+        "soft_scatter_ramp",
+        "Soft scatter, by amount",
+        AMOUNT,
+        switch("Turn on soft scatter ramp", "settings.soft_scatter.mode", "ramp"),
+    ),
+    ramp(
+        "specular_ramp",
+        "Specular, by distance and amount",
+        "Glow of a light through the smoke",
+        switch("Turn on specular scatter", "settings.specular_scatter.intensity", "1"),
+    ),
+    ramp(
+        "coverage_ramp",
+        "Coverage, by amount × boost",
+        COVERAGE,
+        switch("Turn on coverage ramp", "settings.coverage", "ramp"),
+    ),
+    ramp(
+        "age_ramp",
+        "Age, from birth to death",
+        "Color of particles over their lifetime",
+        switch("Turn on color by age", "settings.sprite.age_color", "1"),
+    ),
+    ramp(
+        "heat_ramp",
+        "Heat, from birth to death",
+        "Heat of particles over their lifetime",
+        switch("Turn on fire", "settings.fire.intensity", "1"),
+    ),
+    ramp(
+        "fire_ramp",
+        "Fire, by heat and amount",
+        "Color of the fire",
+        switch("Turn on fire", "settings.fire.intensity", "1"),
+    ),
+];
+
+/// Returns the name of the ramp in a field.
+fn ramp_name(preset: &Preset, path: &str) -> Option<String> {
+    match field_values(preset).into_iter().find(|(field, _)| field == path) {
+        Some((_, FieldValue::Text(name))) => Some(name),
+        _ => None,
+    }
+}
+
+/// Draws the reason why a ramp is not used. If one setting turns it on, draws a button for it instead.
+fn off(ui: &mut Ui, session: &mut Session, system: usize, field: &str, switch: Option<&RampSwitch>, reason: &str) {
+    let turned_on = switch.and_then(|switch| {
+        let mut preset = session.document.preset.clone();
+        set_field(&mut preset, &format!("systems[{system}].{}", switch.setting), switch.value).ok()?;
+        let path = format!("systems[{system}].material.{field}");
+        session.no_effect_reason(&preset, &path).is_none().then_some((switch.label, preset))
+    });
+    let Some((label, preset)) = turned_on else {
+        ui.weak(format!("Off: {reason}"));
+        return;
+    };
+    ui.horizontal(|ui| {
+        ui.weak("Off");
+        let button = ui.button(label);
+        let name = format!("{label}: {}", display_name(field));
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        if button.clicked() {
+            session.document.preset = preset;
+        }
+    });
+}
 
 fn is_diffuse(field: &str) -> bool {
     matches!(field, "diffuse_ramp" | "backlight_ramp")
@@ -179,8 +290,8 @@ fn axis_samples(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color
 }
 
 /// Draws the title of a ramp and the choice of its image.
-fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &str) {
-    let label = ui.strong(title);
+fn choose(ui: &mut Ui, session: &mut Session, (title, tooltip): (&str, &str), path: &str, name: &str) {
+    let label = ui.strong(title).on_hover_text(tooltip);
     let mut chosen = name.to_owned();
     gallery(ui, &session.thumbnails, ImageRole::Ramp, &mut chosen, path).labelled_by(label.id);
     if chosen != name
@@ -234,7 +345,7 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
     if histograms.is_empty() {
         return;
     }
-    let name = if field == "diffuse_ramp" { "histogram of N·L" } else { "histogram of amounts" };
+    let name = if field == "diffuse_ramp" { "Histogram of N·L" } else { "Histogram of amounts" };
     let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM_HEIGHT), name);
     ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
     histograms.iter().for_each(|(color, bins)| egui_gradient::histogram(ui, rect, bins, *color));
@@ -244,11 +355,11 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
 fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
     ui.horizontal_wrapped(|ui| {
         for histogram in histograms {
-            let name = names.get(histogram.light).map_or("light", String::as_str);
+            let name = names.get(histogram.light).map_or("Light", String::as_str);
             ui.colored_label(light_color(histogram.light), name);
         }
         if histograms.is_empty() {
-            ui.weak("No light reaches smoke in the picture");
+            ui.weak("No light reaches the smoke in this image");
         }
     });
 }

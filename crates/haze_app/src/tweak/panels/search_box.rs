@@ -2,7 +2,6 @@
 
 use eframe::egui::{self, Key, Ui};
 
-use super::rows::with_spaces;
 use crate::tweak::session::Session;
 use crate::tweak::session::setting_search::matches;
 
@@ -26,20 +25,19 @@ pub fn panel(ui: &Ui, session: &mut Session) {
         let edit =
             egui::TextEdit::singleline(&mut search.text).hint_text("Find a setting").desired_width(f32::INFINITY);
         let edit = ui.add(edit);
-        edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "find a setting"));
+        edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Find a setting"));
         edit.request_focus();
         if edit.changed() {
             search.chosen = 0;
         }
         for (index, found) in found.iter().enumerate() {
-            let text = format!("{}   {}", with_spaces(&found.name), found.place);
-            let entry = ui.selectable_label(index == search.chosen, text).on_hover_text(&found.tooltip);
+            let entry = ui.selectable_label(index == search.chosen, &found.name).on_hover_text(&found.tooltip);
             if entry.clicked() || is_entered && index == search.chosen {
                 gone_to = Some((found.tab, found.path.clone()));
             }
         }
         if found.is_empty() {
-            ui.weak("No setting has this name or description.");
+            ui.weak("Nothing found");
         }
     });
     if let Some((tab, path)) = gone_to {

@@ -7,6 +7,7 @@ use haze::settings::{Fields, field_path};
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
 use super::rows::{RowRequest, setting_rows, soft_fade_plot};
 use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel};
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::session::Session;
 use crate::tweak::session::messages::truncate_middle;
 use crate::tweak::session::setting_search::SMOKE_TAB_GROUPS;
@@ -15,13 +16,17 @@ use crate::tweak::session::view_options::Tab;
 
 /// Tabs with their names and tooltips.
 pub const TABS: [(Tab, &str, &str); 7] = [
-    (Tab::Look, "Look", "The few controls that determine a look"),
-    (Tab::Light, "Light", "Lights, the sky, the camera"),
+    (Tab::Look, "Look", "The controls that shape the look"),
+    (Tab::Light, "Light", "Lights, sky, scene and camera"),
     (Tab::Smoke, "Smoke", "Emitter, material and lighting of the smoke"),
-    (Tab::Ramps, "Ramps", "Ramps that light the smoke, and the parts of them that this picture samples"),
-    (Tab::Sprite, "Sprite", "The sprite's flipbook under a moving light, and its recipe"),
-    (Tab::Advanced, "Advanced", "How the smoke is drawn: techniques, targets, formats"),
-    (Tab::Performance, "Cost", "GPU time and memory of the picture, and a budget"),
+    (Tab::Ramps, "Ramps", "Ramps: the gradients that color and light the smoke"),
+    (Tab::Sprite, "Sprite", "The animated image of each particle, and its recipe"),
+    (
+        Tab::Advanced,
+        "Advanced",
+        "How the smoke is drawn. Technique: how sprites meet surfaces. Path: how they are blended. Six-way: light maps in place of normals.",
+    ),
+    (Tab::Performance, "Cost", "GPU time and memory, and a time budget"),
 ];
 
 /// Draws the panel. Returns the path of a field if a sheet of its values is requested.
@@ -99,7 +104,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
         changed: session.changed(),
-        reason_without_effect: &|path| session.no_effect_reason(path),
+        reason_without_effect: &|path| session.no_effect_reason(&session.document.preset, path),
         second: session.second_diff(),
         has_sheets: true,
         requests: Vec::new(),
@@ -146,37 +151,37 @@ fn system_of(path: &str) -> Option<usize> {
 fn section(
     ui: &mut Ui,
     context: &mut RowContext<'_>,
-    title: &str,
     path: &[FieldStep],
     is_open: bool,
     fields: &mut dyn Fields,
 ) -> bool {
     let whole = field_path(path);
+    let title = path.last().map(|(name, _)| display_name(name)).unwrap_or_default();
     let header =
-        setting_rows::header(context, title, &|field| is_at(field, &whole)).id_salt(path).default_open(is_open);
+        setting_rows::header(context, &title, &|field| is_at(field, &whole)).id_salt(path).default_open(is_open);
     header.show(ui, |ui| setting_rows::show(ui, context, path, fields)).fully_open()
 }
 
 fn surroundings(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset) {
-    section(ui, context, "Sky and scene", &[("environment", None)], true, &mut preset.environment);
-    section(ui, context, "Camera", &[("camera", None)], true, &mut preset.camera);
+    section(ui, context, &[("environment", None)], true, &mut preset.environment);
+    section(ui, context, &[("camera", None)], true, &mut preset.camera);
 }
 
 fn smoke(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
-    section(ui, context, "Emitter", &[at, ("emitter", None)], true, &mut system.emitter);
-    section(ui, context, "Particles from files", &[at, ("cache", None)], false, &mut system.cache);
-    section(ui, context, "Sprite and ramps", &[at, ("material", None)], false, &mut system.material);
+    section(ui, context, &[at, ("emitter", None)], true, &mut system.emitter);
+    section(ui, context, &[at, ("cache", None)], false, &mut system.cache);
+    section(ui, context, &[at, ("material", None)], false, &mut system.material);
     let settings = &mut system.settings;
     let at = |name| [at, ("settings", None), (name, None)];
-    section(ui, context, "Diffuse", &at("diffuse"), false, &mut settings.diffuse);
-    section(ui, context, "Shadow", &at("shadow"), false, &mut settings.shadow);
-    section(ui, context, "Ambient", &at("ambient"), false, &mut settings.ambient);
-    section(ui, context, "Fire", &at("fire"), false, &mut settings.fire);
-    section(ui, context, "Soft scatter", &at("soft_scatter"), false, &mut settings.soft_scatter);
-    section(ui, context, "Specular scatter", &at("specular_scatter"), false, &mut settings.specular_scatter);
-    if section(ui, context, "Soft fade", &at("soft_fade"), false, &mut settings.soft_fade) {
+    section(ui, context, &at("diffuse"), false, &mut settings.diffuse);
+    section(ui, context, &at("shadow"), false, &mut settings.shadow);
+    section(ui, context, &at("ambient"), false, &mut settings.ambient);
+    section(ui, context, &at("fire"), false, &mut settings.fire);
+    section(ui, context, &at("soft_scatter"), false, &mut settings.soft_scatter);
+    section(ui, context, &at("specular_scatter"), false, &mut settings.specular_scatter);
+    if section(ui, context, &at("soft_fade"), false, &mut settings.soft_fade) {
         soft_fade_plot::panel(ui, &settings.soft_fade);
     }
 }
@@ -201,6 +206,7 @@ mod tests {
     use egui_kittest::{Harness, Node};
     use haze::settings::FieldValue;
 
+    use crate::tweak::document::display_names::display_name;
     use crate::tweak::panels::rows::value_text::shown_value;
     use crate::tweak::session::comparison::CompareWith;
     use crate::tweak::window::Window;
@@ -216,12 +222,12 @@ mod tests {
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
         let is_grey = |name| control(&harness, name).accesskit_node().is_disabled();
-        assert!(is_grey("blend mode") && !is_grey("technique"));
+        assert!(is_grey("Blend mode") && !is_grey("Technique"));
         // The name is to the left of the control.
-        let place = control(&harness, "blend mode").rect().left_center();
+        let place = control(&harness, "Blend mode").rect().left_center();
         harness.hover_at(place - Vec2::new(80.0, 0.0));
         harness.run_steps(8);
-        assert!(harness.query_all_by_label_contains("No effect here: forward only.").next().is_some());
+        assert!(harness.query_all_by_label_contains("No effect now: forward only.").next().is_some());
     }
 
     #[test]
@@ -230,10 +236,13 @@ mod tests {
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
         let place = |name: &str| harness.get_all_by_label(name).next().unwrap().rect().top();
-        let before = ["technique", "boost", "sprite", "volumetric"].map(place).into_iter().fold(0.0, f32::max);
-        assert!(["path", "blend mode", "accumulate"].into_iter().all(|name| place(name) > before));
+        let before = ["Technique", "Boost", "Sprite", "Volumetric"].map(place).into_iter().fold(0.0, f32::max);
+        assert!(["Path", "Blend mode", "Smoke buffer"].into_iter().all(|name| place(name) > before));
         for name in super::SMOKE_TAB_GROUPS {
-            assert!(harness.query_by_label(&name.replace('_', " ")).is_none(), "{name}");
+            // The strip below the image has labels of its own.
+            let is_row = |node: &Node<'_>| node.rect().left() > 900.0;
+            let rows = harness.query_all_by_label(&display_name(name)).filter(is_row).count();
+            assert_eq!(rows, 0, "{name}");
         }
     }
 
@@ -245,23 +254,23 @@ mod tests {
         harness.run_steps(4);
         let window = eframe::egui::Rect::from_min_size(Default::default(), size);
         for heading in
-            ["Emitter", "birth", "motion", "turbulence", "size", "appearance", "Sprite and ramps", "Soft fade"]
+            ["Emitter", "Birth", "Motion", "Turbulence", "Size", "Appearance", "Sprite and ramps", "Soft fade"]
         {
             assert!(window.contains_rect(harness.get_by_label(heading).rect()), "{heading}");
         }
         let sliders = harness.query_all_by_role(Role::Slider).filter(|node| node.rect().left() > 800.0).count();
         assert!(sliders < 10, "{sliders} sliders in one run");
-        assert!(harness.query_by_label("turbulence speed").is_none());
+        assert!(harness.query_by_label("Turbulence speed").is_none());
         // A changed field in a collapsed part is marked.
         harness.state_mut().session.document.preset.systems[0].emitter.turbulence_speed = 0.4;
         harness.state_mut().session.search.go_to("systems[0].material.specular_ramp".into());
         harness.run_steps(8);
-        assert!(harness.query_by_label("turbulence •").is_some() && harness.query_by_label("motion").is_some());
-        assert!(window.contains_rect(control(&harness, "specular ramp").rect()));
-        assert!(harness.query_by_label("y down").is_some(), "the first heading is open, too");
+        assert!(harness.query_by_label("Turbulence •").is_some() && harness.query_by_label("Motion").is_some());
+        assert!(window.contains_rect(control(&harness, "Specular ramp").rect()));
+        assert!(harness.query_by_label("Y down").is_some(), "the first heading is open, too");
         harness.state_mut().session.search.go_to("systems[0].emitter.turbulence_speed".into());
         harness.run_steps(8);
-        let row = harness.get_all_by_label("turbulence speed").next().unwrap().rect();
+        let row = harness.get_all_by_label("Turbulence speed").next().unwrap().rect();
         assert!(window.contains_rect(row), "{row:?}");
     }
 
@@ -271,7 +280,7 @@ mod tests {
         let mut harness = window("column", size, Theme::Dark);
         let mut width = None;
         for (_, name, _) in super::TABS {
-            harness.get_by_label(name).click();
+            harness.get_all_by_label(name).next().unwrap().click();
             harness.run_steps(4);
             let picture = harness.get_by_label("viewport").rect();
             // The strip takes the full width.
@@ -281,7 +290,7 @@ mod tests {
             let width = *width.get_or_insert(picture.width());
             assert!((width - picture.width()).abs() < 0.5, "{name}: {width} {picture}");
             for (_, name, _) in super::TABS {
-                let tab = harness.get_by_label(name).rect();
+                let tab = harness.get_all_by_label(name).next().unwrap().rect();
                 assert!(tab.left() >= picture.right() && tab.right() <= size.x, "{name}: {tab}, beside {picture}");
             }
         }
@@ -296,7 +305,7 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let saved = harness.state().session.document.preset.clone();
         let is_marked = |harness: &Harness<'_, Window>, name| harness.query_by_label(name).is_some();
-        let (exposure, buoyancy) = ("take exposure of the second", "take rise of the second");
+        let (exposure, buoyancy) = ("Copy Exposure from image B", "Copy Rise from image B");
         let preset = &mut harness.state_mut().session.document.preset;
         preset.camera.exposure = 3.0;
         preset.systems[0].emitter.buoyancy += 1.0;
@@ -308,18 +317,18 @@ mod tests {
         harness.state_mut().session.compare.against = Some(CompareWith::Saved);
         harness.run_steps(3);
         assert!(is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
-        assert!(!is_marked(&harness, "take glow of the second"));
+        assert!(!is_marked(&harness, "Copy Glow from image B"));
         harness.get_by_label(exposure).click();
         harness.run_steps(3);
         let now = |harness: &Harness<'_, Window>| harness.state().session.document.preset.clone();
         assert_eq!(now(&harness).camera, saved.camera);
         assert_ne!(now(&harness).systems, saved.systems);
         assert!(!is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
-        assert_eq!(undo_name(&harness).as_deref(), Some("exposure"));
+        assert_eq!(undo_name(&harness).as_deref(), Some("Exposure"));
         // The menu shows the value that would be copied.
-        row_menu(&mut harness, "rise");
+        row_menu(&mut harness, "Rise");
         let value = shown_value(&FieldValue::Number(saved.systems[0].emitter.buoyancy), "m/s²");
-        harness.get_by_label(&format!("Take {value} of the second picture")).click();
+        harness.get_by_label(&format!("Copy {value} from image B")).click();
         harness.run_steps(3);
         assert_eq!(now(&harness), saved);
         harness.state_mut().session.undo();

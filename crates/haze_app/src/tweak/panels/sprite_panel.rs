@@ -16,7 +16,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     let index = session.view.system;
     let material = session.materials().into_iter().nth(index);
     let Some((system, material)) = session.document.preset.systems.get(index).zip(material) else {
-        ui.weak("The preset has no smoke.");
+        ui.weak("This preset has no smoke.");
         return;
     };
     let (names, settings) = (system.material.clone(), system.settings);
@@ -27,7 +27,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         ui.horizontal(|ui| {
             ui.strong(truncate_middle(&names.sprite, 40));
             let sprite = &material.sprite;
-            ui.weak(format!("{} frames of {1}x{1}", sprite.frame_count(), sprite.size()));
+            ui.weak(format!("{} frames, {1}×{1} each", sprite.frame_count(), sprite.size()));
         });
     };
     if ui.available_height() < SMALL {

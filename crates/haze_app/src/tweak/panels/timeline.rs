@@ -12,18 +12,18 @@ use crate::tweak::session::Session;
 pub fn panel(ui: &mut Ui, session: &mut Session) {
     let playback = &mut session.playback;
     narrow::row(ui, "timeline", |ui| {
-        if icon_button::button(ui, Icon::Back, false, "A frame back (,)").clicked() {
+        if icon_button::button(ui, Icon::Back, false, "Previous frame (,)").clicked() {
             playback.step(-1.0);
         }
         let (sign, name) =
-            if playback.is_playing { (Icon::Pause, "Pause (space)") } else { (Icon::Play, "Play (space)") };
+            if playback.is_playing { (Icon::Pause, "Pause (Space)") } else { (Icon::Play, "Play (Space)") };
         if icon_button::button(ui, sign, playback.is_playing, name).clicked() {
             playback.is_playing = !playback.is_playing;
         }
-        if icon_button::button(ui, Icon::Forward, false, "A frame on (.)").clicked() {
+        if icon_button::button(ui, Icon::Forward, false, "Next frame (.)").clicked() {
             playback.step(1.0);
         }
-        if icon_button::button(ui, Icon::Loop, playback.is_looping, "Loop the range at the right (L)").clicked() {
+        if icon_button::button(ui, Icon::Loop, playback.is_looping, "Loop playback (L)").clicked() {
             playback.is_looping = !playback.is_looping;
         }
         // In a narrow window, the rest of the row is scrolled to.
@@ -33,23 +33,23 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             .clamping(egui::SliderClamping::Never)
             .fixed_decimals(2)
             .suffix(" s");
-        ui.add(scrub).on_hover_text("Seconds into the emission");
+        ui.add(scrub).on_hover_text("Time since the smoke began");
         let (mut start, mut end) = (*playback.range.start(), *playback.range.end());
         let drag =
             |value| egui::DragValue::new(value).speed(0.05).range(-1000.0..=1.0e5).fixed_decimals(1).suffix(" s");
-        ui.weak("from").labelled_by(ui.add(drag(&mut start)).on_hover_text("Start of the range").id);
-        ui.weak("to").labelled_by(ui.add(drag(&mut end)).on_hover_text("End of the range").id);
+        ui.weak("From").labelled_by(ui.add(drag(&mut start)).on_hover_text("Start of the loop").id);
+        ui.weak("To").labelled_by(ui.add(drag(&mut end)).on_hover_text("End of the loop").id);
         if end > start {
             playback.range = start..=end;
         }
         let speed =
-            egui::DragValue::new(&mut playback.speed).speed(0.01).range(-8.0..=8.0).fixed_decimals(2).prefix("x ");
-        ui.add(speed).on_hover_text("Speed of the clock; negative runs backwards");
+            egui::DragValue::new(&mut playback.speed).speed(0.01).range(-8.0..=8.0).fixed_decimals(2).suffix("×");
+        ui.add(speed).on_hover_text("Playback speed; a negative speed plays backwards");
         freeze(ui, &mut session.document.preset, session.view.size);
         let preset = &mut session.document.preset;
         let is_kept = preset.time.to_bits() == playback.time.to_bits();
         let keep =
-            ui.add_enabled(!is_kept, egui::Button::new("Keep")).on_hover_text("Makes this moment the preset's time");
+            ui.add_enabled(!is_kept, egui::Button::new("Set start")).on_hover_text("Opens the preset at this time");
         if keep.clicked() {
             preset.time = playback.time;
         }
@@ -61,10 +61,10 @@ fn freeze(ui: &mut Ui, preset: &mut Preset, size: UVec2) {
     let path = |index| format!("systems[{index}].settings.sprite.freeze_animation");
     let idle: Option<Vec<_>> =
         (0..preset.systems.len()).map(|index| no_effect_reason(preset, &path(index), size)).collect();
-    let idle = idle.map(|reasons| reasons.first().copied().unwrap_or("there is no smoke"));
+    let idle = idle.map(|reasons| reasons.first().copied().unwrap_or("this preset has no smoke"));
     let is_frozen = preset.systems.iter().any(|system| system.settings.sprite.freeze_animation);
     let button = ui.add_enabled(idle.is_none(), egui::Button::selectable(is_frozen, "Freeze"));
-    let button = button.on_hover_text("Stops the animation of the sprites, not their motion; saved with the preset");
+    let button = button.on_hover_text("Freezes the animation of the sprites, not their motion. Saved with the preset.");
     if button.on_disabled_hover_text(idle.unwrap_or_default()).clicked() {
         let systems = preset.systems.iter_mut();
         systems.for_each(|system| system.settings.sprite.freeze_animation = !is_frozen);

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 pub enum Purpose {
     Open,
     SaveAs,
+    /// A file, or a folder for a sequence, to export to.
+    Export,
 }
 
 /// Result of a file dialog.

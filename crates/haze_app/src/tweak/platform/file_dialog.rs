@@ -59,14 +59,19 @@ impl Dialogs {
         if !self.has_dialogs || self.worker.is_busy() {
             return self.has_dialogs;
         }
-        let dialog = rfd::AsyncFileDialog::new().add_filter("Presets", &["json"]);
+        let (kind, ending) = match (purpose, near.extension().and_then(std::ffi::OsStr::to_str)) {
+            (Purpose::Open | Purpose::SaveAs, _) => ("Presets", Some("json")),
+            (Purpose::Export, ending) => ("Images", ending),
+        };
+        let dialog = rfd::AsyncFileDialog::new();
+        let dialog = ending.into_iter().fold(dialog, |dialog, ending| dialog.add_filter(kind, &[ending]));
         let folder = std::path::absolute(near).ok().and_then(|path| path.parent().map(Path::to_owned));
         let dialog = folder.into_iter().fold(dialog, rfd::AsyncFileDialog::set_directory);
         let name = near.file_name().unwrap_or_default().to_string_lossy();
         // Some systems require that the window's thread creates the dialog.
         let chosen: std::pin::Pin<Box<dyn Future<Output = _> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.pick_file()),
-            Purpose::SaveAs => Box::pin(dialog.set_file_name(name).save_file()),
+            Purpose::SaveAs | Purpose::Export => Box::pin(dialog.set_file_name(name).save_file()),
         };
         let begun = Instant::now();
         self.worker.submit(move |_| match pollster::block_on(chosen) {

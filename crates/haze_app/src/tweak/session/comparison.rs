@@ -53,20 +53,15 @@ const fn offer(against: CompareWith, short: &'static str, name: &'static str, to
 }
 
 pub static COMPARE_OPTIONS: [CompareOption; 4] = [
-    offer(CompareWith::Saved, "Saved", "As saved", "The preset as it is on disk"),
-    offer(CompareWith::FullResolution, "Full", "Full resolution", "The same smoke without a reduced target"),
+    offer(CompareWith::Saved, "Saved", "Saved file", "The preset as it was last saved"),
+    offer(CompareWith::FullResolution, "Full", "Full resolution", "The same smoke at full resolution"),
     offer(
         CompareWith::Forward,
         "Forward",
-        "Forward",
-        "The same smoke lit and blended sprite by sprite, the classic way",
+        "Forward shading",
+        "The classic path: each sprite is lit and blended by itself",
     ),
-    offer(
-        CompareWith::Reference,
-        "CPU",
-        "CPU reference",
-        "The same by the CPU renderer, the specification: takes a while",
-    ),
+    offer(CompareWith::Reference, "CPU", "CPU reference", "The same image by the CPU renderer. It takes a while."),
 ];
 
 impl CompareState {
@@ -85,10 +80,10 @@ impl CompareState {
 impl CompareWith {
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Saved => "as saved",
-            Self::Kept(_) => "as kept",
-            Self::FullResolution => "full resolution",
-            Self::Forward => "forward",
+            Self::Saved => "Saved",
+            Self::Kept(_) => "Earlier settings",
+            Self::FullResolution => "Full resolution",
+            Self::Forward => "Forward",
             Self::Reference => "CPU reference",
         }
     }

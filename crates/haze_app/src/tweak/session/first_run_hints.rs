@@ -17,10 +17,10 @@ pub enum Hint {
 /// All hints in their order: the hint, its name in the layout file, and its text. If a key does the action, the text
 /// follows the name of the key.
 pub const HINTS: [(Hint, &str, &str); 5] = [
-    (Hint::Orbit, "orbit", "Drag in the picture, or use the middle button or Alt, to go round the smoke."),
-    (Hint::Light, "light", "Lights stand in the picture. Click on one, and drag it."),
-    (Hint::Look, "look", "These sliders make a look. The tabs above have all the rest."),
-    (Hint::Find, "find", "finds any setting, by its name or by what it does."),
+    (Hint::Orbit, "orbit", "Drag in the image to orbit around the smoke."),
+    (Hint::Light, "light", "Click a light in the image to select it, then drag it."),
+    (Hint::Look, "look", "These sliders shape the look. The other tabs have every setting."),
+    (Hint::Find, "find", "finds a setting by its name or description."),
     (Hint::Keys, "keys", "lists all keys and gestures."),
 ];
 

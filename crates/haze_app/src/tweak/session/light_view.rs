@@ -3,17 +3,19 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
-use haze::Light;
 use haze::frame::MAX_LIGHTS;
+use haze::preset::Preset;
+use haze::{Light, LightRole};
 
 use crate::tweak::document::light_defaults::light_name;
+use crate::tweak::document::light_roles;
 
 /// View state of a preset's lights, by their indices.
 #[derive(Clone, Debug, Default)]
 pub struct LightView {
     pub selected: Option<usize>,
-    /// Key light of each system, once it is chosen.
-    key_lights: Vec<Option<usize>>,
+    /// System and light whose slider is being moved on the Look tab.
+    held_key: Option<(usize, usize)>,
     /// Set while all lights rotate about the smoke.
     pub turn: Option<LightTurn>,
     entries: Vec<LightEntry>,
@@ -87,25 +89,27 @@ impl LightView {
     /// Gives all stored indices their new values; `None` removes an index.
     fn renumber(&mut self, place: impl Fn(usize) -> Option<usize>) {
         self.selected = self.selected.and_then(&place);
-        self.key_lights.iter_mut().for_each(|key_light| *key_light = key_light.and_then(&place));
+        self.held_key = self.held_key.and_then(|(system, index)| Some((system, place(index)?)));
     }
 
-    /// Returns the key light of a system. It is chosen once and kept as long as it exists.
-    pub fn key_light(&mut self, system: usize, choose: impl FnOnce() -> Option<usize>) -> Option<usize> {
-        self.key_lights.resize(self.key_lights.len().max(system + 1), None);
-        let key_light = &mut self.key_lights[system];
-        *key_light = key_light.or_else(choose);
-        *key_light
+    /// Returns the preset's key light, or else the light in the image that is brightest at the emitter of a system.
+    pub fn key_light(&self, preset: &Preset, system: usize) -> Option<usize> {
+        let brightest = || {
+            let place = preset.systems.get(system)?.emitter.position;
+            let shown = (0..).zip(&preset.lights).filter(|(index, _)| self.is_shown(*index));
+            let brightness = |light: &Light| light_roles::brightness_at(light, place);
+            shown.max_by(|a, b| brightness(a.1).total_cmp(&brightness(b.1))).map(|(index, _)| index)
+        };
+        light_roles::key_light(&preset.lights).or_else(brightest)
     }
 
-    /// Returns the key light of a system if it is already chosen.
-    pub fn chosen_key_light(&self, system: usize) -> Option<usize> {
-        self.key_lights.get(system).copied().flatten()
-    }
-
-    /// Forgets the key lights, so that they are chosen anew for another preset.
-    pub fn forget_key_lights(&mut self) {
-        self.key_lights.clear();
+    /// Returns the light that the key light's slider drives. While the slider is held, it stays with its light, even if
+    /// another becomes the brightest.
+    pub fn held_key_light(&mut self, preset: &Preset, system: usize, is_held: bool) -> Option<usize> {
+        let held = self.held_key.filter(|(of, index)| is_held && *of == system && *index < preset.lights.len());
+        let index = held.map(|(_, index)| index).or_else(|| self.key_light(preset, system));
+        self.held_key = index.map(|index| (system, index));
+        index
     }
 
     /// Returns the flags of a light, for changing them.
@@ -163,10 +167,11 @@ impl LightView {
         }
     }
 
-    /// Inserts a copy of a light after it, and selects the copy.
+    /// Inserts a copy of a light after it, and selects the copy. The copy of a key light has no role.
     pub fn duplicate(&mut self, lights: &mut Vec<Light>, index: usize) {
         if let Some(&light) = lights.get(index) {
-            self.insert(lights, index + 1, light);
+            let role = if light.role == LightRole::Key { LightRole::None } else { light.role };
+            self.insert(lights, index + 1, Light { role, ..light });
         }
     }
 
@@ -220,28 +225,44 @@ mod tests {
     }
 
     #[test]
-    fn the_key_light_stays_the_same_light() {
-        let mut all = lights(&[1.0, 2.0, 3.0]);
+    fn the_key_light_is_the_one_with_the_role_or_else_the_brightest_in_the_image() {
+        let systems = vec![haze::preset::PresetSystem::default()];
+        let mut preset = Preset { lights: lights(&[1.0, 2.0, 3.0]), systems, ..Preset::default() };
         let mut shown = LightView::default();
-        shown.follow(&all);
-        assert_eq!((shown.key_light(0, || Some(1)), shown.key_light(1, || Some(2))), (Some(1), Some(2)));
-        shown.insert(&mut all, 0, Light::default());
-        assert_eq!((shown.key_light(0, || Some(0)), shown.key_light(1, || Some(0))), (Some(2), Some(3)));
-        shown.remove(&mut all, 2);
-        assert_eq!((shown.key_light(0, || Some(0)), shown.key_light(1, || Some(0))), (Some(0), Some(2)));
-        shown.forget_key_lights();
-        assert_eq!(shown.key_light(1, || Some(1)), Some(1));
+        shown.follow(&preset.lights);
+        assert_eq!(shown.key_light(&preset, 0), Some(2));
+        shown.mute_solo(2).unwrap().is_muted = true;
+        assert_eq!(shown.key_light(&preset, 0), Some(1));
+        preset.lights[0].role = LightRole::Key;
+        assert_eq!(shown.key_light(&preset, 0), Some(0));
+        // A copy is no second key light.
+        shown.duplicate(&mut preset.lights, 0);
+        assert_eq!((shown.key_light(&preset, 0), preset.lights[1].role), (Some(0), LightRole::None));
+    }
+
+    #[test]
+    fn a_held_slider_stays_with_its_light() {
+        let systems = vec![haze::preset::PresetSystem::default()];
+        let mut preset = Preset { lights: lights(&[1.0, 2.0]), systems, ..Preset::default() };
+        let mut shown = LightView::default();
+        shown.follow(&preset.lights);
+        assert_eq!(shown.held_key_light(&preset, 0, false), Some(1));
+        preset.lights[1].intensity = 0.5;
+        assert_eq!(shown.held_key_light(&preset, 0, true), Some(1));
+        shown.insert(&mut preset.lights, 0, Light { intensity: 0.1, ..Light::default() });
+        assert_eq!(shown.held_key_light(&preset, 0, true), Some(2));
+        assert_eq!(shown.held_key_light(&preset, 0, false), Some(1));
     }
 
     #[test]
     fn names_tell_kind_and_index_of_the_lights_in_the_image() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
-        (all[0].kind, all[2].kind) = (LightKind::Directional, LightKind::Spot);
+        (all[0].kind, all[2].kind, all[2].role) = (LightKind::Directional, LightKind::Spot, LightRole::Rim);
         let mut shown = LightView::default();
         shown.follow(&all);
-        assert_eq!(shown.shown_names(&all), ["sun 1", "lamp 2 (point)", "lamp 3 (spot)"]);
+        assert_eq!(shown.shown_names(&all), ["Sun 1", "Point 2", "Rim (Spot 3)"]);
         shown.mute_solo(0).unwrap().is_muted = true;
-        assert_eq!(shown.shown_names(&all), ["lamp 2 (point)", "lamp 3 (spot)"]);
+        assert_eq!(shown.shown_names(&all), ["Point 2", "Rim (Spot 3)"]);
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub struct MacroParam {
 
 pub const THICKNESS: MacroParam = MacroParam {
     name: "thickness",
-    tooltip: "Coverage of one full-grown sprite: amount x opacity x boost.",
+    tooltip: "How opaque one grown sprite is: amount × opacity × boost. Higher: denser smoke.",
     unit: "",
     range: 0.001..=16.0,
     usual: (0.001, 3.0),
@@ -32,7 +32,7 @@ pub const THICKNESS: MacroParam = MacroParam {
 
 pub const WIND: MacroParam = MacroParam {
     name: "wind",
-    tooltip: "Speed of the air. The direction is a setting of the emitter; from 0 it blows along +x.",
+    tooltip: "Speed of the air. The emitter's wind sets the direction; a new wind blows along +x.",
     unit: "m/s",
     range: 0.0..=20.0,
     usual: (0.0, 4.0),
@@ -43,7 +43,7 @@ pub const WIND: MacroParam = MacroParam {
 
 pub const SOFTNESS: MacroParam = MacroParam {
     name: "softness",
-    tooltip: "Distance over which smoke dissolves before a surface: 1 / fade_scale.",
+    tooltip: "Distance over which smoke fades in front of a surface: 1 / fade scale.",
     unit: "m",
     range: 0.001..=10.0,
     usual: (0.01, 2.0),

@@ -32,6 +32,7 @@ use haze_author::preset::{Tooltips, no_effect_reason};
 use haze_demo::shot::Shot;
 
 use crate::tweak::document::Document;
+use crate::tweak::document::light_roles::{keep_one_key, light_of};
 use crate::tweak::document::loaded_materials::LoadedMaterials;
 use crate::tweak::document::loaded_particles::LoadedParticles;
 use crate::tweak::document::preset_diff::{changed_fields, copy_field};
@@ -89,9 +90,29 @@ pub struct Session {
     pub shaders: Option<Sources>,
     /// Another program has written the file while there are unsaved changes. The user has to choose a version.
     pub is_changed_on_disk: bool,
+    /// Copy of a built-in image that the user has to confirm.
+    pub copy_request: Option<CopyRequest>,
     changed: Changed,
     /// Set while the second image has settings of its own.
     second_diff: Option<SecondDiff>,
+}
+
+/// Copy of a built-in image beside the preset, to be edited.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CopyRequest {
+    /// Index of the system that will use it.
+    pub system: usize,
+    /// Name of the built-in image.
+    pub name: String,
+    pub image: CopiedImage,
+}
+
+/// Kind of a copied image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CopiedImage {
+    /// Ramp of a field of the material.
+    Ramp(&'static str),
+    Sprite,
 }
 
 /// Paths of the fields that differ from the preset on disk, and the two presets that were compared.
@@ -143,6 +164,7 @@ impl Session {
             sprites: SpriteEdits::default(),
             shaders: None,
             is_changed_on_disk: false,
+            copy_request: None,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
             second_diff: None,
             document,
@@ -160,15 +182,15 @@ impl Session {
         AssetFolders::beside(self.document.path()).with_shared(self.assets.clone())
     }
 
-    /// Returns the reason why a field has no effect: other values of the preset, or the graphics device.
-    pub fn no_effect_reason(&self, path: &str) -> Option<&'static str> {
+    /// Returns the reason why a field of a preset has no effect here: other values, or the graphics device.
+    pub fn no_effect_reason(&self, preset: &Preset, path: &str) -> Option<&'static str> {
         let is_shadow = path.contains("].settings.shadow.")
             || path.ends_with("].smoke_shadow")
             || path.ends_with("].material.shadow_ramp");
         if is_shadow && !self.view.has_compute {
             return Some("the graphics device has no compute shaders");
         }
-        no_effect_reason(&self.document.preset, path, self.view.size)
+        no_effect_reason(preset, path, self.view.size)
     }
 
     /// Returns the shot of the present view.
@@ -193,12 +215,36 @@ impl Session {
         self.particle_files.of(&self.document.preset)
     }
 
+    /// Makes the requested copy: at once, or as soon as a built-in preset is saved.
+    pub fn confirm_copy(&mut self) {
+        let is_built_in = self.document.is_built_in();
+        match self.copy_request.take() {
+            Some(CopyRequest { system, image: CopiedImage::Ramp(field), .. }) => {
+                self.ramps.request_copy(system, field, is_built_in);
+            }
+            Some(CopyRequest { system, image: CopiedImage::Sprite, name }) => {
+                self.sprites.request_copy(system, &name, is_built_in);
+            }
+            None => {}
+        }
+    }
+
+    /// Forgets copies that wait until the preset is saved.
+    pub fn cancel_copies(&mut self) {
+        self.ramps.cancel_copy();
+        self.sprites.cancel_copy();
+    }
+
     /// Bakes edited ramps, and writes them unless a control is held.
     pub fn follow_ramps(&mut self, is_held: bool) {
         let folders = self.folders();
         let mut done = self.ramps.advance(&mut self.document, &folders, is_held);
         if !is_held && done.is_ok() {
             done = self.ramps.write_requested_copy(&mut self.document);
+        }
+        if let Some(name) = self.ramps.replaced.take() {
+            let problem = format!("Another program changed {name}, so its stops can no longer be edited");
+            self.messages.info("ramp", format!("{problem}. Fit stops to the new image to edit it here."));
         }
         if let Err(error) = done {
             self.messages.error("ramp", error);
@@ -229,7 +275,7 @@ impl Session {
     /// Resets a field, a group or a list to its value on disk.
     pub fn reset_field(&mut self, path: &str) {
         let saved = self.saved().clone();
-        copy_field(&saved, &mut self.document.preset, path);
+        self.copy(&saved, path);
     }
 
     /// Returns the values of the second image's settings that differ, by path; `None` if it has no settings of its own.
@@ -241,7 +287,15 @@ impl Session {
     pub fn copy_from_second(&mut self, path: &str) {
         if let Some(second) = self.compare.against.as_ref().and_then(|against| against.settings(self.saved())).cloned()
         {
-            copy_field(&second, &mut self.document.preset, path);
+            self.copy(&second, path);
+        }
+    }
+
+    fn copy(&mut self, from: &Preset, path: &str) {
+        let preset = &mut self.document.preset;
+        copy_field(from, preset, path);
+        if let Some(index) = light_of(path) {
+            keep_one_key(&mut preset.lights, index);
         }
     }
 
@@ -297,13 +351,13 @@ impl Session {
 
     pub fn undo(&mut self) {
         if let Some(name) = self.document.undo() {
-            self.messages.info("undo", format!("undone: {name}"));
+            self.messages.info("undo", format!("Undo: {name}"));
         }
     }
 
     pub fn redo(&mut self) {
         if let Some(name) = self.document.redo() {
-            self.messages.info("undo", format!("redone: {name}"));
+            self.messages.info("undo", format!("Redo: {name}"));
         }
     }
 
@@ -323,8 +377,8 @@ impl Session {
         self.playback = Playback::at(document.preset.time);
         (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
         self.ramps = RampEdits::default();
+        self.copy_request = None;
         self.sprites.forget();
-        self.view.lights.forget_key_lights();
         let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];
         stale.into_iter().for_each(|about| self.messages.clear(about));
         self.document = document;
@@ -333,8 +387,8 @@ impl Session {
     /// Replaces the preset by one from a text.
     pub fn paste(&mut self, text: &str) {
         match self.document.paste(text) {
-            Ok(()) => self.messages.info("file", "pasted a preset"),
-            Err(error) => self.messages.error("file", format!("nothing is pasted: {error}")),
+            Ok(()) => self.messages.info("file", "Pasted a preset"),
+            Err(error) => self.messages.error("file", format!("Cannot paste: {error}")),
         }
     }
 }

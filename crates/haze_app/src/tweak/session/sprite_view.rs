@@ -16,15 +16,11 @@ pub enum SpriteChannel {
 
 /// All channels with their names and tooltips.
 pub const SPRITE_CHANNELS: [(SpriteChannel, &str, &str); 5] = [
-    (SpriteChannel::Lit, "Lit", "Through the diffuse ramp of the system"),
-    (SpriteChannel::Normals, "Normals", "As they are on the sheet: x in red, y up in green, z to the viewer in blue"),
-    (SpriteChannel::Amount, "Amount", "White hides all"),
-    (SpriteChannel::Depth, "Depth", "How far it stands out: white towards the viewer, grey in the middle"),
-    (
-        SpriteChannel::Motion,
-        "Motion",
-        "Motion to the next frame: to the right in red, down in green; grey does not move",
-    ),
+    (SpriteChannel::Lit, "Lit", "Lit by the diffuse ramp of the system"),
+    (SpriteChannel::Normals, "Normals", "Normals as stored: x in red, y up in green, z to the viewer in blue"),
+    (SpriteChannel::Amount, "Amount", "Opacity: white is opaque"),
+    (SpriteChannel::Depth, "Depth", "Relief: white is towards the viewer, grey is the middle"),
+    (SpriteChannel::Motion, "Motion", "Motion to the next frame: right in red, down in green, grey is still"),
 ];
 
 /// Flipbook and its light. Not part of the preset.

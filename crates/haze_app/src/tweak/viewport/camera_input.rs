@@ -83,7 +83,10 @@ impl CameraInput {
         if !response.dragged() {
             self.gesture = None;
         }
-        let drag = response.drag_delta() / response.rect.height().max(1.0);
+        // A drag that has just begun has moved since the press.
+        let is_new = self.gesture.is_some() && response.drag_started();
+        let moved = if is_new { response.total_drag_delta().unwrap_or_default() } else { response.drag_delta() };
+        let drag = moved / response.rect.height().max(1.0);
         let drag = glam::Vec2::new(drag.x, drag.y);
         match self.gesture {
             Some(Gesture::Orbit) => orbit(camera, drag * ORBIT),

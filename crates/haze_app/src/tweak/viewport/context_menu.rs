@@ -18,9 +18,9 @@ pub struct Menu {
 
 /// Entries that add a light.
 const ADDED: [(LightKind, &str); 3] = [
-    (LightKind::Point, "Add point light here"),
-    (LightKind::Spot, "Add spot light here"),
-    (LightKind::Directional, "Add sun from here"),
+    (LightKind::Point, "Add Point Light Here"),
+    (LightKind::Spot, "Add Spot Light Here"),
+    (LightKind::Directional, "Add Sun from Here"),
 ];
 
 impl Menu {
@@ -58,7 +58,7 @@ fn entries(
     }
     ui.separator();
     let mut asked = None;
-    for (action, name) in [(InView::Behind, "Behind the smoke"), (InView::Frame, "Frame")] {
+    for (action, name) in [(InView::Behind, "Move Light behind Smoke"), (InView::Frame, "Frame Smoke")] {
         if ui.button(name).clicked() {
             asked = Some(action);
         }

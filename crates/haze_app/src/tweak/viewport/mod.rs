@@ -129,7 +129,7 @@ impl Viewport {
 
     fn steer(&mut self, ui: &Ui, response: &Response, projection: &ScreenProjection, session: &mut Session) {
         if self.steering.steer(ui, response, projection, &mut session.document.preset.camera) {
-            session.messages.info("flight", format!("flying at {:.2} m/s", self.steering.speed));
+            session.messages.info("flight", format!("Flight speed {:.2} m/s", self.steering.speed));
         }
     }
 

@@ -84,7 +84,7 @@ fn plane(outlined: &OutlinedPainter<'_>, projection: &ScreenProjection, bounds: 
     corners.push(first);
     outlined.line(&corners, 1.0, color);
     let lowest = corners.iter().copied().fold(first, |low, at| if at.y > low.y { at } else { low });
-    label(outlined.0, projection.rect, lowest + vec2(4.0, -18.0), &format!("lit at {depth:.2} m"));
+    label(outlined.0, projection.rect, lowest + vec2(4.0, -18.0), &format!("Lit at {depth:.2} m"));
 }
 
 /// Draws at most `most` particles.
@@ -122,8 +122,14 @@ fn grid(painter: &Painter, rect: Rect, texels: &TargetTexels, color: Color32) {
     }
     painter.rect_stroke(shown, 0.0, Stroke::new(1.0, color), eframe::egui::StrokeKind::Middle);
     let UVec2 { x, y } = texels.size;
-    let which = if every > 1 { format!(", a line for every {every}") } else { String::new() };
-    let text = format!("{x} x {y} texels of {0} x {0} pixels{which}", texels.scale);
+    let resolution = match texels.scale {
+        1 => "full res".into(),
+        2 => "half res".into(),
+        4 => "quarter res".into(),
+        scale => format!("1/{scale} res"),
+    };
+    let lines = if every > 1 { format!(", every {every} lines") } else { String::new() };
+    let text = format!("Smoke buffer {x}×{y} ({resolution}){lines}");
     label(painter, rect, shown.left_bottom() + vec2(4.0, -18.0), &text);
 }
 

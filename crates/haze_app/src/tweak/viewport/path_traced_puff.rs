@@ -96,7 +96,7 @@ impl PathTracedPuff {
         let preset = &session.document.preset;
         let (index, materials) = (session.view.system, session.loaded_materials.of(preset));
         let Some((system, material)) = preset.systems.get(index).zip(materials.get(index)) else { return };
-        let leading = session.view.lights.selected.or(session.view.lights.chosen_key_light(index)).unwrap_or(0);
+        let leading = session.view.lights.selected.or(session.view.lights.key_light(preset, index)).unwrap_or(0);
         let Some(light) = preset.lights.get(leading).or(preset.lights.first()) else { return };
         let corner = rect.left_bottom() + vec2(6.0, -6.0);
         let area = egui::Area::new(ui.scope_id().with("puff")).pivot(Align2::LEFT_BOTTOM).fixed_pos(corner);
@@ -104,7 +104,7 @@ impl PathTracedPuff {
             let fill = ui.visuals().panel_fill;
             egui::Frame::new().fill(fill).corner_radius(4.0).inner_margin(6.0).show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label("a puff of");
+                    ui.label("Puff of");
                     let list = egui::ComboBox::from_id_salt("medium").selected_text(MEDIA[self.medium].name);
                     list.show_ui(ui, |ui| {
                         for (place, medium) in MEDIA.iter().enumerate() {
@@ -117,7 +117,7 @@ impl PathTracedPuff {
                 match (&self.failed, &self.compared) {
                     (Some(failed), _) => drop(ui.colored_label(ui.visuals().error_fg_color, failed)),
                     (None, Some(compared)) => compared.show(ui, angle),
-                    (None, None) => drop(ui.weak("path-tracing …")),
+                    (None, None) => drop(ui.weak("Path tracing…")),
                 }
             });
         });
@@ -136,7 +136,7 @@ impl PathTracedPuff {
         match self.worker.as_ref().and_then(Worker::poll) {
             Some(Some(Ok(traced))) => self.traced = Some((wanted, traced)),
             Some(Some(Err(error))) => self.failed = error,
-            Some(None) => self.failed = Some("the path tracer stopped: internal error".into()),
+            Some(None) => self.failed = Some("Path tracing failed: internal error".into()),
             None => {}
         }
         let of = (wanted, settings.diffuse.backlight == Backlight::Ramp);
@@ -205,7 +205,9 @@ impl Compared {
         let (first, share) = (place as usize % count, place.fract());
         let second = (first + 1) % count;
         ui.horizontal(|ui| {
-            for (row, name) in ["path-traced", if self.of.0.1 { "six-way" } else { "these ramps" }].iter().enumerate() {
+            for (row, name) in
+                ["Path traced", if self.of.0.1 { "Six-way maps" } else { "These ramps" }].iter().enumerate()
+            {
                 ui.vertical(|ui| {
                     let (rect, _) = ui.allocate_exact_size(vec2(SIDE, SIDE), egui::Sense::hover());
                     for (light, opacity) in [(first, 1.0), (second, share)] {
@@ -221,11 +223,11 @@ impl Compared {
             of(&lights[first]) * (1.0 - share) + of(&lights[second]) * share
         };
         let now = mix(|light| light.shown) / mix(|light| light.truth).max(f32::MIN_POSITIVE) - 1.0;
-        ui.label(format!("light at {angle:>3.0}°: {:+.0} %", 100.0 * now));
+        ui.label(format!("Light at {angle:>3.0}°: {:+.0} %", 100.0 * now));
         let Response { error, pixel_error, .. } = self.response;
-        ui.label(format!("all round: {:.1} %, pixels {:.0} %", 100.0 * error, 100.0 * pixel_error)).on_hover_text(
-            "Error of the brightness, mean of 16 lights, and of all pixels, root mean square, at the best exposure. \
-             `haze ramp fit` makes the ramps with the least error.",
+        ui.label(format!("All lights: {:.1} %, pixels {:.0} %", 100.0 * error, 100.0 * pixel_error)).on_hover_text(
+            "Error of the brightness, averaged over 16 lights, and RMS error of all pixels, at the best exposure. \
+             `haze ramp fit` makes ramps with the least error.",
         );
     }
 }

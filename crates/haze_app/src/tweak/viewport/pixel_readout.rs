@@ -43,7 +43,7 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
             }
             match values {
                 Some(values) => numbers(ui, values, session, is_small),
-                None => drop(ui.weak("Drawn by the CPU renderer: no texels to inspect")),
+                None => drop(ui.weak("The CPU image cannot be inspected")),
             }
         });
     });
@@ -61,12 +61,12 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
 
 fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool) {
     let PixelValues { pixel, side, names, probe, exposure } = values;
-    let keep = if session.inspect.pinned.is_some() { "kept" } else { "click keeps it" };
+    let keep = if session.inspect.pinned.is_some() { "Pinned" } else { "Click to pin" };
     ui.horizontal(|ui| {
         ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
         ui.weak(keep);
         if let Some(against) = session.compare.against.as_ref().filter(|_| *side == ComparedSide::Second) {
-            ui.weak(format!("second: {}", against.name()));
+            ui.weak(format!("Image B: {}", against.name()));
         }
     });
     let preset = session.compare.against.as_ref().filter(|_| *side == ComparedSide::Second);
@@ -75,7 +75,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
     // The nearest system comes first.
     for system in probe.systems.iter().rev() {
         ui.separator();
-        ui.label(RichText::new(names.get(system.system).map_or("smoke", String::as_str)).strong());
+        ui.label(RichText::new(names.get(system.system).map_or("Smoke", String::as_str)).strong());
         system_values(ui, system, &lights, is_small);
     }
     if probe.systems.is_empty() {
@@ -85,7 +85,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
     match probe.color {
         Some(color) => picture(ui, color, *exposure),
         None => {
-            ui.weak("Forward smoke is lit sprite by sprite:\nno texels to inspect");
+            ui.weak("The forward path lights each sprite\nby itself: no values to inspect");
         }
     }
 }
@@ -94,13 +94,13 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
     ui.horizontal(|ui| {
         ball(ui, probe.normal);
         ui.vertical(|ui| {
-            ui.label(format!("amount {:.3}   coverage {:.3}", probe.amount, probe.coverage));
+            ui.label(format!("Amount {:.3}   Coverage {:.3}", probe.amount, probe.coverage));
             let Vec3 { x, y, z } = probe.normal;
-            ui.label(format!("normal {x:.2} {y:.2} {z:.2}"));
+            ui.label(format!("Normal {x:.2} {y:.2} {z:.2}"));
         });
     });
     egui::Grid::new(("lights", probe.system)).num_columns(6).spacing(gaps(ui)).show(ui, |ui| {
-        for title in ["", "N·L", "ramp", "reaches", "diffuse", "specular"] {
+        for title in ["", "N·L", "Ramp", "Light", "Diffuse", "Specular"] {
             ui.weak(title);
         }
         ui.end_row();
@@ -108,15 +108,15 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
     });
     egui::Grid::new(("sums", probe.system)).num_columns(3).spacing(gaps(ui)).show(ui, |ui| {
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
-        let ambient = probe.ambient.map(|light| ("of it ambient", String::new(), light));
+        let ambient = probe.ambient.map(|light| ("Of it ambient", String::new(), light));
         let heat = format!("heat {:.2}", probe.fire.x);
-        let fire = (probe.fire_light != Vec3::ZERO).then_some(("fire", heat, probe.fire_light));
+        let fire = (probe.fire_light != Vec3::ZERO).then_some(("Fire", heat, probe.fire_light));
         let sums = [
-            ("soft scatter", scatter, probe.soft_scatter),
-            ("specular", String::new(), probe.specular()),
-            ("blended", String::new(), probe.blended.xyz()),
+            ("Soft scatter", scatter, probe.soft_scatter),
+            ("Specular", String::new(), probe.specular()),
+            ("Blended", String::new(), probe.blended.xyz()),
         ];
-        let diffuse = [("diffuse", String::new(), probe.diffuse)];
+        let diffuse = [("Diffuse", String::new(), probe.diffuse)];
         for (title, note, light) in diffuse.into_iter().chain(ambient).chain(fire).chain(sums) {
             ui.label(title);
             color(ui, light);
@@ -129,7 +129,7 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
 fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
     // Their sums are shown as numbers in any case.
     let color = if is_small { hue_swatch } else { color };
-    ui.label(names.get(light.light).map_or("fire", String::as_str));
+    ui.label(names.get(light.light).map_or("Fire", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
     ui.label(format!("{:.3}", light.attenuation));
@@ -137,7 +137,7 @@ fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) 
     match light.glow {
         Some(glow) => color(ui, glow.specular),
         None => {
-            ui.weak("none");
+            ui.weak("None");
         }
     }
     ui.end_row();
@@ -151,10 +151,10 @@ fn gaps(ui: &Ui) -> Vec2 {
 /// Shows the image value before and after tonemapping.
 fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
     egui::Grid::new("picture").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
-        ui.label("picture, linear");
+        ui.label("Image, linear");
         color(ui, light.xyz());
         ui.end_row();
-        ui.label("as shown, sRGB");
+        ui.label("Displayed, sRGB");
         let [r, g, b] = srgb_code(light.xyz(), exposure);
         ui.horizontal(|ui| {
             swatch(ui, Color32::from_rgb(r, g, b));

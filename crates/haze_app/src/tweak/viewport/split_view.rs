@@ -73,17 +73,17 @@ pub fn labels(ui: &Ui, rect: egui::Rect, session: &Session) {
     let first = format!("A  {}{edited}", truncate_middle(&session.document.title(), 24));
     let [of_first, of_second] = session.timings.stats.smoke_ms_of_pair.map(|ms| ms.map(|ms| format!("   {ms:.2} ms")));
     let took = session.cpu_render_job.took.filter(|_| *against == CompareWith::Reference);
-    let took = took.map(|took| format!("   {:.0} ms of the CPU", 1.0e3 * took.as_secs_f32()));
+    let took = took.map(|took| format!("   {:.0} ms on the CPU", 1.0e3 * took.as_secs_f32()));
     let of_second = if *against == CompareWith::Reference { took } else { of_second };
     let second = format!("B  {}", against.name());
-    let what = "GPU time of its smoke, if the device can measure it";
+    let what = "GPU time of the smoke, if the device can measure it";
     text_plate(ui, rect, egui::Align2::LEFT_BOTTOM, &(first + &of_first.unwrap_or_default())).on_hover_text(what);
     let place = text_plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
     let above = rect.with_max_y(place.rect.top());
     place.on_hover_text(what);
     if let Some(text) = session.psnr_job.text() {
         text_plate(ui, above, egui::Align2::RIGHT_BOTTOM, &text).on_hover_text(
-            "Peak signal-to-noise ratio of the two as shown: over all pixels, and at edges of the scene's depth",
+            "Peak signal-to-noise ratio of the two images, over all pixels and at depth edges. Higher is more alike.",
         );
     }
 }
@@ -144,12 +144,12 @@ mod tests {
         assert!(first.starts_with("A  column, edited   ") && ms(&first) > 0.0, "{first}");
         // Other programs may slow down either.
         let is_dearer = (0..5).any(|_| {
-            let whole = label(CompareWith::FullResolution, "B  full resolution   ", " ms");
-            label(CompareWith::Forward, "B  forward   ", " ms");
+            let whole = label(CompareWith::FullResolution, "B  Full resolution   ", " ms");
+            label(CompareWith::Forward, "B  Forward   ", " ms");
             ms(&whole) > ms(&label(CompareWith::FullResolution, "A  ", " ms"))
         });
         assert!(is_dearer, "{first}");
-        let judged = label(CompareWith::Reference, "B  CPU reference   ", " ms of the CPU");
-        assert!(judged.ends_with(" ms of the CPU"), "{judged}");
+        let judged = label(CompareWith::Reference, "B  CPU reference   ", " ms on the CPU");
+        assert!(judged.ends_with(" ms on the CPU"), "{judged}");
     }
 }

@@ -8,13 +8,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
 use haze::preset::Camera;
-use haze::{Light, LightKind};
+use haze::{Light, LightKind, LightRole};
 
 use super::light_handle::{Handle, Shape, handles};
 use super::screen_projection::ScreenProjection;
 use crate::tweak::session::smoke_geometry::SmokeGeometry;
 use crate::tweak::session::view_options::Tab;
 use crate::tweak::window::Window;
+use crate::tweak::window::drag_end::split_events_at_buttons;
 use crate::tweak::window::testing::{brightness, picture, window};
 
 const SIZE: [f32; 2] = [1100.0, 700.0];
@@ -45,6 +46,27 @@ fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2
         harness.hover_at(place);
     }
     harness.event(press(places[places.len() - 1], false));
+    harness.run();
+}
+
+/// Moves the pointer along positions with a button held, in a single frame as after a long wait. The window then splits
+/// the events as for a display.
+fn flick(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2]) {
+    let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
+    let (first, last) = (places[0], places[places.len() - 1]);
+    harness.hover_at(first);
+    harness.step();
+    let moves = places[1..].iter().map(|&place| Event::PointerMoved(place));
+    let mut events: Vec<_> = [press(first, true)].into_iter().chain(moves).chain([press(last, false)]).collect();
+    let mut later = Vec::new();
+    loop {
+        split_events_at_buttons(&mut later, &mut events);
+        harness.input_mut().events = std::mem::take(&mut events);
+        harness.step();
+        if later.is_empty() {
+            break;
+        }
+    }
     harness.run();
 }
 
@@ -87,11 +109,11 @@ fn a_muted_light_is_not_in_the_image_but_stays_in_the_preset() {
         harness.remove_cursor();
         harness.run();
     };
-    click(&mut harness, "Leave this light out, lamp 1 (point)");
+    click(&mut harness, "Mute: hide this light: Point 1");
     let dark = brightness(&picture(&mut harness), part);
     assert!(dark < lit - 5.0, "{dark} {lit}");
-    assert_eq!(undo_name(&harness).as_deref(), Some("light removed"), "only the test's own change");
-    click(&mut harness, "Show this light alone, lamp 1 (point)");
+    assert_eq!(undo_name(&harness).as_deref(), Some("Light removed"), "only the test's own change");
+    click(&mut harness, "Solo: show only this light: Point 1");
     assert!((brightness(&picture(&mut harness), part) - lit).abs() < 0.5);
 }
 
@@ -102,23 +124,23 @@ fn lights_are_added_duplicated_and_deleted_by_panel_and_by_key() {
     harness.run();
     let count = |harness: &Harness<'_, Window>| harness.state().session.document.preset.lights.len();
     let selected = |harness: &Harness<'_, Window>| harness.state().session.view.lights.selected;
-    harness.get_by_label("Add").click();
+    harness.get_by_label("Add light").click();
     harness.run_steps(4);
-    harness.get_by_label("spot").click();
+    harness.get_by_label("Spot").click();
     harness.run();
     assert_eq!(
         (count(&harness), selected(&harness), undo_name(&harness).as_deref()),
-        (2, Some(1), Some("light added"))
+        (2, Some(1), Some("Light added"))
     );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::D);
     harness.run();
     assert_eq!((count(&harness), selected(&harness)), (3, Some(2)));
     harness.key_press(Key::Delete);
     harness.run();
-    assert_eq!((count(&harness), selected(&harness), undo_name(&harness).as_deref()), (2, None, Some("light removed")));
-    harness.get_by_label("lamp 2 (spot)").click();
+    assert_eq!((count(&harness), selected(&harness), undo_name(&harness).as_deref()), (2, None, Some("Light removed")));
+    harness.get_by_label("Spot 2").click();
     harness.run();
-    harness.get_by_label("Behind the smoke").click();
+    harness.get_by_label("Move behind smoke").click();
     harness.run();
     let session = &harness.state().session;
     let mut behind = session.document.preset.lights[1];
@@ -132,7 +154,7 @@ fn lights_are_added_duplicated_and_deleted_by_panel_and_by_key() {
     let elevation = |value: f64, harness: &mut Harness<'_, Window>| {
         let role = eframe::egui::Role::Slider;
         let is_slider = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() == role;
-        harness.get_all_by_label("elevation").find(is_slider).unwrap().set_value_accesskit(value);
+        harness.get_all_by_label("Elevation").find(is_slider).unwrap().set_value_accesskit(value);
         harness.run();
     };
     elevation(90.0, &mut harness);
@@ -147,12 +169,12 @@ fn a_right_click_adds_a_light_there_or_behind_the_smoke() {
     let at = viewport(&harness).center() + vec2(-160.0, -40.0);
     drag(&mut harness, PointerButton::Secondary, &[at]);
     harness.run_steps(3);
-    harness.get_by_label("Add spot light here").click();
+    harness.get_by_label("Add Spot Light Here").click();
     harness.run();
     let added = |harness: &Harness<'_, Window>| *harness.state().session.document.preset.lights.last().unwrap();
     let spot = added(&harness);
     assert!(spot.kind == LightKind::Spot && projection(&harness).project(spot.position).unwrap().distance(at) < 1.0);
-    assert_eq!(undo_name(&harness).as_deref(), Some("light added"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Light added"));
     harness.state_mut().session.view.lights.selected = None;
     harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
     harness.run();
@@ -173,7 +195,7 @@ fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
     let at = projection(&harness).project(top).unwrap();
     drag(&mut harness, PointerButton::Secondary, &[at]);
     harness.run_steps(3);
-    harness.get_by_label("Behind the smoke").click();
+    harness.get_by_label("Move Light behind Smoke").click();
     harness.run();
     let is_behind = |harness: &Harness<'_, Window>| {
         let (projection, place) = (projection(harness), light(harness).position);
@@ -188,6 +210,38 @@ fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
     harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
     harness.run();
     assert!(viewport(&harness).contains(is_behind(&harness)));
+}
+
+#[test]
+fn a_click_on_a_selected_light_keeps_it_selected() {
+    let mut harness = lit(Light::default());
+    harness.state_mut().session.view.tab = Tab::Light;
+    harness.run();
+    for _ in 0..2 {
+        harness.get_by_label("Point 1").click();
+        harness.run();
+        assert_eq!(harness.state().session.view.lights.selected, Some(0));
+        assert!(harness.query_all_by_label("Intensity").next().is_some());
+    }
+}
+
+#[test]
+fn one_click_changes_the_role_of_a_light_and_a_preset_has_one_key_light() {
+    let mut harness = lit(Light::default());
+    harness.state_mut().session.view.tab = Tab::Light;
+    let lights = &mut harness.state_mut().session.document.preset.lights;
+    lights.push(Light { role: LightRole::Key, ..Light::default() });
+    harness.run();
+    harness.get_by_label("Key").click();
+    harness.run();
+    let roles = |harness: &Harness<'_, Window>| {
+        harness.state().session.document.preset.lights.iter().map(|light| light.role).collect::<Vec<_>>()
+    };
+    assert_eq!(roles(&harness), [LightRole::Key, LightRole::None]);
+    assert!(harness.query_by_label("Key (Point 1)").is_some());
+    harness.get_by_label("Fill").click();
+    harness.run();
+    assert_eq!(roles(&harness), [LightRole::Fill, LightRole::None]);
 }
 
 #[test]
@@ -222,10 +276,10 @@ fn the_scene_can_be_chosen_and_its_props_hidden() {
     let environment = |harness: &Harness<'_, Window>| harness.state().session.document.preset.environment;
     harness.get_by_label("Scene").click();
     harness.run_steps(3);
-    harness.get_by_label("lamp").click();
+    harness.get_by_label("Lamp").click();
     harness.run_steps(3);
     assert!(!environment(&harness).lamp && environment(&harness).brazier);
-    harness.get_by_label("studio").click();
+    harness.get_by_label("Studio").click();
     harness.run_steps(3);
     assert_eq!(environment(&harness).scene.name(), "studio");
 }

@@ -8,19 +8,19 @@ use glam::Vec3;
 use haze::settings::{Choice, FieldVisitor, Fields};
 use haze_author::preset::Tooltips;
 
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::panels::narrow::is_narrow;
-use crate::tweak::panels::rows::with_spaces;
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{Action, InView, keys_of};
 use crate::tweak::session::view_options::Overlay;
 
 /// Switches with their names and tooltips.
 const SWITCHES: [(InView, &str, &str); 5] = [
-    (InView::Overlay(Overlay::Bounds), "Bounds", "The box round each system"),
-    (InView::Overlay(Overlay::LitPlane), "Lit plane", "The plane on which the smoke is lit, where it cuts the box"),
-    (InView::Overlay(Overlay::Particles), "Particles", "Centres of the sprites: warm when young, cold when old"),
-    (InView::Overlay(Overlay::Grid), "Grid", "The texels that the smoke is accumulated in"),
-    (InView::Turntable, "Turntable", "Rotates all lights about the smoke; the preset does not change"),
+    (InView::Overlay(Overlay::Bounds), "Bounds", "Box around each system"),
+    (InView::Overlay(Overlay::LitPlane), "Lit plane", "Plane at which the smoke is lit"),
+    (InView::Overlay(Overlay::Particles), "Particles", "Centers of the sprites: warm colors are young, cold ones old"),
+    (InView::Overlay(Overlay::Grid), "Grid", "Pixels of the smoke buffer"),
+    (InView::Turntable, "Turntable", "Rotates all lights around the smoke. The preset does not change."),
 ];
 
 /// Draws the toolbar into the upper left corner of the image. Returns the action of a clicked switch.
@@ -76,14 +76,14 @@ impl FieldVisitor for Switches<'_> {
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {
         let tooltip = self.tooltips.field(&format!("environment.{name}")).unwrap_or_default();
-        self.ui.checkbox(value, with_spaces(name)).on_hover_text(tooltip);
+        self.ui.checkbox(value, display_name(name)).on_hover_text(tooltip);
     }
 
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
         let mut index = value.index();
         for (place, &choice) in value.names().iter().enumerate() {
             let tooltip = self.tooltips.choice(&format!("environment.{name}"), choice).unwrap_or_default();
-            self.ui.radio_value(&mut index, place, with_spaces(choice)).on_hover_text(tooltip);
+            self.ui.radio_value(&mut index, place, display_name(choice)).on_hover_text(tooltip);
         }
         value.set_index(index);
         self.ui.separator();

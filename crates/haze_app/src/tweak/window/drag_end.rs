@@ -1,16 +1,29 @@
-//! Ends a frame's input with the release of a pointer button.
+//! Ends a frame's input where a pointer button is pressed or released.
 
 use eframe::egui::Event;
 
-/// Moves the events after the first release of a button to `later`, and prepends those that were moved before. egui
-/// gives a released control the pointer position at the end of the frame; during a long frame, a slider would follow
-/// the pointer there.
-pub fn split_events_at_release(later: &mut Vec<Event>, events: &mut Vec<Event>) {
+/// Moves the events after the first part of a gesture to `later`, and prepends those that were moved before. During a
+/// long frame, a gesture may begin, move and end; egui has only one pointer position for the frame. So a press, the
+/// movement and the release come in frames of their own: a press is where it was made, the movement before a release
+/// still moves the dragged thing, and the movement after it does not.
+pub fn split_events_at_buttons(later: &mut Vec<Event>, events: &mut Vec<Event>) {
     events.splice(..0, later.drain(..));
-    let is_release = |event: &Event| matches!(event, Event::PointerButton { pressed: false, .. });
-    if let Some(at) = events.iter().position(is_release) {
-        *later = events.split_off(at + 1);
+    *later = events.split_off(first_part(events));
+}
+
+/// Returns the number of events that one frame takes.
+fn first_part(events: &[Event]) -> usize {
+    let (mut is_pressed, mut has_moved) = (false, false);
+    for (index, event) in events.iter().enumerate() {
+        match event {
+            Event::PointerButton { pressed: false, .. } => return if has_moved { index } else { index + 1 },
+            Event::PointerButton { .. } => is_pressed = true,
+            Event::PointerMoved(_) if is_pressed => return index,
+            Event::PointerMoved(_) => has_moved = true,
+            _ => {}
+        }
     }
+    events.len()
 }
 
 #[cfg(test)]
@@ -19,30 +32,40 @@ mod tests {
 
     use super::*;
 
+    fn button(pos: Pos2, pressed: bool) -> Event {
+        Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+    }
+
+    /// Returns the events of each frame.
+    fn frames(mut events: Vec<Event>) -> Vec<Vec<Event>> {
+        let (mut frames, mut later) = (Vec::new(), Vec::new());
+        loop {
+            split_events_at_buttons(&mut later, &mut events);
+            frames.push(std::mem::take(&mut events));
+            if later.is_empty() {
+                return frames;
+            }
+        }
+    }
+
     #[test]
-    fn events_after_a_release_go_to_the_next_frame() {
-        let button = |pos: Pos2, pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        };
+    fn press_movement_and_release_come_in_frames_of_their_own() {
         let (on, off) = (pos2(10.0, 5.0), pos2(-300.0, 5.0));
-        let mut events = vec![
-            button(on, true),
-            Event::PointerMoved(on),
-            button(on, false),
-            Event::PointerMoved(off),
-            button(off, true),
-        ];
-        let (all, mut later) = (events.clone(), Vec::new());
-        split_events_at_release(&mut later, &mut events);
-        assert_eq!((&events[..], &later[..]), (&all[..3], &all[3..]));
-        let mut events = vec![button(off, false), Event::PointerMoved(on)];
-        split_events_at_release(&mut later, &mut events);
-        assert_eq!((events.len(), later.len()), (3, 1));
-        let mut events = Vec::new();
-        split_events_at_release(&mut later, &mut events);
-        assert_eq!((events, later.len()), (vec![Event::PointerMoved(on)], 0));
+        let moved = Event::PointerMoved;
+        let all =
+            [moved(on), button(on, true), moved(off), moved(on), button(on, false), moved(off), button(off, true)];
+        assert_eq!(frames(all.to_vec()), [&all[..2], &all[2..4], &all[4..5], &all[5..]].map(<[_]>::to_vec));
+    }
+
+    #[test]
+    fn a_click_without_movement_takes_one_frame_and_events_keep_their_order() {
+        let at = pos2(10.0, 5.0);
+        let click = vec![Event::PointerMoved(at), Event::Copy];
+        assert_eq!(frames(click.clone()), [click]);
+        let click = vec![button(at, true), Event::Copy, button(at, false)];
+        assert_eq!(frames(click.clone()), [click]);
+        let (mut later, mut events) = (vec![button(at, false)], vec![Event::PointerMoved(at)]);
+        split_events_at_buttons(&mut later, &mut events);
+        assert_eq!((events, later), (vec![button(at, false)], vec![Event::PointerMoved(at)]));
     }
 }

@@ -1,11 +1,13 @@
 //! Main window: its layout, and the order of work in a frame.
 
+mod copy_icon;
 mod device;
 pub mod drag_end;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod open;
 #[cfg(target_arch = "wasm32")]
 pub mod page_window;
+mod panel_size;
 mod status_bar;
 pub mod surface_pacing;
 #[cfg(test)]
@@ -36,6 +38,7 @@ use crate::tweak::viewport::Viewport;
 use crate::tweak::viewport::pixel_readout as inspector;
 use crate::tweak::viewport::probe_job::ProbeJob;
 use crate::tweak::viewport_renderer::ViewportRenderer;
+use panel_size::PanelTracker;
 
 pub struct Window {
     pub session: Session,
@@ -49,6 +52,8 @@ pub struct Window {
     has_browser: bool,
     pub persistence: Option<Persistence>,
     layout: Layout,
+    settings_size: PanelTracker,
+    strip_size: PanelTracker,
     shaders: ShaderFolder,
     has_dialogs: bool,
     adapter: String,
@@ -58,7 +63,7 @@ pub struct Window {
 
 /// Use of a copied link, for those who cannot guess it.
 const LINK_USE: &str =
-    if IS_PAGE { "" } else { "; open it with `haze 'LINK'`, or put it behind the address of a haze page" };
+    if IS_PAGE { "" } else { ". Open it with `haze 'LINK'`, or append it to the address of a haze page." };
 
 /// State that a window starts with.
 pub struct Start {
@@ -77,6 +82,7 @@ impl Window {
     pub fn new(renderer: ViewportRenderer, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, persistence, layout, has_dialogs } = start;
         session.attach_window(renderer.egui());
+        renderer.egui().add_glyph_rasterizer(copy_icon::rasterizer());
         session.view.has_strip = layout.has_strip.unwrap_or(session.view.has_strip);
         match &layout.hints {
             Some(left) => session.hints.resume(left),
@@ -90,11 +96,13 @@ impl Window {
             hot_reload: HotReload::new(&session, &shaders, &renderer, renderer.wake())?,
             file_actions: FileActions::new(has_dialogs, renderer.wake())?,
             thumbnails: PresetThumbnails::new(renderer.wake())?,
-            export_job: ExportJob::new(renderer.wake())?,
+            export_job: ExportJob::new(renderer.wake(), layout.export_folder.clone())?,
             viewport: Viewport::default(),
             has_browser: false,
             persistence,
             layout,
+            settings_size: PanelTracker::default(),
+            strip_size: PanelTracker::default(),
             shaders,
             has_dialogs,
             adapter: renderer.adapter(),
@@ -129,7 +137,9 @@ impl Window {
 
     /// Runs the actions of pressed keys, unless text is being edited.
     fn keys(&mut self, ui: &Ui) {
-        let is_requested = self.file_actions.waiting.is_some() || self.file_actions.typed.is_some();
+        let is_requested = self.file_actions.waiting.is_some()
+            || self.file_actions.typed.is_some()
+            || self.session.copy_request.is_some();
         let is_modal = self.session.search.is_open || self.session.view.help || self.has_browser || is_requested;
         // An open menu receives the keys, such as Escape to close it.
         let is_menu = egui::Popup::is_any_open(ui.ctx());
@@ -169,17 +179,17 @@ impl Window {
             Action::SaveAs => self.file_actions.save_as(session),
             Action::Copy => {
                 context.copy_text(session.document.to_text());
-                session.messages.info("file", "copied: the preset as text");
+                session.messages.info("file", "Copied the preset as text");
             }
             Action::CopyLink => match shared_look::fragment_of(session) {
                 Ok(fragment) => {
                     context.copy_text(file_io::link_address(&fragment));
-                    session.messages.info("file", format!("copied: the look as a link{LINK_USE}"));
+                    session.messages.info("file", format!("Copied a link to this look{LINK_USE}"));
                 }
                 Err(error) => session.messages.error("file", error),
             },
-            Action::Screenshot => self.export_job.begin(ExportKind::Image, session),
-            Action::Seeds => self.export_job.begin(ExportKind::Seeds, session),
+            Action::Screenshot => self.export_job.order(ExportKind::Image, session),
+            Action::Seeds => self.export_job.order(ExportKind::Seeds, session),
             Action::Export => self.export_job.is_open = !self.export_job.is_open,
             Action::Paste => context.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Undo => session.undo(),
@@ -207,11 +217,14 @@ impl Window {
         egui::Panel::bottom("time").show(ui, |ui| panels::timeline::panel(ui, &mut self.session));
         if self.session.view.has_strip && !panels::narrow::is_narrow(ui.ctx()) {
             let aspect = self.session.view.aspect;
-            let height = self.layout.strip.unwrap_or((0.12 * ui.available_height()).max(80.0));
-            let most = (0.25 * ui.available_height()).clamp(56.0, 320.0);
+            let room = ui.available_height();
+            let usual = (0.12 * room).max(80.0);
+            let height = self.strip_size.begin(ui.ctx(), self.layout.strip_height, room, usual);
+            let most = (0.25 * room).clamp(56.0, 320.0);
             let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=most);
             let shown = panel.show(ui, |ui| debug_view_strip(ui, &mut self.session, &self.renderer, aspect));
-            self.layout.strip = Some(shown.response.rect.height());
+            let shown = shown.response.rect.height();
+            self.strip_size.end(ui.ctx(), shown, room, &mut self.layout.strip_height);
         }
     }
 
@@ -225,27 +238,25 @@ impl Window {
                 .show(ui, |ui| panels::settings_panel::panel(ui, &mut self.session));
             return self.run_settings(shown.response.rect, shown.inner);
         }
-        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(370.0, 440.0));
+        let room = ui.available_width();
+        let usual = (0.18 * room).clamp(370.0, 440.0);
+        let width = self.settings_size.begin(ui.ctx(), self.layout.settings_width, room, usual);
         // The image stays the largest part, even in a small window.
-        let most = (0.45 * ui.available_width()).clamp(240.0, 560.0);
+        let most = (0.45 * room).clamp(240.0, 560.0);
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=most);
         let shown = settings.show(ui, |ui| panels::settings_panel::panel(ui, &mut self.session));
-        self.layout.settings = Some(shown.response.rect.width());
+        let width = shown.response.rect.width();
+        self.settings_size.end(ui.ctx(), width, room, &mut self.layout.settings_width);
         self.run_settings(shown.response.rect, shown.inner);
     }
 
     /// Runs the requests of the settings panel.
     fn run_settings(&mut self, rect: egui::Rect, sheet_of: Option<String>) {
         self.session.hints.record_rect(WindowPart::Settings, rect);
-        let has_no_place = [&mut self.session.ramps.needs_saved_preset, &mut self.session.sprites.needs_saved_preset]
-            .map(std::mem::take);
-        if has_no_place.contains(&true) {
-            self.file_actions.save_as(&self.session);
-        }
         if let Some(path) = sheet_of {
             let is_seed = path.ends_with(".emitter.seed");
             let product = if is_seed { ExportKind::Seeds } else { ExportKind::Values(path) };
-            self.export_job.begin(product, &mut self.session);
+            self.export_job.order(product, &mut self.session);
         }
     }
 
@@ -264,6 +275,13 @@ impl Window {
         panels::search_box::panel(ui, &mut self.session);
         panels::key_list::panel(ui, &mut self.session);
         panels::export_dialog::panel(ui, &mut self.export_job, &mut self.session);
+        self.ask_export();
+        panels::copy_question::panel(ui, &mut self.session);
+        let has_no_place = [&mut self.session.ramps.needs_saved_preset, &mut self.session.sprites.needs_saved_preset]
+            .map(std::mem::take);
+        if has_no_place.contains(&true) {
+            self.file_actions.save_as(&self.session);
+        }
         panels::file_menu::questions(ui, &mut self.file_actions, &mut self.session);
         if self.has_browser
             && let Some(chosen) = panels::preset_browser::panel(ui, &mut self.thumbnails)
@@ -271,6 +289,16 @@ impl Window {
             self.has_browser = false;
             self.thumbnails.stop();
             chosen.into_iter().for_each(|path| self.file_actions.open(path, &self.session));
+        }
+    }
+
+    /// Asks where an export goes, and passes on the answer.
+    fn ask_export(&mut self) {
+        if let Some(suggested) = self.export_job.take_question() {
+            self.file_actions.ask_export(suggested);
+        }
+        if let Some(chosen) = self.file_actions.take_exported() {
+            self.export_job.answer(chosen, &mut self.session);
         }
     }
 
@@ -282,6 +310,7 @@ impl Window {
             persistence.advance(&mut self.session, ui.ctx());
         }
         self.layout.record(ui.ctx(), &self.session);
+        self.layout.export_folder = self.export_job.folder.clone();
         self.persistence
             .iter_mut()
             .for_each(|persistence| persistence.write_layout(&self.layout, &self.file_actions, ui.ctx()));

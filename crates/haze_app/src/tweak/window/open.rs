@@ -6,7 +6,7 @@ use haze::error::one_line;
 use haze_demo::headless::check_address_space;
 
 use super::device::setup;
-use super::drag_end::split_events_at_release;
+use super::drag_end::split_events_at_buttons;
 use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
 use crate::tweak::platform::clock::{self, Duration};
@@ -101,13 +101,13 @@ struct WindowApp<'a> {
     window: Option<Window>,
     health: DeviceHealth,
     kept: &'a mut KeptState,
-    /// Events after the release of a button, kept for the next frame.
+    /// Events that later frames take.
     later: Vec<egui::Event>,
 }
 
 impl eframe::App for WindowApp<'_> {
     fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
-        split_events_at_release(&mut self.later, &mut input.events);
+        split_events_at_buttons(&mut self.later, &mut input.events);
         if !self.later.is_empty() {
             context.request_repaint();
         }

@@ -9,7 +9,7 @@ use wasm_bindgen_futures::spawn_local;
 use web_sys::HtmlCanvasElement;
 
 use super::device::setup;
-use super::drag_end::split_events_at_release;
+use super::drag_end::split_events_at_buttons;
 use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
 use crate::page_renderer::{PageGpu, set_gpu};
@@ -97,7 +97,7 @@ struct PageApp {
     window: Option<Window>,
     health: DeviceHealth,
     kept: Rc<KeptState>,
-    /// Events after the release of a button, kept for the next frame.
+    /// Events that later frames take.
     later: Vec<egui::Event>,
     frames: u32,
     _events: page::ContextEvents,
@@ -125,7 +125,7 @@ impl PageApp {
 
 impl eframe::App for PageApp {
     fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
-        split_events_at_release(&mut self.later, &mut input.events);
+        split_events_at_buttons(&mut self.later, &mut input.events);
         if !self.later.is_empty() {
             context.request_repaint();
         }

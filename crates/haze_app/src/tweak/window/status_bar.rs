@@ -6,7 +6,7 @@ use super::Window;
 
 /// Tooltip where the CPU draws.
 const SOFTWARE_TOOLTIP: &str =
-    "The CPU draws the picture, at a low resolution while something moves. A smaller window is faster.";
+    "There is no GPU, so the CPU draws the image, at low resolution while something moves. A smaller window is faster.";
 
 impl Window {
     /// Draws the line at the bottom: adapter and latest message.

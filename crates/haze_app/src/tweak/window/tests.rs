@@ -2,7 +2,7 @@
 
 mod idle_cost;
 
-use eframe::egui::{Key, Modifiers, Rect, Role, Theme, Vec2};
+use eframe::egui::{Key, Modifiers, Pos2, Rect, Role, Theme, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, SnapshotOptions};
 use haze::settings::DebugView;
@@ -57,13 +57,13 @@ fn the_window_matches_its_light_snapshot() {
 fn controls_change_the_image_as_their_names_say() {
     let mut harness = column();
     let before = shown(&mut harness);
-    set(&mut harness, "exposure", 2.0);
+    set(&mut harness, "Exposure", 2.0);
     let brighter = shown(&mut harness);
     assert!(brighter > before + 15.0, "{before} {brighter}");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);
     assert!((shown(&mut harness) - before).abs() < 0.5);
-    set(&mut harness, "key light", 60.0);
+    set(&mut harness, "Key light", 60.0);
     assert!(shown(&mut harness) > before + 5.0);
 }
 
@@ -122,7 +122,7 @@ fn a_comparison_shows_the_image_error_of_a_saving() {
 fn values_of_the_compared_preset_can_be_copied() {
     let mut harness = column();
     let before = shown(&mut harness);
-    set(&mut harness, "exposure", 3.0);
+    set(&mut harness, "Exposure", 3.0);
     harness.key_press(Key::F5);
     harness.run_steps(2);
     let divider = harness.get_by_label("divider").rect();
@@ -131,7 +131,7 @@ fn values_of_the_compared_preset_can_be_copied() {
     let left = brightness(&picture, Rect::from_min_max(view.min, divider.left_bottom()));
     let right = brightness(&picture, Rect::from_min_max(divider.right_top(), view.max));
     assert!(left > right + 15.0, "{left} {right}");
-    harness.get_by_label("Use").click();
+    harness.get_by_label("Use B").click();
     harness.run_steps(3);
     assert!((shown(&mut harness) - before).abs() < 1.0);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
@@ -152,11 +152,54 @@ fn sprite_animation_can_be_frozen_next_to_the_clock() {
     }
 }
 
+/// Returns the width of the settings panel and the height of the strip.
+fn panel_sizes(harness: &Harness<'_, Window>) -> [f32; 2] {
+    let view = viewport(harness);
+    let strip = harness.get_by_label("Specular scatter").rect();
+    [harness.ctx.content_rect().right() - view.right(), strip.height()]
+}
+
+#[test]
+fn panels_fit_a_resized_window_and_return_with_it() {
+    let mut harness = window("column", Vec2::new(1280.0, 800.0), Theme::Dark);
+    let wide = panel_sizes(&harness);
+    harness.set_size(Vec2::new(640.0, 400.0));
+    harness.run_steps(6);
+    let narrow = panel_sizes(&harness);
+    assert!(narrow[0] < 0.5 * 640.0 && narrow[1] < wide[1], "{narrow:?} {wide:?}");
+    harness.set_size(Vec2::new(1280.0, 800.0));
+    harness.run_steps(6);
+    let again = panel_sizes(&harness);
+    assert!((again[0] - wide[0]).abs() < 1.0 && (again[1] - wide[1]).abs() < 1.0, "{again:?} {wide:?}");
+    // Nobody has chosen a size, so none is stored.
+    let layout = harness.state().layout();
+    assert_eq!((layout.settings_width, layout.strip_height), (None, None));
+    // The user drags the edge of the panel.
+    let edge = Pos2::new(viewport(&harness).right() + 2.0, 300.0);
+    harness.hover_at(edge);
+    harness.run_steps(2);
+    harness.drag_at(edge);
+    harness.run_steps(2);
+    harness.hover_at(edge - Vec2::new(80.0, 0.0));
+    harness.run_steps(2);
+    harness.drop_at(edge - Vec2::new(80.0, 0.0));
+    harness.run_steps(2);
+    let chosen = harness.state().layout().settings_width.unwrap();
+    assert!((chosen.size - wide[0] - 80.0).abs() < 3.0, "{chosen:?} {wide:?}");
+    assert_eq!((chosen.in_room(1300.0), chosen.in_room(640.0)), (Some(chosen.size), None));
+    harness.set_size(Vec2::new(640.0, 400.0));
+    harness.run_steps(6);
+    assert!(panel_sizes(&harness)[0] < 0.5 * 640.0);
+    harness.set_size(Vec2::new(1280.0, 800.0));
+    harness.run_steps(6);
+    assert!((panel_sizes(&harness)[0] - chosen.size).abs() < 3.0);
+}
+
 #[test]
 fn undo_names_the_step() {
     let mut harness = column();
-    set(&mut harness, "exposure", 2.0);
-    let said = |harness: &Harness<'_, Window>| harness.query_all_by_label("exposure").count();
+    set(&mut harness, "Exposure", 2.0);
+    let said = |harness: &Harness<'_, Window>| harness.query_all_by_label("Exposure").count();
     let before = said(&harness);
     harness.get_by_label("Undo").hover();
     harness.run_steps(8);
@@ -168,11 +211,11 @@ fn any_setting_is_found_and_brought_into_view() {
     let mut harness = column();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
     harness.run_steps(2);
-    harness.get_by_label("find a setting").type_text("fade scale");
+    harness.get_by_label("Find a setting").type_text("fade scale");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(8);
-    let row = harness.get_all_by_label("fade scale").next().unwrap().rect();
+    let row = harness.get_all_by_label("Fade scale").next().unwrap().rect();
     assert!(Rect::from_min_size(Default::default(), SIZE).contains_rect(row), "{row:?}");
 }
 
@@ -195,10 +238,10 @@ fn escape_closes_a_menu_and_nothing_else() {
     harness.run_steps(3);
     harness.get_by_label("Compare").click();
     harness.run_steps(3);
-    harness.get_by_label("As it is now");
+    harness.get_by_label("Current settings");
     harness.key_press(Key::Escape);
     harness.run_steps(3);
-    assert!(harness.query_by_label("As it is now").is_none());
+    assert!(harness.query_by_label("Current settings").is_none());
     assert_eq!(harness.state_mut().session_mut().view.debug_view, DebugView::SpecularScatter);
 }
 
@@ -206,10 +249,10 @@ fn escape_closes_a_menu_and_nothing_else() {
 fn time_is_played_and_stepped() {
     let mut harness = column();
     let before = picture(&mut harness);
-    harness.get_by_label("A frame on (.)").click();
+    harness.get_by_label("Next frame (.)").click();
     harness.run_steps(2);
     assert!(picture(&mut harness) != before);
-    harness.get_by_label("A frame back (,)").click();
+    harness.get_by_label("Previous frame (,)").click();
     harness.run_steps(2);
     harness.get_by_label("viewport").hover();
     harness.run_steps(1);
@@ -242,10 +285,18 @@ fn write_images_of_every_tab() {
             }
             save(&mut harness, name);
         }
+        harness.get_by_label("Light").click();
+        harness.run_steps(4);
+        harness.get_by_label("Key (Point 1)").click();
+        harness.get_by_label("Color of Key (Point 1)").click();
+        harness.run_steps(4);
+        save(&mut harness, "color");
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
         harness.get_by_label("Look").click();
         harness.get_by_label("Inspect").click();
         harness.run_steps(3);
-        set(&mut harness, "exposure", 1.5);
+        set(&mut harness, "Exposure", 1.5);
         harness.key_press(Key::F5);
         decibels(&mut harness);
         let beside = viewport(&harness).center() - Vec2::new(0.1 * size.0 as f32, 0.0);
@@ -264,7 +315,7 @@ fn write_images_of_every_tab() {
         save(&mut harness, "export");
         harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
         harness.run_steps(2);
-        harness.get_by_label("find a setting").type_text("size");
+        harness.get_by_label("Find a setting").type_text("size");
         harness.run_steps(4);
         save(&mut harness, "find");
     }

@@ -21,7 +21,7 @@ impl Window {
             ui.strong(truncate_middle(&self.session.document.title(), letters))
                 .on_hover_text(self.session.document.path().to_string_lossy());
             if self.session.document.is_dirty() {
-                ui.label("•").on_hover_text("Has unsaved changes");
+                ui.label("•").on_hover_text("Unsaved changes");
             }
             ui.separator();
             let undo = self.session.document.history().undo_name().map(str::to_owned);
@@ -39,13 +39,13 @@ impl Window {
             let others: f32 = others.map(|name| width(ui, name) + ui.spacing().item_spacing.x).iter().sum();
             panels::comparison_bar::panel(ui, &mut self.session, ui.available_width() - others);
             let inspect = ui.selectable_label(self.session.inspect.is_on, "Inspect");
-            if inspect.on_hover_text("Values of the pixel under the pointer (I); a click keeps it").clicked() {
+            if inspect.on_hover_text("Shows values of the pixel under the pointer (I). Click to pin it.").clicked() {
                 self.session.inspect.toggle();
             }
             let is_narrow = panels::narrow::is_narrow(ui.ctx());
             let layout = if is_narrow { egui::Layout::left_to_right } else { egui::Layout::right_to_left };
             ui.with_layout(layout(egui::Align::Center), |ui| {
-                let keys = ui.button("?").on_hover_text("Keys and gestures");
+                let keys = ui.button("?").on_hover_text("Keyboard and mouse");
                 self.session.hints.record_rect(WindowPart::Keys, keys.rect);
                 if keys.clicked() {
                     self.act(Action::Help, ui.ctx());
@@ -66,7 +66,7 @@ fn theme(ui: &mut Ui) {
     let mut preference = ui.ctx().options(|options| options.theme_preference);
     ui.menu_button("Theme", |ui| {
         use egui::ThemePreference::{Dark, Light, System};
-        for (theme, name) in [(System, "As the system"), (Dark, "Dark"), (Light, "Light")] {
+        for (theme, name) in [(System, "System"), (Dark, "Dark"), (Light, "Light")] {
             if ui.radio_value(&mut preference, theme, name).clicked() {
                 ui.close();
             }

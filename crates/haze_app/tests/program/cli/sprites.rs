@@ -92,11 +92,22 @@ fn images_of_other_kinds_are_imported_as_sprites() {
     assert!(text.contains("1 sheets; expected 2"), "{text}");
     let fire = image::RgbaImage::from_pixel(16, 16, image::Rgba([250, 120, 20, 255]));
     fire.save(folder.path().join("fire.png")).unwrap();
-    let text = said(&["fire.png", "-o", "a.png"]);
-    assert!(
-        text.contains("  colors, not normals; ") && text.contains("; set --from to the contents of the image"),
-        "{text}"
-    );
+    // Nothing is written that the check would refuse.
+    let slope = |x: u32, _| image::Luma([4 * x as u8]);
+    image::GrayImage::from_fn(64, 64, slope).save(folder.path().join("grey.png")).unwrap();
+    for (arguments, expected) in [
+        (&["fire.png"][..], "fire.png: colors, not normals; expected normals, or --from with the contents"),
+        (&["grey.png"], "grey.png: shades of grey; expected normals, or --from with the contents"),
+        (&["grey.png", "--from", "height"], "grey.png: these heights make no puff; expected a puff that is highest"),
+    ] {
+        let text = refusal(folder.path(), &[&["sprite", "import", "-o", "a.png"], arguments].concat());
+        assert!(text.contains(expected), "{text}");
+        assert!(!folder.path().join("a.png").exists());
+    }
+    said(&["grey.png", "--from", "alpha", "-o", "a.png"]);
+    let checked = haze(folder.path(), &["sprite", "check", "a.png"]);
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+    fs::remove_file(folder.path().join("a.png")).unwrap();
     // Options that would be ignored are refused.
     for (arguments, expected) in [
         (&["fire.png", "fire.png", "fire.png", "--from", "six_way_unity"][..], "3 sheets; expected 2"),

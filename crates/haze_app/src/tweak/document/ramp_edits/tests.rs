@@ -66,6 +66,11 @@ fn ramps_of(preset: &str) -> Harness<'static, Window> {
     harness
 }
 
+fn click(harness: &mut Harness<'_, Window>, name: &str) {
+    harness.get_by_label(name).click_accesskit();
+    harness.run_steps(4);
+}
+
 fn strip(harness: &Harness<'_, Window>) -> Rect {
     harness.get_by_label("gradient: add a stop").rect()
 }
@@ -110,7 +115,7 @@ fn a_drag_is_shown_at_once_and_written_at_its_end() {
     // It is one named step, and undo also writes the file.
     let undo_name =
         |harness: &Harness<'_, Window>| harness.state().session.document.history().undo_name().map(str::to_owned);
-    assert_eq!(undo_name(&harness).as_deref(), Some("move a stop: mine.png"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Move a stop: mine.png"));
     wait(&mut harness);
     assert!((shown(&mut harness) - bright).abs() < 0.5, "read again it is the same");
     press(&mut harness, Key::Z, Modifiers::COMMAND);
@@ -180,23 +185,19 @@ fn rows_and_their_multiplier_are_edited_in_the_window() {
     std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
     write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
-    let click = |harness: &mut Harness<'static, Window>, name: &str| {
-        harness.get_by_label(name).click_accesskit();
-        harness.run_steps(4);
-    };
-    click(&mut harness, "Add a row");
+    click(&mut harness, "Add row");
     let [first, second] = &folder.recipe().rows[..] else { panic!("two rows") };
     assert!((first.at, second.at) == (0.0, 0.5) && first.stops == second.stops);
     // The new row is the edited one.
     click(&mut harness, "Flip");
     assert_eq!(folder.recipe().rows[0], recipe.rows[0]);
     assert_ne!(folder.recipe().rows[1].stops, recipe.rows[0].stops);
-    click(&mut harness, "times");
+    click(&mut harness, "Multiplier");
     click(&mut harness, "Flip");
     assert_ne!(folder.recipe().times, recipe.times);
     assert!(folder.is_baked());
     click(&mut harness, "0.50");
-    click(&mut harness, "Remove the row");
+    click(&mut harness, "Remove row");
     assert_eq!(folder.recipe().rows, recipe.rows);
     for _ in 0..4 {
         press(&mut harness, Key::Z, Modifiers::COMMAND);
@@ -230,7 +231,7 @@ fn a_stop_takes_a_color_from_the_image() {
     let pixel = harness.get_by_label("viewport").rect().center();
     let camera = harness.state().session.document.preset.camera;
     let [r, g, b, _] = picture(&mut harness).get_pixel(pixel.x as u32, pixel.y as u32).0;
-    harness.get_by_label("Take a color").click();
+    harness.get_by_label("Pick color").click();
     wait(&mut harness);
     harness.hover_at(pixel);
     harness.step();
@@ -242,11 +243,11 @@ fn a_stop_takes_a_color_from_the_image() {
     assert!(taken.iter().zip([r, g, b]).all(|(a, b)| a.abs_diff(b) < 3), "{taken:?} {:?}", [r, g, b]);
     assert_ne!(taken, Template::find("neutral").unwrap().recipe().rows[0].stops[0].color.0);
     assert!(folder.is_baked());
-    assert_eq!(harness.state().session.document.history().undo_name(), Some("color of a stop: mine.png"));
+    assert_eq!(harness.state().session.document.history().undo_name(), Some("Color of a stop: mine.png"));
     // The eyedropper takes the click and Escape; the viewport does not react.
     assert_eq!(harness.state().session.document.preset.camera, camera);
     harness.state_mut().session.view.debug_view = DebugView::Normals;
-    harness.get_by_label("Take a color").click();
+    harness.get_by_label("Pick color").click();
     harness.run_steps(2);
     press(&mut harness, Key::Escape, Modifiers::NONE);
     assert_eq!(harness.state().session.view.debug_view, DebugView::Normals);
@@ -267,4 +268,15 @@ fn write_images_of_the_gradient_editor() {
         wait(&mut harness);
         picture(&mut harness).save(into.join(format!("ramps_own_{theme:?}.png"))).unwrap();
     }
+}
+
+#[test]
+fn one_click_turns_on_a_ramp_that_is_not_used() {
+    let mut harness = ramps_of("column");
+    assert_eq!(harness.state().session.document.preset.systems[0].settings.diffuse.backlight.name(), "same");
+    click(&mut harness, "Turn on backlight ramp: Backlight ramp");
+    assert_eq!(harness.state().session.document.preset.systems[0].settings.diffuse.backlight.name(), "ramp");
+    assert!(harness.query_by_label("Turn on backlight ramp: Backlight ramp").is_none());
+    let undo = harness.state().session.document.history().undo_name().map(str::to_owned);
+    assert_eq!(undo.as_deref(), Some("Backlight of smoke"));
 }

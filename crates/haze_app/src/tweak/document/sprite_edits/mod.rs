@@ -87,6 +87,11 @@ impl SpriteEdits {
         (self.wanted, self.needs_saved_preset) = (Some((system, name.to_owned())), is_built_in);
     }
 
+    /// Forgets the requested copy.
+    pub fn cancel_copy(&mut self) {
+        self.wanted = None;
+    }
+
     /// Writes the requested copy and names it in the preset, as soon as the preset is a file.
     pub fn write_requested_copy(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, name)) = self.wanted.take_if(|_| !document.is_built_in()) else { return Ok(()) };

@@ -80,15 +80,16 @@ fn page_of(preset: &str) -> Harness<'static, Window> {
     let mut harness = window(preset, Vec2::new(1280.0, 1400.0), Theme::Dark);
     harness.state_mut().session.view.sprite.is_playing = false;
     harness.get_by_label("Sprite").click();
-    until(&mut harness, |harness| harness.query_by_label("Reading the sprite.").is_none());
+    until(&mut harness, |harness| harness.query_by_label("Reading the sprite…").is_none());
     unfold(&mut harness);
     harness
 }
 
 /// Expands the collapsed parts of the recipe.
 fn unfold(harness: &mut Harness<'_, Window>) {
-    for heading in ["wisps", "motion", "surface", "sheet"] {
-        if let Some(heading) = harness.query_by_label(heading) {
+    for heading in ["Wisps", "Motion", "Surface", "Sheet"] {
+        // A channel of the flipbook above has the name of a heading.
+        if let Some(heading) = harness.query_all_by_label(heading).last() {
             heading.click();
         }
         harness.run_steps(12);
@@ -139,8 +140,8 @@ fn a_slider_shows_a_coarse_bake_then_the_full_one_which_is_written_and_undone() 
     let folder = Folder::new();
     let mut harness = folder.open();
     let (before, sprite) = (folder.recipe(), used(&harness));
-    let brightness = [shown(&mut harness, "viewport"), shown(&mut harness, "flipbook")];
-    let rect = slider(&harness, "erosion").rect();
+    let brightness = [shown(&mut harness, "viewport"), shown(&mut harness, "Flipbook")];
+    let rect = slider(&harness, "Erosion").rect();
     let at = |share: f32| rect.left_center() + Vec2::new(share * rect.width(), 0.0);
     harness.drag_at(at(0.25));
     for share in [0.3, 0.5, 0.7] {
@@ -148,7 +149,7 @@ fn a_slider_shows_a_coarse_bake_then_the_full_one_which_is_written_and_undone() 
         harness.step();
     }
     until(&mut harness, |harness| used(harness).size() == 64 && !harness.state().session.sprites.is_baking());
-    for (before, part) in brightness.into_iter().zip(["viewport", "flipbook"]) {
+    for (before, part) in brightness.into_iter().zip(["viewport", "Flipbook"]) {
         let now = shown(&mut harness, part);
         assert!((now - before).abs() > 0.5, "{part}: {before} {now}");
     }
@@ -160,7 +161,7 @@ fn a_slider_shows_a_coarse_bake_then_the_full_one_which_is_written_and_undone() 
     assert!(folder.is_baked());
     assert_eq!(Some(used(&harness)), folder.sprite());
     // It is one named step, and undo also writes the files.
-    assert_eq!(undo_name(&harness).as_deref(), Some("recipe of mine.png"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Recipe of mine.png"));
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     until(&mut harness, |harness| used(harness) == sprite);
     until(&mut harness, |harness| !harness.state().session.sprites.is_baking());
@@ -176,14 +177,14 @@ fn a_new_layout_changes_recipe_and_preset_in_one_step() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let before = harness.state().session.document.preset.clone();
-    set(&mut harness, "rows", 2.0);
+    set(&mut harness, "Rows", 2.0);
     until(&mut harness, |_| folder.sprite().is_some_and(|sprite| sprite.frame_count() == 4));
     let material = &harness.state().session.document.preset.systems[0].material;
     assert_eq!((material.columns, material.rows), (2, 2));
     // The files that are read again match, without an error.
     until(&mut harness, |harness| harness.state().session.loaded_materials.of(&before)[0].sprite.frame_count() == 4);
     assert!(!has_error(&harness));
-    assert_eq!(undo_name(&harness).as_deref(), Some("recipe of mine.png"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Recipe of mine.png"));
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     until(&mut harness, |harness| folder.recipe().rows == 1 && !harness.state().session.sprites.is_baking());
     assert_eq!(harness.state().session.document.preset, before);
@@ -194,7 +195,7 @@ fn a_new_layout_changes_recipe_and_preset_in_one_step() {
 fn dependent_numbers_are_clamped_to_their_new_ranges() {
     let folder = Folder::new();
     let mut harness = folder.open();
-    set(&mut harness, "ball radius min", 0.8);
+    set(&mut harness, "Ball radius min", 0.8);
     until(&mut harness, |_| (folder.recipe().ball_radius_min - 0.8).abs() < 1e-6);
     assert!((folder.recipe().ball_radius_max - 0.8).abs() < 1e-6);
 }
@@ -208,11 +209,11 @@ fn a_broken_recipe_is_reported_with_its_line_and_the_last_valid_one_stays() {
     let is_said = |harness: &Harness<'_, Window>| harness.query_by_label_contains("mine.sprite.json:").is_some();
     until(&mut harness, is_said);
     assert!(harness.query_by_label_contains("mine.sprite.json:15:14: ").is_some());
-    assert!(slider(&harness, "erosion").accesskit_node().is_disabled());
+    assert!(slider(&harness, "Erosion").accesskit_node().is_disabled());
     assert_eq!(used(&harness), sprite);
     std::fs::write(folder.path("mine.sprite.json"), &good).unwrap();
     until(&mut harness, |harness| !is_said(harness));
-    assert!(!slider(&harness, "erosion").accesskit_node().is_disabled());
+    assert!(!slider(&harness, "Erosion").accesskit_node().is_disabled());
     // A value out of range is an error too.
     std::fs::write(folder.path("mine.sprite.json"), good.replace("\"seed\"", "\"length\": 7.5, \"seed\"")).unwrap();
     until(&mut harness, is_said);

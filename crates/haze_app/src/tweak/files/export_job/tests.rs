@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Key, Modifiers, PointerButton, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use haze::preset::Preset;
 use tempfile::TempDir;
 
 use super::*;
@@ -44,14 +45,24 @@ impl Bench {
 
     /// Runs an export and returns the names of new files beside the preset.
     fn make(&mut self, product: ExportKind) -> Vec<String> {
-        self.window.state_mut().export_job.product = product;
+        self.window.state_mut().export_job.product = product.clone();
         self.window.state_mut().export_job.is_open = true;
         self.window.run_steps(2);
-        self.window.get_by_label("Make").click();
+        self.window.get_by_label(if product.is_sheet() { "Preview" } else { "Export…" }).click();
         self.window.run_steps(2);
+        if !product.is_sheet() {
+            self.confirm_path();
+        }
         self.until(|window| window.export_job.progress().is_none());
         self.window.run_steps(2);
         self.names()
+    }
+
+    /// Accepts the suggested path.
+    fn confirm_path(&mut self) {
+        assert!(self.window.state().file_actions.typed.is_some());
+        self.window.key_press(Key::Enter);
+        self.window.run_steps(3);
     }
 
     fn names(&self) -> Vec<String> {
@@ -69,9 +80,10 @@ fn an_image_is_saved_beside_the_preset_without_replacing_files() {
     for _ in 0..2 {
         bench.window.key_press(Key::F12);
         bench.window.run_steps(2);
+        bench.confirm_path();
         bench.until(|window| window.export_job.progress().is_none());
         bench.window.run_steps(2);
-        assert!(bench.said().starts_with("written: "), "{}", bench.said());
+        assert!(bench.said().starts_with("Exported "), "{}", bench.said());
     }
     let names = bench.names();
     assert_eq!(names.len(), 2, "{names:?}");
@@ -112,14 +124,14 @@ fn a_long_export_shows_progress_and_stops_and_a_new_sheet_replaces_the_old() {
     bench.window.get_by_label("Stop").click();
     bench.until(|window| window.export_job.progress().is_none());
     bench.window.run_steps(2);
-    assert!(bench.window.state().export_job.sheet.is_none() && bench.window.query_by_label("Make").is_none());
+    assert!(bench.window.state().export_job.sheet.is_none() && bench.window.query_by_label("Export…").is_none());
     let mut shown = |exposure: f32| {
         bench.window.state_mut().session.document.preset.camera.exposure = exposure;
         seeds(&mut bench, UVec2::new(192, 108));
         // The previous sheet is open meanwhile.
         bench.until(|window| window.export_job.progress().is_none());
         bench.window.run_steps(3);
-        let part = bench.window.get_by_label("sheet").rect();
+        let part = bench.window.get_by_label("Image of the sheet").rect();
         testing::brightness(&testing::picture(&mut bench.window), part)
     };
     let (dark, bright) = (shown(-3.0), shown(2.0));
@@ -134,8 +146,9 @@ fn sheets_are_shown_and_saved_on_request() {
     bench.until(|window| window.export_job.sheet.is_some());
     assert!(bench.names().is_empty());
     bench.window.run_steps(2);
-    bench.window.get_by_label("Save").click();
+    bench.window.get_by_label("Save…").click();
     bench.window.run_steps(2);
+    bench.confirm_path();
     bench.until(|window| window.export_job.progress().is_none() && window.export_job.sheet.is_none());
     bench.window.run_steps(2);
     assert!(bench.names()[0].contains("seeds"), "{:?}", bench.names());
@@ -155,8 +168,9 @@ fn a_stopped_export_is_reported_as_partial() {
     bench.window.state_mut().export_job.options.last = 9999;
     bench.window.state_mut().export_job.is_open = true;
     bench.window.run_steps(2);
-    bench.window.get_by_label("Make").click();
+    bench.window.get_by_label("Export…").click();
     bench.window.run_steps(2);
+    bench.confirm_path();
     bench.until(|window| window.export_job.progress().is_some_and(|(done, _)| done >= 2));
     bench.window.step();
     bench.window.get_by_label("Stop").click();
@@ -174,19 +188,19 @@ fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
     let Sheet { picture: made, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
     bench.window.state_mut().export_job.is_open = false;
     bench.window.run_steps(3);
-    testing::row_menu(&mut bench.window, "exposure");
-    bench.window.get_by_label("Five values on a sheet").click();
+    testing::row_menu(&mut bench.window, "Exposure");
+    bench.window.get_by_label("Five values side by side").click();
     bench.window.run_steps(2);
     bench.until(|window| window.export_job.sheet.is_some());
     let Sheet { picture: sheet, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
     assert!(sheet == made, "another sheet");
     // The same for a row that several settings make.
-    testing::row_menu(&mut bench.window, "thickness");
-    bench.window.get_by_label("Five values on a sheet").click();
+    testing::row_menu(&mut bench.window, "Thickness");
+    bench.window.get_by_label("Five values side by side").click();
     bench.window.run_steps(2);
     bench.until(|window| window.export_job.sheet.is_some());
-    let Sheet { path, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
-    assert!(path.to_string_lossy().contains("thickness"), "{}", path.display());
+    let Sheet { kind, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+    assert_eq!(kind.file_ending().0, "thickness");
 }
 
 #[test]
@@ -203,18 +217,18 @@ fn the_button_beside_a_name_makes_a_sheet() {
         let place = bench.window.get_by_label(button).rect().center();
         testing::click_at(&mut bench.window, place, PointerButton::Primary);
         bench.until(|window| window.export_job.sheet.is_some());
-        let path = bench.window.state().export_job.sheet.as_ref().unwrap().path.clone();
+        let kind = bench.window.state().export_job.sheet.as_ref().unwrap().kind.clone();
         // Escape closes the sheet and nothing below it.
         let hints = bench.window.state().session.hints.left();
         bench.window.key_press(Key::Escape);
         bench.window.run_steps(2);
         let window = bench.window.state();
         assert!(window.export_job.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
-        path.file_name().unwrap().to_string_lossy().into_owned()
+        kind.file_ending().0.to_owned()
     };
-    assert!(made("Look", "thickness", "Five values on a sheet: thickness").contains("thickness"));
-    assert!(made("Advanced", "coverage", "All values on a sheet: coverage").contains("coverage"));
-    assert!(made("Smoke", "seed", "Nine seeds on a sheet: seed").contains("seeds"));
+    assert!(made("Look", "Thickness", "Five values side by side: Thickness").contains("thickness"));
+    assert!(made("Advanced", "Coverage", "All values side by side: Coverage").contains("coverage"));
+    assert!(made("Smoke", "Seed", "Nine seeds side by side: Seed").contains("seeds"));
 }
 
 #[test]
@@ -242,4 +256,33 @@ fn values_of_a_field_cover_its_slider_or_surround_its_value_and_are_valid() {
     assert!(thicker.len() == 5 && thicker.is_sorted(), "{thicker:?}");
     assert_eq!((labels("systems[0].wind").len(), labels("systems[0].softness").len()), (5, 5));
     assert!(labels("systems[1].wind").is_empty());
+}
+
+#[test]
+fn the_folder_of_an_export_is_remembered_and_files_have_the_name_of_the_document() {
+    let mut bench = bench();
+    let folder = bench.folder.path().join("pictures");
+    fs::create_dir(&folder).unwrap();
+    let ask = |bench: &mut Bench| {
+        bench.window.key_press(Key::F12);
+        bench.window.run_steps(2);
+        bench.window.state().file_actions.typed.as_ref().unwrap().text.clone()
+    };
+    let suggested = ask(&mut bench);
+    let name = Path::new(&suggested).file_name().unwrap().to_str().unwrap().to_owned();
+    assert!(name.starts_with("my_") && name.ends_with("s.png"), "{suggested}");
+    // Escape cancels.
+    bench.window.key_press(Key::Escape);
+    bench.window.run_steps(3);
+    assert!(bench.window.state().export_job.progress().is_none() && bench.names() == ["pictures"]);
+    ask(&mut bench);
+    let typed = folder.join("mine").display().to_string();
+    bench.window.state_mut().file_actions.typed.as_mut().unwrap().text = typed;
+    bench.window.run_steps(2);
+    bench.confirm_path();
+    bench.until(|window| window.export_job.progress().is_none());
+    bench.window.run_steps(2);
+    assert!(folder.join("mine.png").exists(), "{}", bench.said());
+    assert_eq!(Path::new(&ask(&mut bench)).parent(), Some(&*folder));
+    assert_eq!(bench.window.state().layout().export_folder.as_deref(), Some(&*folder));
 }

@@ -176,7 +176,7 @@ fn long_and_unusual_names_do_not_change_the_layout() {
     let path = bench.path("a\nb.json");
     bench.press(COMMAND_SHIFT, Key::S);
     bench.type_path(&path);
-    bench.until(|bench| bench.said().starts_with("saved: "));
+    bench.until(|bench| bench.said().starts_with("Saved "));
     assert!(bench.said().ends_with("a b.json") && path.exists());
     // Longer than a file name can be.
     bench.press(COMMAND_SHIFT, Key::S);
@@ -194,7 +194,7 @@ fn a_dropped_preset_is_opened_and_a_dropped_ramp_is_used() {
     haze::image::write_png(&ramp, &grey.into(), haze::image::CompressionEffort::Quick).unwrap();
     bench.drop_file(&ramp);
     bench.until(|bench| bench.session().document.preset.systems[0].material.diffuse_ramp == "mine.png");
-    assert_eq!(bench.said(), "mine.png is the diffuse ramp of smoke now");
+    assert_eq!(bench.said(), "mine.png is now the diffuse ramp of smoke");
     bench.session().undo();
     let scatter = bench.path("scatter_mine.png");
     fs::rename(&ramp, &scatter).unwrap();
@@ -221,7 +221,7 @@ fn a_preset_can_be_copied_and_pasted_and_an_invalid_text_is_refused() {
     let before = bench.session().document.preset.clone();
     for nonsense in ["some text", &preset.to_text("").replace("0.5", "NaN")] {
         paste(&mut bench, nonsense);
-        assert!(bench.said().starts_with("nothing is pasted: "), "{}", bench.said());
+        assert!(bench.said().starts_with("Cannot paste: "), "{}", bench.said());
         assert!(bench.session().document.preset == before);
     }
     paste(&mut bench, &preset.to_text(""));
@@ -250,7 +250,7 @@ fn closing_a_window_asks_about_unsaved_work() {
         let commands = bench.window.output().viewport_output.values().flat_map(|output| &output.commands);
         commands.cloned().collect::<Vec<_>>()
     };
-    bench.click("Discard");
+    bench.click("Don't Save");
     bench.window.step();
     assert!(cancels(&bench).contains(&egui::ViewportCommand::Close));
     assert_eq!(exposure(&bench.path("my.json")), 55);

@@ -178,7 +178,7 @@ fn a_changed_preset_file_is_loaded_unless_there_are_unsaved_changes() {
     bench.until(|bench| bench.said().is_some_and(|said| said.contains("my.json:2:12")));
     assert_eq!(exposure(&mut bench), 150);
     fs::remove_file(&path).unwrap();
-    bench.until(|bench| bench.said().is_some_and(|said| said.contains("gone")));
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("was deleted")));
     let saved = bench.session().document.preset.to_text("");
     fs::write(&path, saved).unwrap();
     bench.until(|bench| bench.said().is_none());
@@ -188,14 +188,14 @@ fn a_changed_preset_file_is_loaded_unless_there_are_unsaved_changes() {
     bench.until(|bench| bench.session().is_changed_on_disk);
     assert_eq!(exposure(&mut bench), -100);
     bench.window.step();
-    bench.window.get_by_label("Keep mine").click();
+    bench.window.get_by_label("Keep my changes").click();
     bench.window.run_steps(2);
     assert!(exposure(&mut bench) == -100 && bench.session().document.is_dirty());
-    assert!(bench.window.query_by_label("Keep mine").is_none());
+    assert!(bench.window.query_by_label("Keep my changes").is_none());
     write(0.25);
     bench.until(|bench| bench.session().is_changed_on_disk);
     bench.window.step();
-    bench.window.get_by_label("Load it").click();
+    bench.window.get_by_label("Reload file").click();
     bench.window.run_steps(2);
     assert!(exposure(&mut bench) == 25 && !bench.session().document.is_dirty());
     bench.session().undo();
@@ -250,11 +250,13 @@ fn exports_use_the_shaders_of_the_watched_folder() {
     let export = |bench: &mut Bench| {
         let window = bench.window.state_mut();
         window.export_job.options.size = glam::UVec2::new(96, 54);
-        window.export_job.begin(ExportKind::Image, &mut window.session);
+        window.export_job.order(ExportKind::Image, &mut window.session);
+        let path = window.export_job.take_question();
+        window.export_job.answer(path, &mut window.session);
         bench.until(|bench| bench.window.state().export_job.progress().is_none());
         bench.window.run_steps(2);
         let said = bench.session().messages.latest().unwrap().text.clone();
-        let picture = haze::image::read_png(Path::new(said.strip_prefix("written: ").unwrap())).unwrap();
+        let picture = haze::image::read_png(Path::new(said.strip_prefix("Exported ").unwrap())).unwrap();
         picture.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
     };
     let before = export(&mut bench);

@@ -9,6 +9,7 @@ pub mod value_text;
 
 use eframe::egui::{self, Response, Ui};
 
+use crate::tweak::document::display_names::display_name;
 use icon_button::Icon;
 
 /// Width of the names, points, and their largest share of a row.
@@ -47,14 +48,14 @@ impl Row<'_> {
         let mut request = None;
         ui.horizontal(|ui| {
             let (width, height) = (name_width(ui), ui.spacing().interact_size.y);
-            let tooltip = "Differs from the saved preset. Click to set it back.";
-            if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("set back {}", self.name)) {
+            let tooltip = "Differs from the saved preset. Click to reset.";
+            if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("Reset {}", display_name(self.name))) {
                 request = Some(RowRequest::Reset);
             }
             if let Some(second) = self.second {
-                let tooltip = second.map(|value| format!("The second picture has {value}. Click to take it."));
+                let tooltip = second.map(|value| format!("Image B has {value}. Click to copy it."));
                 let sign = tooltip.as_deref().map(|tooltip| ("≠", tooltip));
-                if mark(ui, sign, || format!("take {} of the second", self.name)) {
+                if mark(ui, sign, || format!("Copy {} from image B", display_name(self.name))) {
                     request = Some(RowRequest::CopySecond);
                 }
             }
@@ -63,7 +64,7 @@ impl Row<'_> {
                 egui::Layout::left_to_right(egui::Align::Center),
                 |ui| {
                     ui.set_min_size(egui::vec2(width, height));
-                    let text = egui::RichText::new(with_spaces(self.name));
+                    let text = egui::RichText::new(display_name(self.name));
                     let text = if self.reason_without_effect.is_some() { text.weak() } else { text };
                     ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
                 },
@@ -77,7 +78,7 @@ impl Row<'_> {
                 self.sheet.filter(|_| self.reason_without_effect.is_none() && ui.rect_contains_pointer(place))
             {
                 let corner = place.with_min_x(place.right() - height);
-                let what = format!("{sheet}: {}", with_spaces(self.name));
+                let what = format!("{sheet}: {}", display_name(self.name));
                 if icon_button::button_over(ui, corner, name.id.with(sheet), Icon::Sheet, &what).clicked() {
                     request = Some(RowRequest::Sheet);
                 }
@@ -95,9 +96,9 @@ impl Row<'_> {
                 ui.close();
             }
         };
-        entry(self.is_changed, "Set back", RowRequest::Reset);
+        entry(self.is_changed, "Reset", RowRequest::Reset);
         if let Some(Some(value)) = self.second {
-            entry(true, &format!("Take {value} of the second picture"), RowRequest::CopySecond);
+            entry(true, &format!("Copy {value} from image B"), RowRequest::CopySecond);
         }
         if let Some(sheet) = self.sheet {
             entry(true, sheet, RowRequest::Sheet);
@@ -107,7 +108,7 @@ impl Row<'_> {
 
     fn hint(&self) -> String {
         match self.reason_without_effect {
-            Some(reason) => format!("{}\n\nNo effect here: {reason}.", self.tooltip),
+            Some(reason) => format!("{}\n\nNo effect now: {reason}.", self.tooltip),
             None => self.tooltip.to_owned(),
         }
     }
@@ -134,15 +135,9 @@ fn name_width(ui: &Ui) -> f32 {
 }
 
 /// Draws a note below a control. `marks`: number of marks that rows have before their names.
-pub fn note(ui: &mut Ui, marks: f32, text: &str) -> Response {
+pub fn note(ui: &mut Ui, marks: f32, content: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
         ui.add_space(marks * MARK + name_width(ui) + (marks + 1.0) * ui.spacing().item_spacing.x);
-        ui.weak(text)
-    })
-    .inner
-}
-
-/// Returns a name with spaces in place of underscores.
-pub fn with_spaces(name: &str) -> String {
-    name.replace('_', " ")
+        content(ui);
+    });
 }

@@ -21,7 +21,7 @@ pub fn gallery(
     value: &mut String,
     path: &str,
 ) -> Response {
-    let shown = if value.is_empty() { "none" } else { value.as_str() };
+    let shown = if value.is_empty() { "None" } else { value.as_str() };
     let combo = egui::ComboBox::from_id_salt(path)
         .selected_text(shown)
         .width(ui.available_width() - 8.0)
@@ -48,10 +48,10 @@ pub fn gallery(
             cells(ui, fitting);
             if !others.is_empty() {
                 ui.separator();
-                ui.weak("others");
+                ui.weak("Others");
                 cells(ui, others);
             }
-            if matches!(role, ImageRole::Detail | ImageRole::SixWay) && ui.button("none").clicked() {
+            if matches!(role, ImageRole::Detail | ImageRole::SixWay) && ui.button("None").clicked() {
                 value.clear();
             }
         })
@@ -104,7 +104,7 @@ mod tests {
         let mut harness = window(path.to_str().unwrap(), Vec2::new(1000.0, 900.0), Theme::Dark);
         harness.get_by_label("Smoke").click();
         harness.run_steps(3);
-        for fold in ["Emitter", "Sprite and ramps", "ramps and noise"] {
+        for fold in ["Emitter", "Sprite and ramps", "Ramps and noise"] {
             harness.get_by_label(fold).click();
             harness.run_steps(30);
         }
@@ -112,7 +112,7 @@ mod tests {
     }
 
     fn open(harness: &mut Harness<'_, Window>) {
-        let nodes = harness.get_all_by_label("diffuse ramp");
+        let nodes = harness.get_all_by_label("Diffuse ramp");
         nodes.into_iter().find(|node| node.accesskit_node().role() == Role::ComboBox).unwrap().click();
         harness.run_steps(3);
     }
@@ -156,7 +156,7 @@ mod tests {
         let mut harness = opened(folder.path());
         open(&mut harness);
         let place = |name: &str| -> Rect { harness.get_by_label(name).rect() };
-        let line = place("others").center().y;
+        let line = place("Others").center().y;
         for name in ["diffuse_ink", "red.png"] {
             assert!(place(name).bottom() < line, "{name}");
         }
@@ -170,14 +170,14 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 1100.0), Theme::Dark);
         harness.get_by_label("Ramps").click();
         harness.run_steps(3);
-        let nodes = harness.get_all_by_label("Coverage, by amount times boost");
+        let nodes = harness.get_all_by_label("Coverage, by amount × boost");
         nodes.into_iter().find(|node| node.accesskit_node().role() == Role::ComboBox).unwrap().click();
         harness.run_steps(3);
         harness.get_by_label("coverage_wispy").click();
         harness.run_steps(3);
         let session = &harness.state().session;
         assert_eq!(session.document.preset.systems[0].material.coverage_ramp, "coverage_wispy");
-        assert_eq!(session.document.history().undo_name(), Some("coverage_ramp of smoke"));
+        assert_eq!(session.document.history().undo_name(), Some("Coverage ramp of smoke"));
     }
 
     #[test]
@@ -189,7 +189,7 @@ mod tests {
         harness.run_steps(2);
         harness.key_press(Key::Enter);
         harness.run_steps(3);
-        let nodes = harness.get_all_by_label("diffuse ramp");
+        let nodes = harness.get_all_by_label("Diffuse ramp");
         let combo = nodes.into_iter().find(|node| node.accesskit_node().role() == Role::ComboBox).unwrap();
         assert_eq!(combo.accesskit_node().value().as_deref(), Some("diffuse_ember"));
     }

@@ -10,7 +10,8 @@ use haze_author::preset::Tooltips;
 
 use super::picture_gallery::gallery;
 use super::value_text::shown_value;
-use super::{Row, RowRequest, value_control, with_spaces};
+use super::{Row, RowRequest, value_control};
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::session::picture_thumbnails::PictureThumbnails;
 use crate::tweak::session::slider_range::UsualRange;
 
@@ -47,9 +48,9 @@ impl RowContext<'_> {
 }
 
 /// Labels of the button that makes a sheet, for a number, a seed, and all values of a choice or flag.
-pub const FIVE_VALUES: Option<&str> = Some("Five values on a sheet");
-const SEEDS: Option<&str> = Some("Nine seeds on a sheet");
-const ALL: Option<&str> = Some("All values on a sheet");
+pub const FIVE_VALUES: Option<&str> = Some("Five values side by side");
+const SEEDS: Option<&str> = Some("Nine seeds side by side");
+const ALL: Option<&str> = Some("All values side by side");
 
 /// Draws the fields of the struct at `path`. Groups and headings are collapsible; the first heading is open.
 pub fn show(ui: &mut Ui, context: &mut RowContext<'_>, path: &[FieldStep], fields: &mut dyn Fields) {
@@ -69,7 +70,8 @@ pub fn show(ui: &mut Ui, context: &mut RowContext<'_>, path: &[FieldStep], field
             let below = field.strip_prefix(&field_path(path)).and_then(|rest| rest.strip_prefix('.'));
             part.iter().any(|(name, _)| below.is_some_and(|below| is_at(below, name)))
         };
-        let header = header(context, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
+        let header =
+            header(context, &display_name(heading), &holds).id_salt((path, heading)).default_open(first == table[0].0);
         header.show_unindented(ui, |ui| rows(ui, context));
     }
 }
@@ -164,9 +166,8 @@ impl Rows<'_, '_, '_> {
         let second = context.second(&path, unit);
         let title = self.only.map_or(name, |only| only.title);
         let mut tooltip = context.tooltips.field(&plain).unwrap_or_default().to_owned();
-        if title != with_spaces(name) && self.only.is_some() {
-            // The path that the field has in files.
-            tooltip += &format!("\n\n{path}");
+        if display_name(title) != display_name(name) && self.only.is_some() {
+            tooltip += &format!("\n\nIn files: {path}");
         }
         let row = Row {
             name: title,
@@ -184,7 +185,7 @@ impl Rows<'_, '_, '_> {
         if let Some(what) = &mut context.refused
             && !what.contains(": ")
         {
-            *what = format!("{path}: {what}");
+            *what = format!("{}: {what}", display_name(title));
         }
         if context.searched_path == Some(path.as_str()) {
             scroll_to_and_mark(self.ui, before);
@@ -201,7 +202,7 @@ impl Rows<'_, '_, '_> {
             fields.visit(&mut Rows { ui: self.ui, context: self.context, path, is_wanted: &|_| true, only: self.only });
         } else {
             let path = field_path(&self.path);
-            let header = header(self.context, &with_spaces(title), &|field| is_at(field, &path)).id_salt(&path);
+            let header = header(self.context, &display_name(title), &|field| is_at(field, &path)).id_salt(&path);
             header.show(self.ui, |ui| show(ui, self.context, &self.path, fields));
         }
         self.path.pop();
@@ -267,7 +268,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     fn seed(&mut self, name: &'static str, value: &mut u32) {
         self.row(name, ("", SEEDS), |ui, label, _, _, _| {
             ui.add(egui::DragValue::new(value)).labelled_by(label.id);
-            if ui.button("next").clicked() {
+            if ui.button("Next").clicked() {
                 *value = value.wrapping_add(1);
             }
         });

@@ -12,7 +12,7 @@ const POINTS: usize = 160;
 /// Draws the plot, from behind the surface to where the sprite is fully visible.
 pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "fade curve"));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Fade curve"));
     let plot = rect.with_max_y(rect.bottom() - TEXT_SIZE).shrink(2.0);
     let reach = fade.max_distance();
     let (from, to) = (-0.6 * reach, 1.4 * reach);
@@ -35,7 +35,7 @@ pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     let word = |at: f32, align: Align2, text: String| {
         painter.text(pos2(at, rect.bottom()), align, text, font.clone(), faint);
     };
-    word(x(0.0), Align2::CENTER_BOTTOM, "surface".into());
+    word(x(0.0), Align2::CENTER_BOTTOM, "Surface".into());
     word(x(reach), Align2::CENTER_BOTTOM, format!("{reach:.2} m"));
-    response.on_hover_text("Share of a sprite that remains, over its distance in front of the surface");
+    response.on_hover_text("Opacity of a sprite over its distance in front of a surface");
 }

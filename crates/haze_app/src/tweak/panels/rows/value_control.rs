@@ -8,7 +8,7 @@ use glam::Vec3;
 use haze::settings::Choice;
 
 use super::value_text::{parse, shown, suffix};
-use super::with_spaces;
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::session::slider_range::{UsualRange, needs_log_slider, slider_range};
 
 /// Least width of the number field, points.
@@ -227,12 +227,12 @@ pub fn choice<'t>(
 ) -> Response {
     let names = value.names();
     let mut index = value.index();
-    let selected = with_spaces(names.get(index).copied().unwrap_or_default());
+    let selected = display_name(names.get(index).copied().unwrap_or_default());
     let combo = egui::ComboBox::from_id_salt(salt).selected_text(selected).width(ui.available_width() - 8.0);
     let response = combo
         .show_ui(ui, |ui| {
             for (place, name) in names.iter().enumerate() {
-                let entry = ui.selectable_value(&mut index, place, with_spaces(name));
+                let entry = ui.selectable_value(&mut index, place, display_name(name));
                 if let Some(tooltip) = tooltip(name) {
                     entry.on_hover_text(tooltip);
                 }

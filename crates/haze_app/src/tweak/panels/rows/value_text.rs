@@ -3,6 +3,8 @@
 use glam::Vec3;
 use haze::settings::FieldValue;
 
+use crate::tweak::document::display_names::display_name;
+
 /// Formats a number with four significant digits, without trailing zeros.
 pub fn shown(value: f64) -> String {
     let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 4) as usize };
@@ -26,8 +28,8 @@ pub fn shown_value(value: &FieldValue, unit: &str) -> String {
         FieldValue::Whole(number) => number.to_string() + &suffix(unit),
         FieldValue::Vector(vector) => list(vector) + &suffix(unit),
         FieldValue::Flag(flag) => if *flag { "on" } else { "off" }.into(),
-        FieldValue::Choice(name) => name.replace('_', " "),
-        FieldValue::Text(text) if text.is_empty() => "nothing".into(),
+        FieldValue::Choice(name) => display_name(name),
+        FieldValue::Text(text) if text.is_empty() => "none".into(),
         FieldValue::Text(text) => text.clone(),
     }
 }
@@ -37,6 +39,7 @@ pub fn suffix(unit: &str) -> String {
         "" => String::new(),
         "degrees" => "°".into(),
         "half sides" => " side/2".into(),
+        "pixels" => " px".into(),
         unit => format!(" {unit}"),
     }
 }
@@ -82,8 +85,8 @@ mod tests {
             (FieldValue::Whole(4), "", "4"),
             (FieldValue::Vector(Vec3::new(1.0, -0.5, 0.0)), "m/s", "1, -0.5, 0 m/s"),
             (FieldValue::Flag(true), "", "on"),
-            (FieldValue::Choice("depth_sprite_soft"), "", "depth sprite soft"),
-            (FieldValue::Text(String::new()), "", "nothing"),
+            (FieldValue::Choice("depth_sprite_soft"), "", "Depth sprite soft"),
+            (FieldValue::Text(String::new()), "", "none"),
         ] {
             assert_eq!(shown_value(&value, unit), text);
         }

@@ -56,7 +56,7 @@ fn picture(
     settings: &Settings,
 ) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "flipbook"));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Flipbook"));
     // The movement before the drag began does not count.
     if response.dragged() && !response.drag_started() {
         let drag = response.drag_delta() * DRAG;
@@ -82,23 +82,23 @@ fn picture(
         let fill = if to_light.z < 0.0 { Color32::TRANSPARENT } else { Color32::WHITE };
         ui.painter().circle(at, 4.0, fill, Stroke::new(1.5, Color32::from_gray(160)));
     }
-    response.on_hover_text("Drag to move the light around it");
+    response.on_hover_text("Drag to move the light");
 }
 
 fn time(ui: &mut Ui, look: &mut SpriteView, count: u32) {
     ui.horizontal(|ui| {
         let (sign, name) =
-            if look.is_playing { (Icon::Pause, "Pause the flipbook") } else { (Icon::Play, "Play the flipbook") };
+            if look.is_playing { (Icon::Pause, "Pause flipbook") } else { (Icon::Play, "Play flipbook") };
         if icon_button::button(ui, sign, look.is_playing, name).clicked() {
             look.is_playing = !look.is_playing;
         }
         let rate = egui::DragValue::new(&mut look.rate).range(1.0..=60.0).speed(0.1).max_decimals(1);
-        ui.add(rate.suffix(" frames/s")).on_hover_text("Speed of the flipbook");
-        let name = ui.label("frame");
+        ui.add(rate.suffix(" fps")).on_hover_text("Playback speed of the flipbook, frames per second");
+        let name = ui.label("Frame");
         ui.spacing_mut().slider_width = ui.available_width();
         let slider = egui::Slider::new(&mut look.frame, 0.0..=count as f32).show_value(false);
         let slider = slider.clamping(egui::SliderClamping::Never);
-        let slider = ui.add(slider).labelled_by(name.id).on_hover_text("Between two frames, both are blended");
+        let slider = ui.add(slider).labelled_by(name.id).on_hover_text("A position between two frames blends them");
         if slider.changed() {
             look.is_playing = false;
         }
@@ -106,14 +106,16 @@ fn time(ui: &mut Ui, look: &mut SpriteView, count: u32) {
 }
 
 fn light(ui: &mut Ui, look: &mut SpriteView) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let angle =
             |value, most: f32| egui::DragValue::new(value).range(-most..=most).speed(1.0).max_decimals(1).suffix("°");
         let Angles { azimuth, elevation } = &mut look.light;
-        ui.label("light at");
-        ui.add(angle(azimuth, 180.0)).on_hover_text("Azimuth: 0 is before the sprite, 90 at its right");
-        ui.label("and up");
-        ui.add(angle(elevation, MAX_ELEVATION)).on_hover_text("Height: 0 is level with the sprite, 90 above it");
-        ui.checkbox(&mut look.is_turning, "turn").on_hover_text("Rotates the light, once in 5 seconds");
+        ui.label("Azimuth");
+        ui.add(angle(azimuth, 180.0))
+            .on_hover_text("Azimuth of the light: 0° is in front of the sprite, 90° to its right");
+        ui.label("Elevation");
+        ui.add(angle(elevation, MAX_ELEVATION))
+            .on_hover_text("Elevation of the light: 0° is level with the sprite, 90° above it");
+        ui.checkbox(&mut look.is_turning, "Rotate").on_hover_text("Rotates the light, one turn in 5 seconds");
     });
 }

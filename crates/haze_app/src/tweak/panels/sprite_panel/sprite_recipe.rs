@@ -16,14 +16,14 @@ use crate::tweak::document::sprite_edits::set_recipe;
 use crate::tweak::document::sprite_edits::sprite_source::SpriteOrigin;
 use crate::tweak::panels::rows::setting_rows::{self, RowContext};
 use crate::tweak::platform::clock::Duration;
-use crate::tweak::session::Session;
 use crate::tweak::session::messages::truncate_middle;
+use crate::tweak::session::{CopiedImage, CopyRequest, Session};
 
 static TOOLTIPS: LazyLock<Tooltips> = LazyLock::new(Tooltips::of::<SpriteRecipe>);
 
 /// Tooltip about saving.
-const WRITTEN: &str = "Shown at once at a low resolution, and baked in full when the control is released. Then the recipe and its PNGs are \
-                       written, and again when the step is undone";
+const WRITTEN: &str = "Changes are visible at once at low resolution. The sprite is baked at full resolution and written when the control \
+                       is released, and again after an undo.";
 
 /// Longest finding or error that is shown, characters.
 const MAX_CHARACTERS: usize = 400;
@@ -45,15 +45,14 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
     let name = &names.sprite;
     match source {
         SpriteOrigin::Reading => {
-            ui.weak("Reading the sprite.");
+            ui.weak("Reading the sprite…");
         }
         SpriteOrigin::BuiltIn(recipe) => {
-            let about = "Writes a copy of this sprite and its recipe beside the preset, to be changed here; a preset that is \
-                         built in is saved first";
-            if ui.button("Make my own").on_hover_text(about).clicked() {
-                session.sprites.request_copy(session.view.system, name, session.document.is_built_in());
+            let about = "Built-in sprites cannot be changed. Makes an editable copy; asks first.";
+            if ui.button("Make my own…").on_hover_text(about).clicked() {
+                request_copy(session, name);
             }
-            rows(ui, session, name, &recipe, Some("a built-in recipe cannot be changed; make your own first"));
+            rows(ui, session, name, &recipe, Some("a built-in sprite cannot be changed; make your own copy first"));
         }
         SpriteOrigin::Recipe(recipe) => {
             let recipe = session.document.recipes.sprites.get(name).unwrap_or(&recipe).clone();
@@ -65,22 +64,22 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
                     ui.ctx().request_repaint_after(Duration::from_millis(100));
                 }
                 None => {
-                    ui.weak("Saved with each step").on_hover_text(WRITTEN);
+                    ui.weak("Saved automatically").on_hover_text(WRITTEN);
                 }
             }
-            rows(ui, session, name, &recipe, is_broken.then_some("the file of the recipe has an error; fix it first"));
+            rows(ui, session, name, &recipe, is_broken.then_some("the recipe file has an error; fix it first"));
         }
         SpriteOrigin::Apart(_) => {
-            ui.label(format!("{file} makes another picture: another program has changed one of the two."));
-            let about = "Replaces the picture by the one that the recipe makes";
-            if ui.button("Bake the recipe").on_hover_text(about).clicked() {
+            ui.label(format!("The image does not match {file}: another program changed one of them."));
+            let about = "Replaces the image by the one that the recipe makes";
+            if ui.button("Bake recipe").on_hover_text(about).clicked() {
                 known.adopt();
             }
             templates(ui, session);
         }
         SpriteOrigin::Painted => {
             if !is_broken {
-                ui.label(format!("There is no recipe: {file} does not exist beside the picture."));
+                ui.label(format!("This sprite has no recipe ({file}), so it cannot be edited here."));
             }
             templates(ui, session);
         }
@@ -88,18 +87,22 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
     }
 }
 
+fn request_copy(session: &mut Session, name: &str) {
+    let system = session.view.system;
+    session.copy_request = Some(CopyRequest { system, name: name.into(), image: CopiedImage::Sprite });
+}
+
 /// Menu of built-in sprites to copy.
 fn templates(ui: &mut Ui, session: &mut Session) {
     let menu = ui.menu_button("New from template", |ui| {
         for template in builtin::SPRITES {
             if ui.button(template.name).clicked() {
-                session.sprites.request_copy(session.view.system, template.name, session.document.is_built_in());
+                request_copy(session, template.name);
                 ui.close();
             }
         }
     });
-    menu.response
-        .on_hover_text("Writes a copy of a built-in sprite and its recipe beside the preset, in place of this one");
+    menu.response.on_hover_text("Replaces this sprite by an editable copy of a built-in one");
 }
 
 /// Draws the fields of a recipe by its table. `locked`: the reason why none can be changed.

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use haze::Light;
 
-use super::{camera, light, lit, projection, undo_name, viewport};
+use super::{camera, drag, flick, light, lit, projection, undo_name, viewport};
 use crate::tweak::session::smoke_geometry::SmokeGeometry;
 
 #[test]
@@ -71,7 +71,7 @@ fn wheel_steps_are_one_undo_step_and_zoom_towards_the_pointer() {
     let near = camera(&harness);
     assert!(near.position.distance(near.target) < 0.9 * before.position.distance(before.target));
     assert!(projection(&harness).project(point).unwrap().distance(at) < 1.0);
-    assert_eq!(undo_name(&harness).as_deref(), Some("camera"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Camera"));
     harness.event(turn());
     harness.run_steps(6);
     harness.state_mut().session.undo();
@@ -102,6 +102,24 @@ fn the_right_button_with_wasd_flies() {
     let (after, ahead) = (camera(&harness), (before.target - before.position).normalize());
     let way = after.position - before.position;
     assert!(way.dot(ahead) > 0.5 && way.normalize().distance(ahead) < 1e-3, "{way}");
-    assert_eq!(undo_name(&harness).as_deref(), Some("camera"));
-    assert!(harness.query_by_label_contains("here").is_none(), "no menu opens");
+    assert_eq!(undo_name(&harness).as_deref(), Some("Camera"));
+    assert!(harness.query_by_label_contains("Here").is_none(), "no menu opens");
+}
+
+#[test]
+fn a_drag_within_one_long_frame_moves_as_far_as_a_slow_one() {
+    for (button, name) in [(PointerButton::Primary, "orbit"), (PointerButton::Secondary, "look")] {
+        let (mut slow, mut fast) = (lit(Light::default()), lit(Light::default()));
+        let from = viewport(&slow).center() + vec2(-180.0, 60.0);
+        let before = camera(&slow);
+        let place = |moved: f32| from + vec2(moved, 0.2 * moved);
+        drag(&mut slow, button, &[0.0, 20.0, 46.0, 100.0, 186.0].map(place));
+        flick(&mut fast, button, &[0.0, 46.0, 186.0].map(place));
+        let (slow, fast) = (camera(&slow), camera(&fast));
+        assert!(
+            slow.position.distance(fast.position) + slow.target.distance(fast.target) < 1e-3,
+            "{name}: {slow:?} {fast:?}"
+        );
+        assert!(before.position.distance(fast.position) + before.target.distance(fast.target) > 1.0, "{name}");
+    }
 }

@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use glam::Vec3;
 use haze::{Light, LightKind};
 
-use super::{camera, drag, handle, light, lit, projection, undo_name};
+use super::{camera, drag, flick, handle, light, lit, projection, undo_name};
 use crate::tweak::viewport::light_handle::Handle;
 use crate::tweak::window::Window;
 
@@ -22,9 +22,9 @@ fn an_axis_drag_moves_the_light_along_the_axis_in_one_step() {
         assert!((moved[axis] - 0.6).abs() < 0.02, "axis {axis}: {moved}");
         assert!((moved - moved[axis] * Vec3::AXES[axis]).length() < 1e-6, "{moved}");
         assert!(handle(&harness, Handle::Axis(axis)).distance(to) < 6.0, "it stays under the pointer");
-        assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
+        assert_eq!(undo_name(&harness).as_deref(), Some("Position of Point 1"));
         harness.state_mut().session.undo();
-        assert_eq!((light(&harness).position, undo_name(&harness)), (before, Some("light removed".into())));
+        assert_eq!((light(&harness).position, undo_name(&harness)), (before, Some("Light removed".into())));
     }
 }
 
@@ -54,7 +54,7 @@ fn a_centre_drag_follows_the_pointer_and_escape_cancels_it() {
     harness.event(press(to + vec2(90.0, 40.0), false));
     harness.run();
     assert_eq!((light(&harness).position, camera(&harness)), (after, eye));
-    assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Position of Point 1"));
     assert_eq!(harness.state().session.view.lights.selected, Some(0));
 }
 
@@ -100,7 +100,7 @@ fn radius_cone_and_direction_can_be_dragged() {
     drag(&mut harness, PointerButton::Primary, &[rim, rim + (middle - rim) * 0.5]);
     assert!(light(&harness).inner_angle < before.inner_angle - 5.0);
     assert!((light(&harness).outer_angle - outer).abs() < 1e-5);
-    assert_eq!(undo_name(&harness).as_deref(), Some("inner_angle of lamp 1 (spot)"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Inner angle of Spot 1"));
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn a_sun_is_moved_on_its_dome() {
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(20.0, 0.0), to]);
     assert!(handle(&harness, Handle::Aim).distance(to) < 1.0);
     assert!((light(&harness).direction.length() - 1.0).abs() < 1e-5);
-    assert_eq!(undo_name(&harness).as_deref(), Some("direction of sun 1"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Direction of Sun 1"));
 }
 
 #[test]
@@ -130,7 +130,18 @@ fn a_click_selects_a_light_and_a_click_elsewhere_deselects() {
     drag(&mut harness, PointerButton::Primary, &[beside, beside + vec2(10.0, 0.0), beside + vec2(60.0, 0.0)]);
     assert_eq!(selected(&harness), Some(0));
     assert_ne!(camera(&harness), before);
-    assert_eq!(undo_name(&harness).as_deref(), Some("camera"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("Camera"));
     drag(&mut harness, PointerButton::Primary, &[beside]);
     assert_eq!(selected(&harness), None);
+}
+
+#[test]
+fn a_light_dragged_within_one_long_frame_ends_under_the_pointer() {
+    let mut harness = lit(Light::default());
+    let from = handle(&harness, Handle::Centre);
+    let to = from + vec2(130.0, -70.0);
+    flick(&mut harness, PointerButton::Primary, &[from, from + vec2(46.0, -20.0), to]);
+    let after = light(&harness).position;
+    assert!(projection(&harness).project(after).unwrap().distance(to) < 1.0, "{after}");
+    assert_eq!(undo_name(&harness).as_deref(), Some("Position of Point 1"));
 }

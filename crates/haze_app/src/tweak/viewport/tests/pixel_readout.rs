@@ -38,19 +38,19 @@ fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
     harness.key_press(Key::I);
     let place = smoke(&harness);
     harness.hover_at(place);
-    wait_for(&mut harness, |harness| shows(harness, "coverage"));
-    assert!(shows(&harness, "lamp 1 (point)") && shows(&harness, "soft scatter") && shows(&harness, "as shown, sRGB"));
-    assert!(shows(&harness, "click keeps it"));
+    wait_for(&mut harness, |harness| shows(harness, "Coverage"));
+    assert!(shows(&harness, "Point 1") && shows(&harness, "Soft scatter") && shows(&harness, "Displayed, sRGB"));
+    assert!(shows(&harness, "Click to pin"));
     harness.drag_at(place);
     harness.step();
     harness.drop_at(place);
     harness.run_steps(3);
     harness.remove_cursor();
     harness.run_steps(3);
-    assert!(shows(&harness, "kept") && shows(&harness, "coverage"));
+    assert!(shows(&harness, "Pinned") && shows(&harness, "Coverage"));
     harness.key_press(Key::I);
     harness.run_steps(3);
-    assert!(!shows(&harness, "coverage"));
+    assert!(!shows(&harness, "Coverage"));
 }
 
 #[test]
@@ -62,13 +62,13 @@ fn the_inspector_reads_the_compared_image_under_the_pointer() {
         let place = smoke(&harness) + Vec2::new(x, 0.0);
         harness.hover_at(place);
         wait_for(&mut harness, |harness| shows(harness, text));
-        [shows(&harness, "coverage"), shows(&harness, "second: ")]
+        [shows(&harness, "Coverage"), shows(&harness, "Image B: ")]
     };
-    assert_eq!(show(CompareWith::FullResolution, -20.0, "coverage"), [true, false]);
-    assert_eq!(show(CompareWith::FullResolution, 20.0, "second: full resolution"), [true, true]);
-    assert_eq!(show(CompareWith::Forward, 20.0, "lit sprite by sprite"), [false, true]);
-    assert_eq!(show(CompareWith::Reference, 20.0, "Drawn by the CPU"), [false, false]);
-    assert_eq!(show(CompareWith::Reference, -20.0, "coverage"), [true, false]);
+    assert_eq!(show(CompareWith::FullResolution, -20.0, "Coverage"), [true, false]);
+    assert_eq!(show(CompareWith::FullResolution, 20.0, "Image B: Full resolution"), [true, true]);
+    assert_eq!(show(CompareWith::Forward, 20.0, "lights each sprite"), [false, true]);
+    assert_eq!(show(CompareWith::Reference, 20.0, "The CPU image cannot"), [false, false]);
+    assert_eq!(show(CompareWith::Reference, -20.0, "Coverage"), [true, false]);
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn all_values_fit_on_the_image_of_the_smallest_window() {
     for side in [-10.0, 10.0] {
         let place = smoke(&harness) + Vec2::new(side, 0.0);
         harness.hover_at(place);
-        wait_for(&mut harness, |harness| shows(harness, "coverage"));
+        wait_for(&mut harness, |harness| shows(harness, "Coverage"));
         harness.run_steps(3);
         let is_color = |node: &egui_kittest::Node<'_>| {
             let text = node.accesskit_node().value().unwrap_or_default();
@@ -90,7 +90,7 @@ fn all_values_fit_on_the_image_of_the_smallest_window() {
         let of_text = |text| harness.query_all_by_label_contains(text);
         let said: Vec<_> = harness.query_all_by_label_contains(".").filter(is_color).collect();
         assert!(said.len() >= 6, "{}", said.len());
-        for node in said.into_iter().chain(of_text("Pixel")).chain(of_text("as shown, sRGB")) {
+        for node in said.into_iter().chain(of_text("Pixel")).chain(of_text("Displayed, sRGB")) {
             let (rect, label) = (node.rect(), node.accesskit_node().value());
             assert!(viewport.contains_rect(rect), "{label:?} at {rect} of {viewport}");
         }
@@ -104,11 +104,11 @@ fn all_values_fit_on_the_image_of_the_smallest_window() {
 fn pointing_at_a_ramp_highlights_the_smoke_that_samples_it() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.get_by_label("Ramps").click();
-    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
+    wait_for(&mut harness, |harness| shows(harness, "Point 1"));
     let viewport = harness.get_by_label("viewport").rect();
     let before = brightness(&picture(&mut harness), viewport);
     // The middle of the diffuse ramp, which most of the lit smoke samples.
-    let ramp = harness.get_by_label("diffuse ramp").rect();
+    let ramp = harness.get_by_label("Diffuse ramp").rect();
     harness.hover_at(egui::pos2(ramp.center().x, ramp.center().y));
     harness.run_steps(3);
     let lit = brightness(&picture(&mut harness), viewport);
@@ -125,8 +125,8 @@ fn the_highlight_is_painted_below_the_toolbar() {
     let camera = &mut harness.state_mut().session.document.preset.camera;
     camera.position = camera.target.lerp(camera.position, 0.2);
     harness.get_by_label("Ramps").click();
-    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
-    let ramp = harness.get_by_label("diffuse ramp").rect();
+    wait_for(&mut harness, |harness| shows(harness, "Point 1"));
+    let ramp = harness.get_by_label("Diffuse ramp").rect();
     let (viewport, tool) = (harness.get_by_label("viewport").rect(), harness.get_by_label("Lit plane").rect());
     let beside = egui::Rect::from_min_size(tool.left_bottom() + Vec2::new(0.0, 12.0), tool.size());
     let mut parts = |share: f32| {
@@ -149,7 +149,7 @@ fn a_still_image_is_not_drawn_again() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
     harness.get_by_label("Ramps").click();
-    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
+    wait_for(&mut harness, |harness| shows(harness, "Point 1"));
     // At most the pending copy, its analysis, and the end of its interval.
     for _ in 0..5 {
         picture(&mut harness);

@@ -31,7 +31,7 @@ fn a_path_traced_puff_is_compared_with_the_ramps_while_lights_rotate() {
     let figures = |harness: &mut Harness<'_, Window>, before: &str| {
         let begun = std::time::Instant::now();
         loop {
-            if let Some(node) = harness.query_by_label_contains("all round: ") {
+            if let Some(node) = harness.query_by_label_contains("All lights: ") {
                 let node = node.accesskit_node();
                 let text = node.label().filter(|label| !label.is_empty()).or(node.value()).unwrap_or_default();
                 if text != before {
@@ -44,7 +44,7 @@ fn a_path_traced_puff_is_compared_with_the_ramps_while_lights_rotate() {
         }
     };
     harness.run_steps(2);
-    assert!(harness.query_by_label_contains("path-tracing").is_some());
+    assert!(harness.query_by_label_contains("Path tracing").is_some());
     let of_painted = figures(&mut harness, "");
     if let Some(folder) = std::env::var_os("HAZE_LOOK") {
         picture(&mut harness).save(std::path::Path::new(&folder).join("puff.png")).unwrap();
@@ -57,5 +57,5 @@ fn a_path_traced_puff_is_compared_with_the_ramps_while_lights_rotate() {
     assert!(error(&of_painted) > 10.0 && error(&of_other) > 1.0, "{of_painted} {of_other}");
     harness.key_press(Key::T);
     harness.run_steps(2);
-    assert!(harness.query_by_label_contains("all round: ").is_none());
+    assert!(harness.query_by_label_contains("All lights: ").is_none());
 }

@@ -78,7 +78,7 @@ fn an_idle_window_draws_nothing_and_requests_no_repaint() {
     let before = drawn(&mut harness);
     assert!(!harness.ctx.has_requested_repaint());
     // Widgets under a moving pointer are highlighted, but no smoke is drawn.
-    let rect = slider(&harness, "exposure");
+    let rect = slider(&harness, "Exposure");
     for step in 0..6 {
         harness.hover_at(rect.left_top() + vec2(8.0 * step as f32, -6.0 * step as f32));
         assert_eq!(drawn(&mut harness), before);

@@ -12,7 +12,10 @@ fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
     let painted = Template::find("hard_toon").unwrap().recipe().bake().unwrap();
     write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
     wait(&mut harness);
-    let name = "Fit stops to the picture: mine.png";
+    let name = "Fit stops to image: mine.png";
+    let why = "Another program changed mine.png, so its stops can no longer be edited";
+    assert!(harness.query_all_by_label_contains(why).next().is_some());
+    assert!(harness.query_by_label_contains("The image does not match mine.ramp.json").is_some());
     assert!(harness.query_by_label(name).is_some() && harness.query_by_label("stop 1").is_none());
     assert_eq!(folder.recipe(), flipped, "nothing is written over it");
     assert_eq!(read_color_png(&folder.path("mine.png")).unwrap(), painted);
@@ -21,7 +24,7 @@ fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
     harness.get_by_label(name).click();
     harness.run_steps(4);
     assert!(harness.query_by_label("stop 3").is_some());
-    assert!(harness.query_all_by_label_contains("mine.png: 3 stops, at most 0.").next().is_some());
+    assert!(harness.query_all_by_label_contains("mine.png: 3 stops, largest error 0.").next().is_some());
     assert_eq!(read_color_png(&folder.path("mine.png")).unwrap(), painted, "until a stop is changed");
     harness.get_by_label("stop 2").focus();
     harness.run_steps(3);
@@ -68,8 +71,9 @@ fn a_built_in_ramp_is_copied_beside_the_preset() {
     preset.name = "other".into();
     std::fs::write(folder.preset(), serde_json::to_string(&preset).unwrap()).unwrap();
     let mut harness = folder.open();
-    harness.get_by_label(&format!("Make my own: {name}")).click();
-    harness.run_steps(4);
+    click(&mut harness, &format!("Make my own…: {name}"));
+    assert!(harness.query_by_label_contains("written beside own.json").is_some());
+    click(&mut harness, "Make Copy");
     let file = format!("{name}_mine.png");
     assert_eq!(harness.state().session.document.preset.systems[0].material.diffuse_ramp, file);
     let own = RampRecipe::load(&folder.path(&file).with_extension("ramp.json")).unwrap();
@@ -83,11 +87,31 @@ fn a_built_in_ramp_is_copied_beside_the_preset() {
 fn a_built_in_preset_must_be_saved_before_a_ramp_is_copied() {
     let mut harness = ramps_of("column");
     let name = harness.state().session.document.preset.systems[0].material.diffuse_ramp.clone();
-    harness.get_by_label(&format!("Make my own: {name}")).click();
-    harness.run_steps(4);
-    assert!(harness.state().file_actions.typed.is_some());
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.json");
+    let ask = |harness: &mut Harness<'static, Window>| {
+        click(harness, &format!("Make my own…: {name}"));
+        assert!(harness.query_by_label_contains("column is a built-in preset, so it is saved").is_some());
+        click(harness, "Save Preset and Copy…");
+        assert!(harness.state().file_actions.typed.is_some());
+    };
+    // Cancelled at once, or when the path is asked for: a later save copies nothing.
+    click(&mut harness, &format!("Make my own…: {name}"));
+    click(&mut harness, "Cancel");
+    assert!(harness.state().file_actions.typed.is_none());
+    ask(&mut harness);
+    let Window { file_actions, session, .. } = harness.state_mut();
+    file_actions.finish_typing(None, session);
+    harness.run_steps(4);
+    assert!(harness.state().session.document.is_built_in());
+    let Window { file_actions, session, .. } = harness.state_mut();
+    file_actions.save_as(session);
+    file_actions.finish_typing(Some(&folder.path().join("plain.json")), session);
+    wait(&mut harness);
+    assert_eq!(harness.state().session.document.preset.systems[0].material.diffuse_ramp, name);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    let mut harness = ramps_of("column");
+    ask(&mut harness);
     let Window { file_actions, session, .. } = harness.state_mut();
     file_actions.finish_typing(Some(&path), session);
     wait(&mut harness);
@@ -110,9 +134,9 @@ fn a_curve_and_a_blend_space_are_chosen_and_undone() {
         harness.get_by_label(entry).click_accesskit();
         harness.run_steps(4);
     };
-    choose(&mut harness, "then", "constant");
+    choose(&mut harness, "Curve", "Constant");
     assert_eq!(folder.recipe().rows[0].stops[0].curve, Curve::Constant);
-    choose(&mut harness, "blended in", "hsv far");
+    choose(&mut harness, "Blend in", "HSV, far hue");
     assert_eq!(folder.recipe().blend, Blend::HsvFar);
     assert!(folder.is_baked());
     assert!(harness.state().session.messages.latest().is_none_or(|message| !message.is_error));
@@ -131,8 +155,8 @@ fn a_write_error_is_reported() {
     std::fs::create_dir(folder.path("mine.ramp.json")).unwrap();
     wait(&mut harness);
     // A folder has replaced the recipe's file, so the ramp has no recipe any more.
-    assert!(harness.query_by_label("Fit stops to the picture: mine.png").is_some());
-    harness.get_by_label("Fit stops to the picture: mine.png").click();
+    assert!(harness.query_by_label("Fit stops to image: mine.png").is_some());
+    harness.get_by_label("Fit stops to image: mine.png").click();
     harness.run_steps(3);
     harness.get_by_label("Flip").click();
     harness.run_steps(4);

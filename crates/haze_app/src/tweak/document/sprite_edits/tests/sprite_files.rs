@@ -14,19 +14,19 @@ use crate::tweak::window::testing;
 fn files_changed_by_another_program_are_not_overwritten_until_requested() {
     let folder = Folder::new();
     let mut harness = folder.open();
-    set(&mut harness, "bump", 3.0);
+    set(&mut harness, "Bump", 3.0);
     until(&mut harness, |harness| !harness.state().session.sprites.is_baking());
     let other = SpriteRecipe { seed: 77, ..small() };
     write_png(&folder.path("mine.png"), &baked(&other).picture.into(), CompressionEffort::Quick).unwrap();
-    until(&mut harness, |harness| harness.query_by_label("Bake the recipe").is_some());
+    until(&mut harness, |harness| harness.query_by_label("Bake recipe").is_some());
     until(&mut harness, |harness| Some(used(harness)) == folder.sprite());
-    assert!(harness.query_by_label("erosion").is_none() && (folder.recipe().bump - 3.0).abs() < 1e-6);
+    assert!(harness.query_by_label("Erosion").is_none() && (folder.recipe().bump - 3.0).abs() < 1e-6);
     // A recipe that is written by hand is another recipe as well.
     std::fs::write(folder.path("mine.sprite.json"), other.to_text()).unwrap();
-    until(&mut harness, |harness| harness.query_by_label("Bake the recipe").is_none());
+    until(&mut harness, |harness| harness.query_by_label("Bake recipe").is_none());
     std::fs::write(folder.path("mine.sprite.json"), small().to_text()).unwrap();
-    until(&mut harness, |harness| harness.query_by_label("Bake the recipe").is_some());
-    harness.get_by_label("Bake the recipe").click();
+    until(&mut harness, |harness| harness.query_by_label("Bake recipe").is_some());
+    harness.get_by_label("Bake recipe").click();
     until(&mut harness, |_| folder.is_baked());
     assert_eq!(folder.recipe(), small());
 }
@@ -37,8 +37,10 @@ fn a_built_in_sprite_is_copied_beside_the_preset() {
     folder.write_preset(&Preset::load("column").unwrap());
     let mut harness = folder.open();
     let (name, sprite) = ("puff", used(&harness));
-    assert!(slider(&harness, "erosion").accesskit_node().is_disabled());
-    harness.get_by_label("Make my own").click();
+    assert!(slider(&harness, "Erosion").accesskit_node().is_disabled());
+    harness.get_by_label("Make my own…").click();
+    harness.run_steps(4);
+    harness.get_by_label("Make Copy").click();
     harness.run_steps(4);
     let file = format!("{name}_mine.png");
     assert_eq!(harness.state().session.document.preset.systems[0].material.sprite, file);
@@ -49,7 +51,7 @@ fn a_built_in_sprite_is_copied_beside_the_preset() {
         session.loaded_materials.of(&session.document.preset)[0].detail.is_some()
     });
     assert_eq!(used(&harness), sprite, "it looks as it did");
-    assert!(!slider(&harness, "erosion").accesskit_node().is_disabled());
+    assert!(!slider(&harness, "Erosion").accesskit_node().is_disabled());
     assert!(!has_error(&harness));
 }
 
@@ -57,16 +59,16 @@ fn a_built_in_sprite_is_copied_beside_the_preset() {
 fn a_new_window_shows_the_flipbook_and_continues_the_bake() {
     let folder = Folder::new();
     let mut harness = folder.open();
-    let before = shown(&mut harness, "flipbook");
+    let before = shown(&mut harness, "Flipbook");
     let memory = harness.ctx.memory(Clone::clone);
-    set(&mut harness, "columns", 8.0);
+    set(&mut harness, "Columns", 8.0);
     assert!(harness.state().session.sprites.is_baking());
     let start = harness.into_state().into_start();
     let mut harness = testing::open(start, Vec2::new(1280.0, 1400.0), Theme::Dark);
     harness.ctx.memory_mut(|new| *new = memory);
     until(&mut harness, |harness| !harness.state().session.sprites.is_baking());
     assert!(folder.recipe().columns == 8 && folder.is_baked());
-    let after = shown(&mut harness, "flipbook");
+    let after = shown(&mut harness, "Flipbook");
     assert!((after - before).abs() < 2.0, "{before} {after}");
 }
 
@@ -127,7 +129,7 @@ fn a_bake_and_a_reading_give_the_same_when_they_are_sent_as_text() {
 fn closing_the_window_waits_for_the_bake_to_be_written() {
     let folder = Folder::new();
     let mut harness = folder.open();
-    set(&mut harness, "columns", 8.0);
+    set(&mut harness, "Columns", 8.0);
     assert!(harness.state().session.sprites.is_baking());
     let close = |harness: &mut Harness<'_, Window>| {
         let viewport = harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
@@ -151,7 +153,9 @@ fn closing_the_window_waits_for_the_bake_to_be_written() {
 #[test]
 fn a_built_in_preset_must_be_saved_before_a_sprite_is_copied() {
     let mut harness = page_of("column");
-    harness.get_by_label("Make my own").click();
+    harness.get_by_label("Make my own…").click();
+    harness.run_steps(4);
+    harness.get_by_label("Save Preset and Copy…").click();
     harness.run_steps(4);
     let folder = tempfile::tempdir().unwrap();
     let Window { file_actions, session, .. } = harness.state_mut();
@@ -169,12 +173,12 @@ fn a_write_error_is_reported() {
     preset.systems[0].material.detail.clear();
     folder.write_preset(&preset);
     let mut harness = folder.open();
-    set(&mut harness, "bump", 3.0);
+    set(&mut harness, "Bump", 3.0);
     until(&mut harness, |harness| !harness.state().session.sprites.is_baking());
     let said = harness.state().session.messages.latest().map(|message| message.text.clone());
     assert!(has_error(&harness) && said.as_ref().is_some_and(|said| said.contains("mine.detail.png")), "{said:?}");
     std::fs::remove_dir(folder.path("mine.detail.png")).unwrap();
-    until(&mut harness, |harness| harness.query_by_label("Bake the recipe").is_some());
-    harness.get_by_label("Bake the recipe").click();
+    until(&mut harness, |harness| harness.query_by_label("Bake recipe").is_some());
+    harness.get_by_label("Bake recipe").click();
     until(&mut harness, |_| folder.is_baked() && folder.path("mine.detail.png").is_file());
 }

@@ -1,6 +1,7 @@
 //! Tests of saving.
 
 use super::*;
+use crate::tweak::files::persistence::PanelSize;
 
 #[test]
 fn changes_are_saved_by_menu_by_key_and_under_another_name() {
@@ -8,16 +9,16 @@ fn changes_are_saved_by_menu_by_key_and_under_another_name() {
     bench.change(1.5);
     assert!(bench.window.query_by_label("•").is_some());
     bench.press(Modifiers::COMMAND, Key::S);
-    bench.until(|bench| bench.said().starts_with("saved: "));
+    bench.until(|bench| bench.said().starts_with("Saved "));
     bench.window.step();
     assert_eq!(exposure(&bench.path("my.json")), 150);
     assert!(bench.window.query_by_label("•").is_none());
     bench.change(0.5);
     bench.click("File");
-    bench.window.get_by_label_contains("Save as").click();
+    bench.window.get_by_label_contains("Save As…").click();
     bench.window.run_steps(3);
-    assert!(bench.window.query_by_label_contains("has no file dialog: type the path").is_some());
-    let folder = format!("in {}", bench.folder.path().display());
+    assert!(bench.window.query_by_label_contains("has no file dialog. Type the path").is_some());
+    let folder = format!("In {}", bench.folder.path().display());
     assert!(bench.window.query_by_label(&folder).is_some(), "{folder}");
     let other = bench.path("other.json");
     bench.type_path(&other);
@@ -26,6 +27,11 @@ fn changes_are_saved_by_menu_by_key_and_under_another_name() {
     assert!(bench.window.query_by_label("other").is_some() && bench.window.query_by_label("my").is_none());
     assert_eq!((exposure(&other), exposure(&bench.path("my.json"))), (50, 150));
     assert_eq!(bench.session().document.path(), other);
+    // The question about unsaved work names the file, not the preset inside.
+    bench.change(0.7);
+    bench.close();
+    assert!(bench.window.query_by_label("Save changes to other.json?").is_some());
+    bench.click("Cancel");
     // A name that is not valid for a preset.
     bench.press(COMMAND_SHIFT, Key::S);
     let picture = bench.path("a.png");
@@ -47,7 +53,7 @@ fn a_slow_disk_does_not_block_the_window() {
     // Editing continues, a second save is not started, and closing waits for the first.
     bench.change(0.5);
     bench.press(Modifiers::COMMAND, Key::S);
-    assert_eq!(bench.said(), "a save is already running");
+    assert_eq!(bench.said(), "Saving already");
     bench.close();
     assert!(bench.window.state().file_actions.waiting.is_none() && exposure(&bench.path("my.json")) == 55);
     go_on.send(()).unwrap();
@@ -111,8 +117,8 @@ fn work_left_by_a_crash_is_offered_and_a_normal_exit_leaves_none() {
     assert!(bench.session().document.is_dirty());
     assert!(bench.window.query_by_label("Recover").is_none());
     let persistence = bench.window.state_mut().persistence.take().unwrap();
-    persistence.finish(&Layout { settings: Some(400.0), ..Layout::default() });
+    persistence.finish(&Layout { settings_width: Some(PanelSize { size: 400.0, room: 1000.0 }), ..Layout::default() });
     let left: Vec<_> = fs::read_dir(&state).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["layout.json"]);
-    assert_eq!(Layout::read(&state).0.settings, Some(400.0));
+    assert_eq!(Layout::read(&state).0.settings_width.map(|panel| panel.size), Some(400.0));
 }
