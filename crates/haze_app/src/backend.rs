@@ -10,9 +10,14 @@ use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
+#[cfg(target_arch = "wasm32")]
+use crate::page_renderer::PageRenderer;
+
 /// The renderer in use.
 pub enum Backend {
     Gpu(Box<Gpu>),
+    #[cfg(target_arch = "wasm32")]
+    Page(Box<PageRenderer>),
     Cpu,
 }
 
@@ -56,7 +61,18 @@ impl Backend {
                 // A texture for which memory ran out is also refused where it is bound: the first failure is the cause.
                 draw().map_err(|error| gpu.headless.check().err().unwrap_or(error))
             }
+            #[cfg(target_arch = "wasm32")]
+            Self::Page(_) => shot.render_on_cpu(),
             Self::Cpu => shot.render_on_cpu(),
+        }
+    }
+
+    /// As [`Backend::render`]. A page goes on meanwhile, if its GPU renders.
+    pub async fn render_async(&self, shot: &Shot) -> Result<Image<Vec4>, Error> {
+        match self {
+            #[cfg(target_arch = "wasm32")]
+            Self::Page(page) => page.render(shot).await,
+            _ => self.render(shot),
         }
     }
 
@@ -64,6 +80,8 @@ impl Backend {
     pub fn description(&self) -> String {
         match self {
             Self::Gpu(gpu) => gpu.headless.description(),
+            #[cfg(target_arch = "wasm32")]
+            Self::Page(_) => "the page's GPU".into(),
             Self::Cpu => "the CPU renderer".into(),
         }
     }

@@ -1,5 +1,5 @@
 //! Renders many images of a shot: a sequence, a flipbook, a GIF, a labelled sheet. Used by the command line and the
-//! tweaker.
+//! tweaker. Asynchronous for pages; elsewhere nothing here waits, so that `block_on` runs through.
 
 use std::io::{Error as IoError, ErrorKind};
 use std::ops::RangeInclusive;
@@ -44,12 +44,12 @@ impl ExportProgress<'_> {
     }
 
     /// Renders an image; `None` if the work is to stop.
-    fn render(&self, done: u32, count: u32, backend: &Backend, shot: &Shot) -> Result<Option<RgbImage>, Error> {
+    async fn render(&self, done: u32, count: u32, backend: &Backend, shot: &Shot) -> Result<Option<RgbImage>, Error> {
         let picture = match self {
             Self::Terminal if interrupt::is_requested() => return Ok(None),
             Self::Terminal => with_progress(format!("haze: image {} of {count}", done + 1), || backend.render(shot))?,
             Self::Callback(go_on) if !go_on(done, count) => return Ok(None),
-            Self::Callback(_) => backend.render(shot)?,
+            Self::Callback(_) => backend.render_async(shot).await?,
         };
         Ok(Some(tonemap(&picture, shot)))
     }
@@ -62,7 +62,7 @@ impl Frames {
 
     /// Renders every frame and passes it to `take` with its number. `stopped` makes the error of a run that was stopped
     /// after so many frames.
-    fn render(
+    async fn render(
         &self,
         backend: &Backend,
         shot: &Shot,
@@ -73,7 +73,7 @@ impl Frames {
         for (done, frame) in (0..).zip(self.range.clone()) {
             let mut shot = shot.clone();
             shot.preset.time += frame as f32 / self.rate;
-            let picture = progress.render(done, self.count(), backend, &shot)?.ok_or_else(|| stopped(done))?;
+            let picture = progress.render(done, self.count(), backend, &shot).await?.ok_or_else(|| stopped(done))?;
             take(frame, picture)?;
         }
         Ok(())
@@ -90,7 +90,7 @@ fn stopped_before_writing(path: &Path, done: u32, count: u32) -> Error {
 }
 
 /// Writes every frame to its own file. If it is stopped, the files written so far stay.
-pub fn write_sequence(
+pub async fn write_sequence(
     backend: &Backend,
     shot: &Shot,
     frames: &Frames,
@@ -100,12 +100,13 @@ pub fn write_sequence(
 ) -> Result<(), Error> {
     let write = |frame, picture: RgbImage| write_png(&names.of(frame), &picture.into(), effort);
     let first = *frames.range.start();
-    frames.render(backend, shot, progress, write, |done| {
+    let stopped = |done| {
         stopped(
             &names.of(first + done),
             format!("not written; this sequence is partial, {done} of {} frames are written", frames.count()),
         )
-    })
+    };
+    frames.render(backend, shot, progress, write, stopped).await
 }
 
 /// Most pixels along a side of a flipbook.
@@ -129,7 +130,7 @@ pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), 
 }
 
 /// Renders all frames onto one sheet of `cells.x` rows and `cells.y` columns. `path` is the output file, for errors.
-pub fn render_flipbook(
+pub async fn render_flipbook(
     backend: &Backend,
     shot: &Shot,
     frames: &Frames,
@@ -147,7 +148,8 @@ pub fn render_flipbook(
         index += 1;
         Ok(())
     };
-    frames.render(backend, shot, progress, place, |done| stopped_before_writing(path, done, frames.count()))?;
+    let stopped = |done| stopped_before_writing(path, done, frames.count());
+    frames.render(backend, shot, progress, place, stopped).await?;
     Ok(sheet)
 }
 
@@ -156,7 +158,7 @@ pub fn render_flipbook(
 pub const MAX_GIF_RATE: f32 = 50.0;
 
 /// Writes all frames into one animated GIF that loops for ever.
-pub fn write_gif(
+pub async fn write_gif(
     backend: &Backend,
     shot: &Shot,
     frames: &Frames,
@@ -176,7 +178,8 @@ pub fn write_gif(
         let picture = DynamicImage::from(picture).into_rgba8();
         encoder.encode_frame(Frame::from_parts(picture, 0, 0, delay)).map_err(failed)
     };
-    frames.render(backend, shot, progress, encode, |done| stopped_before_writing(path, done, frames.count()))?;
+    let stopped = |done| stopped_before_writing(path, done, frames.count());
+    frames.render(backend, shot, progress, encode, stopped).await?;
     drop(encoder);
     write_file(path, &bytes)
 }
@@ -185,7 +188,7 @@ pub fn write_gif(
 pub const MAX_SHEET_CELLS: usize = 64;
 
 /// Renders shots with their labels onto one sheet. All shots have one size; `path` is the output file, for errors.
-pub fn render_sheet(
+pub async fn render_sheet(
     backend: &Backend,
     cells: &[(String, Shot)],
     columns: u32,
@@ -196,8 +199,8 @@ pub fn render_sheet(
     let size = cells.first().map_or(UVec2::ONE, |(_, shot)| shot.size);
     let mut sheet = ContactSheet::new(size, columns, count);
     for (index, (label, shot)) in (0..).zip(cells) {
-        let picture =
-            progress.render(index, count, backend, shot)?.ok_or_else(|| stopped_before_writing(path, index, count))?;
+        let picture = progress.render(index, count, backend, shot).await?;
+        let picture = picture.ok_or_else(|| stopped_before_writing(path, index, count))?;
         sheet.place(index, label, &picture);
     }
     Ok(sheet)

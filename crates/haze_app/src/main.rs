@@ -33,6 +33,8 @@ mod memory_check;
 mod options;
 #[cfg(not(target_arch = "wasm32"))]
 mod output;
+#[cfg(target_arch = "wasm32")]
+mod page_renderer;
 #[cfg(not(target_arch = "wasm32"))]
 mod plot;
 mod progress;

@@ -60,7 +60,7 @@ async function load(name) {
 try {
     // The bundle without WebGL is smaller.
     const asked = new URLSearchParams(location.search).get("api");
-    const name = asked !== "webgl" && (await hasWebGpu()) ? "haze" : "haze_webgl";
+    const name = BUNDLES.haze && asked !== "webgl" && (await hasWebGpu()) ? "haze" : "haze_webgl";
     document.body.dataset.program = `./${name}.js`;
     const [program, module_or_path] = await Promise.all([import(`./${name}.js`), load(name)]);
     await program.default({ module_or_path });

@@ -21,7 +21,15 @@ const MARK_BYTES: usize = 12 + KEYWORD.len() + 16;
 /// # Errors
 /// [`Error::Io`] if the file cannot be written.
 pub fn write_baked_png(path: &Path, picture: &DynamicImage) -> Result<(), Error> {
-    write_file(path, &marked(encode_png(path, picture, CompressionEffort::Small)?))
+    write_file(path, &encode_baked_png(path, picture)?)
+}
+
+/// Encodes the image of a recipe as [`write_baked_png`] writes it. `path` is used only in errors.
+///
+/// # Errors
+/// [`Error::Io`] if the encoder fails.
+pub fn encode_baked_png(path: &Path, picture: &DynamicImage) -> Result<Vec<u8>, Error> {
+    Ok(marked(encode_png(path, picture, CompressionEffort::Small)?))
 }
 
 /// Returns true if [`write_baked_png`] wrote the file and its bytes have not changed since.

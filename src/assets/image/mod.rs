@@ -15,7 +15,7 @@ pub use atomic_write::check_writable;
 #[doc(hidden)]
 pub use atomic_write::{FileIdentity, write_file, write_state_file};
 #[doc(hidden)]
-pub use baked_png::{is_baked_png, write_baked_png};
+pub use baked_png::{encode_baked_png, is_baked_png, write_baked_png};
 pub use color_space::{color_conversion_notes, decode_color_png, read_color_png};
 #[doc(hidden)]
 pub use decoder_panic::is_decoding;
@@ -26,12 +26,13 @@ pub use png::{MAX_BYTES, MAX_SIDE, decode_png, read_png};
 #[cfg(target_arch = "wasm32")]
 use crate::assets::memory_files as atomic_write;
 use glam::{IVec2, UVec2, Vec3, Vec4};
+use serde::{Deserialize, Serialize};
 
 use crate::assets::parallel::{parallel_for_each, thread_count};
 use crate::formula::texture::Texture2d;
 
 /// A 2D image, row by row from the top.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Image<T> {
     /// Width and height.
     pub size: UVec2,

@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
 
 /// Layout of frames in a sprite's image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct SpriteLayout {
     /// Columns of frames.
     pub columns: u32,

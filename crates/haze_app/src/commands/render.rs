@@ -8,6 +8,7 @@ use haze::settings::DebugView;
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
+use pollster::block_on;
 
 use crate::frame_range::{FrameNames, parse_frames, parse_rate, parse_sheet};
 use crate::image_export::{self, ExportProgress, Frames};
@@ -58,14 +59,8 @@ fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     let outputs: Vec<_> = frames.range.clone().map(|frame| ("--output", names.of(frame))).collect();
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, "png")? };
     let backend = arguments.shot.run.backend()?;
-    image_export::write_sequence(
-        &backend,
-        &shot,
-        frames,
-        &names,
-        arguments.shot.effort(),
-        &ExportProgress::terminal(),
-    )?;
+    let (effort, progress) = (arguments.shot.effort(), ExportProgress::terminal());
+    block_on(image_export::write_sequence(&backend, &shot, frames, &names, effort, &progress))?;
     let (first, last) = (names.of(*frames.range.start()), names.of(*frames.range.end()));
     print_line!("{} to {}: {} on {}", first.display(), last.display(), shot.preset.name, backend.description())
 }
@@ -74,14 +69,8 @@ fn flipbook(arguments: &Arguments, frames: &Frames, cells: UVec2) -> Result<(), 
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load(&[])? };
     image_export::check_flipbook(shot.size, frames, cells)?;
     let backend = arguments.shot.run.backend()?;
-    let sheet = image_export::render_flipbook(
-        &backend,
-        &shot,
-        frames,
-        cells,
-        &arguments.shot.output,
-        &ExportProgress::terminal(),
-    )?;
+    let (path, progress) = (&arguments.shot.output, ExportProgress::terminal());
+    let sheet = block_on(image_export::render_flipbook(&backend, &shot, frames, cells, path, &progress))?;
     arguments.shot.write(sheet, &shot, &backend)
 }
 
@@ -94,6 +83,6 @@ fn gif(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     let outputs = [("--output", path.clone())];
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, "gif")? };
     let backend = arguments.shot.run.backend()?;
-    image_export::write_gif(&backend, &shot, frames, path, &ExportProgress::terminal())?;
+    block_on(image_export::write_gif(&backend, &shot, frames, path, &ExportProgress::terminal()))?;
     print_line!("{}: {} on {}", path.display(), shot.preset.name, backend.description())
 }

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use haze::Error;
+use pollster::block_on;
 
 use crate::debug_view_sheet::{COLUMNS, stages};
 use crate::image_export::{ExportProgress, render_sheet};
@@ -19,6 +20,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     // The sheet then costs about as much as one image.
     shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
     let backend = arguments.shot.run.backend()?;
-    let sheet = render_sheet(&backend, &stages(&shot), COLUMNS, &arguments.shot.output, &ExportProgress::terminal())?;
+    let sheet =
+        block_on(render_sheet(&backend, &stages(&shot), COLUMNS, &arguments.shot.output, &ExportProgress::terminal()))?;
     arguments.shot.write(sheet.picture, &shot, &backend)
 }

@@ -4,6 +4,7 @@ use clap::Args;
 use glam::UVec2;
 use haze::settings::set_field;
 use haze::{Error, FieldError};
+use pollster::block_on;
 
 use crate::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
 use crate::options::{ShotArguments, parse_assignment, with_option};
@@ -45,7 +46,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         cells.push((value.clone(), shot));
     }
     let backend = arguments.shot.run.backend()?;
-    let mut sheet = render_sheet(&backend, &cells, columns, &arguments.shot.output, &ExportProgress::terminal())?;
+    let mut sheet =
+        block_on(render_sheet(&backend, &cells, columns, &arguments.shot.output, &ExportProgress::terminal()))?;
     sheet.add_footer(&format!("{name}; {}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
     arguments.shot.write(sheet.picture, &base, &backend)
 }

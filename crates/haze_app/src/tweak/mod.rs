@@ -10,6 +10,8 @@ mod files;
 #[cfg(target_arch = "wasm32")]
 mod page;
 #[cfg(target_arch = "wasm32")]
+mod page_job;
+#[cfg(target_arch = "wasm32")]
 mod page_picture;
 mod panels;
 mod platform;
@@ -26,3 +28,5 @@ pub use document::copied_assets::copy_assets;
 pub use page::open_page;
 #[cfg(not(target_arch = "wasm32"))]
 pub use platform::file_dialog::is_dialog_target as is_of_dialogs;
+#[cfg(target_arch = "wasm32")]
+pub use platform::web::page::next_task;

@@ -21,8 +21,11 @@ const STATE: &str = "state";
 /// Folder of the ramps that came with a link.
 const LINK: &str = "link";
 
-/// Opens the tweaker in the page's canvas.
+/// Opens the tweaker in the page's canvas. A web worker has no canvas; it waits for its job.
 pub fn open_page() {
+    if !page::is_page() {
+        return;
+    }
     spawn_local(async {
         if let Err(reason) = open().await {
             page::set_state("failed", &reason);

@@ -33,7 +33,7 @@ pub struct PathTrace {
 }
 
 /// Result of [`PathTrace::run`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PathTraceResult {
     /// Coverage: the fraction of the background that is hidden, 0 to 1.
     pub coverage: Image<f32>,

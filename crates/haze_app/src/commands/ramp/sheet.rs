@@ -10,6 +10,7 @@ use haze::ramp::{Ramp, RampRole};
 use haze::settings::{Backlight, CoverageMode, DiffuseMode, RenderPath, SoftScatterMode};
 use haze::{Error, FieldError, MaterialAssets, builtin};
 use haze_demo::shot::Shot;
+use pollster::block_on;
 
 use super::ramp_image::ramp_image;
 use super::ramp_io::{is_recipe, load_ramp_image};
@@ -73,7 +74,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         shots.push((cell.name.clone(), shot));
     }
     let backend = arguments.shot.run.backend()?;
-    let mut sheet = render_sheet(&backend, &shots, columns, &arguments.shot.output, &ExportProgress::terminal())?;
+    let mut sheet =
+        block_on(render_sheet(&backend, &shots, columns, &arguments.shot.output, &ExportProgress::terminal()))?;
     for (index, (cell, ramp)) in (0..).zip(&ramps) {
         let has_two_axes = matches!(cell.role, RampRole::Specular | RampRole::Shadow);
         let inset = if has_two_axes { size / INSET_DIVISOR } else { UVec2::new(size.x, size.y / STRIP_DIVISOR) };

@@ -19,7 +19,7 @@ use crate::frame_range::FrameNames;
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
 use crate::tweak::platform::render_job::{ExportProgress, Frames};
-use crate::tweak::platform::worker::Worker;
+use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::platform::{IS_PAGE, file_io, render_job};
 use crate::tweak::session::Session;
 use crate::tweak::session::macro_param::MacroParam;
@@ -228,15 +228,17 @@ impl ExportJob {
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
         let (options, shaders) = (self.options.clone(), session.shaders.clone());
-        self.worker.submit(move |ticket| {
+        self.worker.submit_async(async move |ticket: Ticket| {
             let go_on = |done, count| {
                 progress.done.store(done, Ordering::Relaxed);
                 progress.count.store(count, Ordering::Relaxed);
                 !progress.is_stopped.load(Ordering::Relaxed) && !ticket.is_cancelled()
             };
-            let made = render_job::open_backend(shaders.as_ref()).and_then(|backend| {
-                make(&backend, product, &shot, &options, &target, &ExportProgress::Callback(&go_on))
-            });
+            let progress = ExportProgress::Callback(&go_on);
+            let made = match render_job::open_backend(shaders.as_ref()) {
+                Ok(backend) => make(&backend, product, &shot, &options, &target, &progress).await,
+                Err(error) => Err(error),
+            };
             made.unwrap_or_else(ExportResult::Failed)
         });
     }
@@ -299,7 +301,7 @@ fn write(path: PathBuf, picture: RgbImage) -> Result<ExportResult, Error> {
     Ok(ExportResult::Written(path))
 }
 
-fn make(
+async fn make(
     backend: &Backend,
     product: ExportKind,
     shot: &Shot,
@@ -311,21 +313,22 @@ fn make(
     let cells = match &product {
         ExportKind::Image => {
             let one = Frames { range: 0..=0, rate: 1.0 };
-            return write(path.clone(), render_job::render_flipbook(backend, shot, &one, UVec2::ONE, path, watch)?);
+            let picture = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, path, watch).await?;
+            return write(path.clone(), picture);
         }
         ExportKind::Sequence => {
             file_io::make_folder(path)?;
             let names = FrameNames::parse(&path.join("%04d.png"))?;
-            render_job::write_sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch)?;
+            render_job::write_sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch).await?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::Flipbook => {
             render_job::check_flipbook(shot.size, &frames, options.cells)?;
-            let picture = render_job::render_flipbook(backend, shot, &frames, options.cells, path, watch)?;
+            let picture = render_job::render_flipbook(backend, shot, &frames, options.cells, path, watch).await?;
             return write(path.clone(), picture);
         }
         ExportKind::Gif => {
-            render_job::write_gif(backend, shot, &frames, path, watch)?;
+            render_job::write_gif(backend, shot, &frames, path, watch).await?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::DebugView => debug_view_sheet::stages(shot),
@@ -343,7 +346,7 @@ fn make(
     let size = (shot.size / columns).max(UVec2::ONE);
     let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
     let cells: Vec<_> = cells.into_iter().map(small).collect();
-    let mut sheet = render_job::render_sheet(backend, &cells, columns, Path::new(&name), watch)?;
+    let mut sheet = render_job::render_sheet(backend, &cells, columns, Path::new(&name), watch).await?;
     sheet.add_footer(&format!("{}; {title}, {}", display_name(&name), backend.description()));
     Ok(ExportResult::Sheet(sheet.picture, product))
 }

@@ -147,7 +147,7 @@ impl FileActions {
         }
     }
 
-    /// Handles a file dropped on the window: a preset to open, or an image for the shown system.
+    /// Handles a file that was dropped or chosen: a preset to open, or an image for the shown system.
     fn take(&self, path: PathBuf, session: &Session) {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             let (folders, index) = (session.folders(), session.view.system);
@@ -327,7 +327,7 @@ impl FileActions {
 
     fn chosen(&mut self, purpose: Purpose, path: &Path, session: &mut Session) {
         match purpose {
-            Purpose::Open => self.open(path.into(), session),
+            Purpose::Open => self.take(path.into(), session),
             Purpose::SaveAs => {
                 let path = if path.extension().is_none() { path.with_extension("json") } else { path.into() };
                 let begun = session.document.begin_saving_as(&path);

@@ -11,7 +11,7 @@ use image::RgbImage;
 
 use crate::tweak::platform::file_io::Stamp;
 use crate::tweak::platform::worker::{Ticket, Worker};
-use crate::tweak::platform::{asset_loading, file_io};
+use crate::tweak::platform::{asset_loading, file_io, render_job};
 
 /// Size of a thumbnail, pixels.
 pub const SIZE: UVec2 = UVec2::new(160, 90);
@@ -82,8 +82,11 @@ impl PresetThumbnails {
             }
             self.entries.push(PresetEntry { path: path.clone(), stamp, shown: None });
             let assets = assets.map(Path::to_owned);
-            let job = move |_: &Ticket| (path.clone(), draw(&path, assets));
-            self.tickets.push(self.worker.submit(job));
+            let job = async move |_: Ticket| {
+                let drawn = draw(&path, assets).await;
+                (path, drawn)
+            };
+            self.tickets.push(self.worker.submit_async(job));
         }
     }
 
@@ -111,9 +114,10 @@ impl PresetThumbnails {
     }
 }
 
-fn draw(path: &Path, assets: Option<PathBuf>) -> Result<RenderedPreset, Error> {
+async fn draw(path: &Path, assets: Option<PathBuf>) -> Result<RenderedPreset, Error> {
     let folders = AssetFolders::beside(path).with_shared(assets);
     let shot = asset_loading::shot(path, &folders, SIZE)?;
-    let picture = tonemap(&shot.render_on_cpu()?, &shot);
+    let picture = render_job::open_thumbnail_backend()?.render_async(&shot).await?;
+    let picture = tonemap(&picture, &shot);
     Ok(RenderedPreset { picture, name: shot.preset.name, description: shot.preset.description })
 }

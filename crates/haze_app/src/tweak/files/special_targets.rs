@@ -100,7 +100,9 @@ fn ramp(path: &Path) -> Result<(), Error> {
 fn sprite(path: &Path) -> Result<(), Error> {
     let recipe = SpriteRecipe { size: 16, columns: 1, rows: 1, ..recipe_of_built_in("puff")? };
     let baked = recipe.bake(|_| Ok::<_, FieldError>(()))?;
-    sprite_source::write(&folder_of(path).join("mine.png"), &recipe, baked)
+    let picture = folder_of(path).join("mine.png");
+    let files = sprite_source::encode(&picture, recipe.layout(), baked)?;
+    sprite_source::write(&picture, &recipe, &files)
 }
 
 fn copy(path: &Path) -> Result<(), Error> {
@@ -118,12 +120,14 @@ fn frames() -> Frames {
 fn sequence(path: &Path) -> Result<(), Error> {
     let names = FrameNames::parse(&folder_of(path).join("shot_%04d.png"))?;
     let (shot, effort) = (Shot::load("column", UVec2::splat(8))?, CompressionEffort::Quick);
-    write_sequence(&Backend::Cpu, &shot, &frames(), &names, effort, &ExportProgress::Callback(&|_, _| true))
+    let progress = ExportProgress::Callback(&|_, _| true);
+    pollster::block_on(write_sequence(&Backend::Cpu, &shot, &frames(), &names, effort, &progress))
 }
 
 fn gif(path: &Path) -> Result<(), Error> {
     let shot = Shot::load("column", UVec2::splat(8))?;
-    write_gif(&Backend::Cpu, &shot, &frames(), path, &ExportProgress::Callback(&|_, _| true))
+    let progress = ExportProgress::Callback(&|_, _| true);
+    pollster::block_on(write_gif(&Backend::Cpu, &shot, &frames(), path, &progress))
 }
 
 fn screenshot(path: &Path) -> Result<(), Error> {

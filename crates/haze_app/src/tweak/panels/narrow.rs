@@ -10,6 +10,16 @@ pub fn is_narrow(context: &egui::Context) -> bool {
     context.content_rect().width() < MIN_WIDE
 }
 
+/// Height of controls that a finger touches, points.
+const TOUCH_HEIGHT: f32 = 28.0;
+
+/// Makes the controls of a narrow window large enough for fingers.
+pub fn set_spacing(ui: &mut Ui) {
+    if is_narrow(ui.ctx()) {
+        ui.spacing_mut().interact_size.y = TOUCH_HEIGHT;
+    }
+}
+
 /// Draws a row, which can be scrolled sideways in a narrow window.
 pub fn row(ui: &mut Ui, id: &str, content: impl FnOnce(&mut Ui)) {
     if is_narrow(ui.ctx()) {

@@ -7,7 +7,6 @@ use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::preset::Preset;
 use haze::ramp::Ramp;
 use haze::settings::{FieldValue, ImageRole, RampFilter, field_values, set_field};
-use haze_author::preset::no_effect_reason;
 use haze_reference::SystemProbe;
 
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
@@ -47,10 +46,6 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     let is_forward = system.settings.is_forward();
     let survey = session.inspect.survey.clone().filter(|_| !is_forward);
     let survey = survey.as_deref();
-    let reason_without_effect = |session: &Session, field: &str| {
-        let path = format!("systems[{index}].material.{field}");
-        no_effect_reason(&session.document.preset, &path, session.view.size)
-    };
     let mut ramp_place = None;
     ui.weak(
         "Hover a ramp to highlight the smoke that uses that color. Hover the smoke to mark its place on the ramps.",
@@ -65,7 +60,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let name = name.as_str();
         ui.add_space(6.0);
         choose(ui, session, (title, tooltip), &path, name);
-        if let Some(reason) = reason_without_effect(session, field) {
+        if let Some(reason) = session.no_effect_reason(&session.document.preset, &path) {
             off(ui, session, index, field, switch.as_ref(), reason);
             continue;
         }
@@ -222,7 +217,7 @@ fn off(ui: &mut Ui, session: &mut Session, system: usize, field: &str, switch: O
         let mut preset = session.document.preset.clone();
         set_field(&mut preset, &format!("systems[{system}].{}", switch.setting), switch.value).ok()?;
         let path = format!("systems[{system}].material.{field}");
-        no_effect_reason(&preset, &path, session.view.size).is_none().then_some((switch.label, preset))
+        session.no_effect_reason(&preset, &path).is_none().then_some((switch.label, preset))
     });
     let Some((label, preset)) = turned_on else {
         ui.weak(format!("Off: {reason}"));

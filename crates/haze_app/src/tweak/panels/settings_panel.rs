@@ -3,7 +3,6 @@
 use eframe::egui::{self, Ui};
 use haze::preset::Preset;
 use haze::settings::{Fields, field_path};
-use haze_author::preset::no_effect_reason;
 
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
 use super::rows::{RowRequest, setting_rows, soft_fade_plot};
@@ -105,7 +104,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
         changed: session.changed(),
-        reason_without_effect: &|path| no_effect_reason(&session.document.preset, path, session.view.size),
+        reason_without_effect: &|path| session.no_effect_reason(&session.document.preset, path),
         second: session.second_diff(),
         has_sheets: true,
         requests: Vec::new(),

@@ -26,7 +26,9 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         if icon_button::button(ui, Icon::Loop, playback.is_looping, "Loop playback (L)").clicked() {
             playback.is_looping = !playback.is_looping;
         }
-        ui.spacing_mut().slider_width = (ui.available_width() - 500.0).max(60.0);
+        // In a narrow window, the rest of the row is scrolled to.
+        let beside = if narrow::is_narrow(ui.ctx()) { 110.0 } else { 500.0 };
+        ui.spacing_mut().slider_width = (ui.available_width() - beside).max(60.0);
         let scrub = egui::Slider::new(&mut playback.time, playback.range.clone())
             .clamping(egui::SliderClamping::Never)
             .fixed_decimals(2)

@@ -7,6 +7,8 @@ use eframe::egui;
 use haze::Error;
 use haze::image::FileIdentity;
 
+use crate::file_kind::files_to_open;
+
 pub use crate::file_watcher::{Stamp, Watcher};
 
 /// Creates a folder and its parents.
@@ -46,9 +48,10 @@ pub fn is_same(one: &Path, other: &Path) -> bool {
     FileIdentity::of(one) == FileIdentity::of(other)
 }
 
-/// Returns a file that was dropped on the window.
+/// Returns the file to open of those that were dropped on the window.
 pub fn dropped_file(context: &egui::Context) -> Option<PathBuf> {
-    context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()))
+    let files = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+    files_to_open(files).into_iter().next()
 }
 
 /// Does nothing: a written file is on the user's disk.

@@ -15,6 +15,7 @@ pub mod file_io;
 pub mod json_store;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod lock_file;
+pub mod portable_job;
 pub mod render_job;
 pub mod repaint_handle;
 #[cfg(not(target_arch = "wasm32"))]

@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::{io, thread};
 
+use super::portable_job::PortableJob;
+
 /// Runs jobs in order on a thread of its own. Dropping it cancels all jobs.
 pub struct Worker<T> {
     shared: Arc<Shared<T>>,
@@ -72,6 +74,22 @@ impl<T: Send + 'static> Worker<T> {
         self.shared.lock().queue.push_back((ticket.clone(), Box::new(job)));
         self.shared.has_changed.notify_all();
         ticket
+    }
+
+    /// Appends a job that waits now and then.
+    pub fn submit_async<F: Future<Output = T>>(&self, job: impl FnOnce(Ticket) -> F + Send + 'static) -> Ticket {
+        self.submit(|ticket| pollster::block_on(job(ticket.clone())))
+    }
+
+    /// Appends a job that a page runs in a web worker. `progress` gets the number of finished steps and returns false to
+    /// stop; `finish` gets the output.
+    pub fn submit_portable<J: PortableJob>(
+        &self,
+        job: J,
+        progress: impl Fn(u32) -> bool + Send + 'static,
+        finish: impl FnOnce(J::Output) -> T + Send + 'static,
+    ) -> Ticket {
+        self.submit(move |ticket| finish(job.run(&|steps| progress(steps) && !ticket.is_cancelled())))
     }
 
     /// Returns the oldest result that has not been taken yet; the inner `None` means that the job panicked.

@@ -28,7 +28,7 @@ use haze::settings::{DebugView, FieldValue, field_values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 use haze_author::particle_files::ParticleFrames;
-use haze_author::preset::Tooltips;
+use haze_author::preset::{Tooltips, no_effect_reason};
 use haze_demo::shot::Shot;
 
 use crate::tweak::document::Document;
@@ -180,6 +180,17 @@ impl Session {
     /// Returns the folders where images are looked up.
     pub fn folders(&self) -> AssetFolders {
         AssetFolders::beside(self.document.path()).with_shared(self.assets.clone())
+    }
+
+    /// Returns the reason why a field of a preset has no effect here: other values, or the graphics device.
+    pub fn no_effect_reason(&self, preset: &Preset, path: &str) -> Option<&'static str> {
+        let is_shadow = path.contains("].settings.shadow.")
+            || path.ends_with("].smoke_shadow")
+            || path.ends_with("].material.shadow_ramp");
+        if is_shadow && !self.view.has_compute {
+            return Some("the graphics device has no compute shaders");
+        }
+        no_effect_reason(preset, path, self.view.size)
     }
 
     /// Returns the shot of the present view.

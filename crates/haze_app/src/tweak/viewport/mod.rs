@@ -9,7 +9,7 @@ mod light_handle;
 mod light_marker;
 mod outlined_painter;
 mod overlay;
-mod path_traced_puff;
+pub mod path_traced_puff;
 pub mod pixel_readout;
 pub mod probe_job;
 mod ramp_highlight;
@@ -59,6 +59,7 @@ impl Viewport {
             return;
         }
         session.view.size = size;
+        session.view.has_compute = renderer.has_compute();
         session.inspect.point(&response);
         session.view.aspect = size.x as f32 / size.y as f32;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));

@@ -1,5 +1,6 @@
 //! Path-traced puff of a medium beside the same puff lit by the system's ramps, with the error, while lights rotate.
 
+use std::cell::Cell;
 use std::f32::consts::TAU;
 
 use eframe::egui::{self, Align2, Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2};
@@ -10,9 +11,11 @@ use haze_author::path_trace::{MEDIA, Medium, PathTrace};
 use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::BakedSixWay;
+use serde::{Deserialize, Serialize};
 
 use crate::puff_sheet::{ComparedImages, image_pairs};
 use crate::sprite_by_name::{default_sprite, sprite_recipe};
+use crate::tweak::platform::portable_job::PortableJob;
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::session::Session;
 use crate::tweak::session::light_view::LightTurn;
@@ -24,11 +27,11 @@ const SIDE: f32 = 112.0;
 
 /// Path-traced reference, and the comparison with it.
 pub struct PathTracedPuff {
-    worker: Option<Worker<Result<Traced, Stopped>>>,
+    worker: Option<Worker<<TracePuff as PortableJob>::Output>>,
     /// Index into [`MEDIA`].
     medium: usize,
     asked: Option<(Wanted, Ticket)>,
-    traced: Option<(Wanted, Traced)>,
+    traced: Option<(Wanted, TracedPuff)>,
     compared: Option<Compared>,
     failed: Option<String>,
 }
@@ -39,9 +42,34 @@ type Stopped = Option<Error>;
 /// Path tracing job: index of the medium, and true if six-way maps are needed too.
 type Wanted = (usize, bool);
 
-struct Traced {
+#[derive(Serialize, Deserialize)]
+pub struct TracedPuff {
     puff: Puff,
     maps: Option<BakedSixWay>,
+}
+
+/// Job that traces a puff of a medium.
+#[derive(Serialize, Deserialize)]
+pub struct TracePuff {
+    /// Index into [`MEDIA`].
+    medium: usize,
+    is_six_way: bool,
+}
+
+impl PortableJob for TracePuff {
+    const NAME: &'static str = "trace_puff";
+    /// The inner `None`: stopped.
+    type Output = Result<TracedPuff, Option<String>>;
+
+    fn run(self, progress: &dyn Fn(u32) -> bool) -> Self::Output {
+        let steps = Cell::new(0);
+        let go_on = || {
+            steps.set(steps.get() + 1);
+            if progress(steps.get()) { Ok(()) } else { Err(None) }
+        };
+        TracedPuff::of(&MEDIA[self.medium].medium, self.is_six_way, go_on)
+            .map_err(|stopped: Stopped| stopped.map(|error| error.to_string()))
+    }
 }
 
 /// Both puffs under all lights.
@@ -107,7 +135,7 @@ impl PathTracedPuff {
         }
         match self.worker.as_ref().and_then(Worker::poll) {
             Some(Some(Ok(traced))) => self.traced = Some((wanted, traced)),
-            Some(Some(Err(error))) => self.failed = error.map(|error| error.to_string()),
+            Some(Some(Err(error))) => self.failed = error,
             Some(None) => self.failed = Some("Path tracing failed: internal error".into()),
             None => {}
         }
@@ -133,15 +161,15 @@ impl PathTracedPuff {
             }
         };
         let (medium, is_six_way) = wanted;
-        let job = move |ticket: &Ticket| Traced::of(&MEDIA[medium].medium, is_six_way, ticket);
-        self.asked = Some((wanted, worker.submit(job)));
+        let ticket = worker.submit_portable(TracePuff { medium, is_six_way }, |_| true, |traced| traced);
+        self.asked = Some((wanted, ticket));
         Ok(())
     }
 }
 
-impl Traced {
-    fn of(medium: &Medium, is_six_way: bool, ticket: &Ticket) -> Result<Self, Stopped> {
-        let progress = |_| if ticket.is_cancelled() { Err(None) } else { Ok(()) };
+impl TracedPuff {
+    fn of(medium: &Medium, is_six_way: bool, go_on: impl Fn() -> Result<(), Stopped>) -> Result<Self, Stopped> {
+        let progress = |_| go_on();
         let recipe = sprite_recipe(&default_sprite())?;
         let puff = Puff::trace(&recipe, medium, &PATH_TRACE, progress)?;
         let recipe = SpriteRecipe { size: PATH_TRACE.size, columns: 1, rows: 1, tolerance: 0, ..recipe };
@@ -222,4 +250,25 @@ fn angle(turn: &LightTurn, light: &Light, eye: Vec3) -> f32 {
     let to_eye = (eye - turn.middle).with_y(0.0).normalize_or(Vec3::Z);
     let right = vec3(to_eye.z, 0.0, -to_eye.x);
     to_light.dot(right).atan2(to_light.dot(to_eye)).rem_euclid(TAU).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_traced_puff_is_the_same_when_it_is_sent_as_text() {
+        let recipe = SpriteRecipe { size: 8, columns: 1, rows: 1, ..sprite_recipe(&default_sprite()).unwrap() };
+        let path_trace = PathTrace { size: 8, samples: 1, seed: 1 };
+        let medium = &MEDIA[0].medium;
+        let puff = Puff::trace(&recipe, medium, &path_trace, |_| Ok::<_, ()>(())).unwrap();
+        let maps = recipe.bake_six_way(medium, 1, |_, _| Ok::<_, ()>(())).ok();
+        let here = TracedPuff { puff, maps };
+        let there: TracedPuff = serde_json::from_str(&serde_json::to_string(&here).unwrap()).unwrap();
+        let [here, there] = [here, there].map(|TracedPuff { puff, maps }| {
+            let maps = maps.unwrap();
+            (0..LIGHTS as usize).map(|light| puff.shown_six_way(&maps, light)).collect::<Vec<_>>()
+        });
+        assert_eq!(here, there);
+    }
 }

@@ -354,6 +354,7 @@ impl eframe::App for Window {
         self.renderer.begin_frame(is_touched || is_turning || self.session.playback.is_playing);
         self.file_actions.advance(&mut self.session, ui.ctx());
         self.session.playback.advance(ui.input(|input| input.stable_dt));
+        panels::narrow::set_spacing(ui);
         self.bars(ui);
         self.settings(ui);
         self.image_and_popups(ui, is_touched);

@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-use eframe::{WebRunner, egui, egui_wgpu};
+use eframe::{WebRunner, egui, egui_wgpu, wgpu};
 use wasm_bindgen::JsValue;
 use wasm_bindgen_futures::spawn_local;
 use web_sys::HtmlCanvasElement;
@@ -12,7 +12,7 @@ use super::device::setup;
 use super::drag_end::split_events_at_buttons;
 use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
-use crate::tweak::page_picture::{self, PageGpu};
+use crate::page_renderer::{PageGpu, set_gpu};
 use crate::tweak::platform::web::{page, storage};
 use crate::tweak::viewport_renderer::ViewportRenderer;
 use crate::tweak::viewport_renderer::device_health::DeviceHealth;
@@ -49,7 +49,7 @@ pub async fn open(start: Start) -> Result<(), String> {
 async fn open_in(canvas: HtmlCanvasElement, kept: Rc<KeptState>) -> Result<(), String> {
     let options = eframe::WebOptions {
         wgpu_options: egui_wgpu::WgpuConfiguration {
-            wgpu_setup: setup(),
+            wgpu_setup: page_setup(),
             on_surface_status: paced_surface_handler(),
             ..Default::default()
         },
@@ -65,7 +65,7 @@ async fn open_in(canvas: HtmlCanvasElement, kept: Rc<KeptState>) -> Result<(), S
         }
         if let Some(render) = &context.wgpu_render_state {
             let (device, queue) = (render.device.clone(), render.queue.clone());
-            page_picture::set_gpu(PageGpu { device, queue, context: renderer.context() });
+            set_gpu(PageGpu { device, queue, context: renderer.context() });
         }
         let health = renderer.health().clone();
         let events = page::watch_context(&watched, Rc::clone(&kept.is_lost), renderer.wake());
@@ -75,6 +75,17 @@ async fn open_in(canvas: HtmlCanvasElement, kept: Rc<KeptState>) -> Result<(), S
             as Box<dyn eframe::App>)
     });
     runner.start(canvas, options, app).await.map_err(|error| reason(&error))
+}
+
+/// Returns the setup of a window; of WebGL alone if the address asks for it with `?api=webgl`.
+fn page_setup() -> egui_wgpu::WgpuSetup {
+    let mut setup = setup();
+    if let egui_wgpu::WgpuSetup::CreateNew(new) = &mut setup
+        && page::query().contains("api=webgl")
+    {
+        new.instance_descriptor.backends = wgpu::Backends::GL;
+    }
+    setup
 }
 
 fn reason(error: &JsValue) -> String {

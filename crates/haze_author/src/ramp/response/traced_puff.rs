@@ -1,6 +1,7 @@
 //! A path-traced puff, and its shading with ramps or six-way maps.
 
 use glam::{UVec2, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::deterministic_math::cos_sin;
 use crate::path_trace::{Medium, PathTrace, PathTraceResult};
@@ -19,7 +20,7 @@ pub const LIGHTS: u32 = 16;
 
 /// A path-traced puff under a horizontal ring of lights at its height, the first one at the viewer. Holds the traced
 /// light and the normals and coverage for ramp lookups.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Puff {
     pub(super) lights: Vec<Vec3>,
     /// Texels with coverage above 0.
@@ -27,7 +28,7 @@ pub struct Puff {
     pub(super) traced: PathTraceResult,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Texel {
     /// Index in the image, row by row.
     pub index: usize,

@@ -2,7 +2,9 @@
 
 use glam::{IVec2, UVec2, Vec3};
 use image::{Rgba, RgbaImage};
+use serde::{Deserialize, Serialize};
 
+use super::image_as_bytes;
 use super::packing::encode_texel;
 use super::trace::{SixWayMix, TracedSixWay};
 use crate::deterministic_math::exp;
@@ -13,9 +15,10 @@ use haze::assets::image::Image;
 use haze::formula::six_way::SixWay;
 
 /// Baked six-way maps, with settings that go with them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct BakedSixWay {
     /// The sheet, in the layout described in the module's documentation.
+    #[serde(with = "image_as_bytes")]
     pub picture: RgbaImage,
     /// Value for `diffuse.intensity` that makes the smoke as bright as the medium relative to white paper.
     pub intensity: f32,

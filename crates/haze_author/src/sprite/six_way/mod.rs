@@ -6,6 +6,7 @@
 //! halves.
 
 mod bake_maps;
+mod image_as_bytes;
 mod packing;
 mod trace;
 

@@ -226,7 +226,7 @@ impl EditedSprite {
 
     fn take(&mut self, name: &str, job: u64, what: BakeResult, document: &mut Document) -> Result<(), Error> {
         match what {
-            BakeResult::Read(SpriteState { source, stamps, findings, broken }) => {
+            BakeResult::Read(SpriteState { source, findings, broken }, stamps) => {
                 (self.stamps, self.broken) = (stamps, broken);
                 if self.broken.is_some() && matches!(self.source, SpriteOrigin::Recipe(_)) {
                     // The last valid recipe is kept.

@@ -1,14 +1,16 @@
 //! Background bakes of sprites: at a low resolution while a control is held, in full when it is released.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
+use haze::image::decode_png;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, FieldError};
-use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
+use haze_author::sprite::bake::SpriteRecipe;
+use image::{DynamicImage, RgbaImage};
 
-use super::sprite_source::{SpriteState, Stamps, findings, read_sprite, stamps, write};
+use super::sprite_source::{BakeSprite, BakedFiles, NotBaked, ReadSprite, SpriteState, Stamps, stamps, write};
 use crate::tweak::platform::worker::Worker;
 
 /// Two threads, so that a coarse bake does not wait for a full one.
@@ -25,7 +27,8 @@ pub struct FinishedBake {
 }
 
 pub enum BakeResult {
-    Read(SpriteState),
+    /// State, and the stamps of the files that were read.
+    Read(SpriteState, Stamps),
     /// Bake of a recipe at a low resolution.
     Coarse(Result<Baked, Error>),
     Full(Box<FullBake>),
@@ -86,8 +89,12 @@ impl SpriteBakeJob {
 
     /// Reads a sprite and its recipe. Returns the number of the job.
     pub fn read_sprite(&mut self, name: &str, picture: PathBuf, layout: SpriteLayout) -> u64 {
-        let (job, name) = (self.number(), name.to_owned());
-        self.full.submit(move |_| FinishedBake { job, what: BakeResult::Read(read_sprite(&name, &picture, layout)) });
+        let job = self.number();
+        // Stamps are taken before the files are read, so that a write in between counts as a change.
+        let stamps = stamps(&picture);
+        let read = ReadSprite { name: name.to_owned(), picture, layout };
+        let finish = move |state| FinishedBake { job, what: BakeResult::Read(state, stamps) };
+        self.full.submit_portable(read, |_| true, finish);
         job
     }
 
@@ -99,8 +106,8 @@ impl SpriteBakeJob {
             let (columns, rows) = (recipe.columns.min(frames), recipe.rows.min(frames));
             let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
             let baked = small.bake(|_| Ok::<_, FieldError>(())).map_err(Error::from);
-            let decoded = baked.and_then(|baked| decoded(recipe, small.layout(), &baked));
-            FinishedBake { job, what: BakeResult::Coarse(decoded) }
+            let shown = baked.and_then(|baked| Baked::new(recipe, small.layout(), &baked.picture, &baked.detail));
+            FinishedBake { job, what: BakeResult::Coarse(shown) }
         });
         job
     }
@@ -111,21 +118,23 @@ impl SpriteBakeJob {
         let (is_stopped, frames) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
         let order =
             BakeOrder { job, recipe: recipe.clone(), is_stopped: Arc::clone(&is_stopped), frames: Arc::clone(&frames) };
-        self.full.submit(move |_| {
-            let go_on = || if is_stopped.load(Ordering::Relaxed) { Err(None) } else { Ok(()) };
-            let baked = recipe.bake(|done| {
-                frames.store(done, Ordering::Relaxed);
-                go_on()
-            });
-            let what = match baked.and_then(|baked| go_on().map(|()| baked)) {
-                Ok(_) | Err(None) if stamps(&picture) != before => BakeResult::GivenUp,
-                Ok(baked) => BakeResult::Full(Box::new(written(recipe, &picture, baked))),
-                Err(None) => BakeResult::GivenUp,
-                Err(Some(error)) => BakeResult::Full(Box::new(FullBake {
-                    baked: None,
-                    stamps: before,
-                    written: Err(Error::from(error)),
-                })),
+        let go_on = move || !is_stopped.load(Ordering::Relaxed);
+        let may_finish = go_on.clone();
+        let progress = move |done| {
+            frames.store(done, Ordering::Relaxed);
+            go_on()
+        };
+        let bake = BakeSprite { recipe: recipe.clone(), picture: picture.clone() };
+        self.full.submit_portable(bake, progress, move |baked| {
+            let what = match baked {
+                Err(NotBaked::Refused { field, problem, expected }) => {
+                    let error = FieldError::from_problem(field, problem, expected);
+                    BakeResult::Full(Box::new(FullBake { baked: None, stamps: before, written: Err(error.into()) }))
+                }
+                Ok(baked) if may_finish() && stamps(&picture) == before => {
+                    BakeResult::Full(Box::new(written(recipe, &picture, baked)))
+                }
+                _ => BakeResult::GivenUp,
             };
             FinishedBake { job, what }
         });
@@ -138,15 +147,19 @@ impl SpriteBakeJob {
     }
 }
 
-fn decoded(recipe: SpriteRecipe, layout: SpriteLayout, baked: &BakedSprite) -> Result<Baked, Error> {
-    let sprite = |sheet| Sprite::from_image("sprite".as_ref(), sheet, layout);
-    Ok(Baked { sprite: sprite(&baked.picture)?, detail: sprite(&baked.detail)?, recipe })
+impl Baked {
+    fn new(recipe: SpriteRecipe, layout: SpriteLayout, picture: &RgbaImage, detail: &RgbaImage) -> Result<Self, Error> {
+        let sprite = |sheet: &RgbaImage| Sprite::from_image("sprite".as_ref(), sheet, layout);
+        Ok(Self { sprite: sprite(picture)?, detail: sprite(detail)?, recipe })
+    }
 }
 
-fn written(recipe: SpriteRecipe, picture: &std::path::Path, baked: BakedSprite) -> FullBake {
-    let layout = recipe.layout();
-    let findings = findings(picture, &baked.picture, layout);
-    let shown = decoded(recipe.clone(), layout, &baked);
-    let written = write(picture, &recipe, baked).map(|()| findings);
-    FullBake { baked: shown.ok(), stamps: stamps(picture), written }
+fn written(recipe: SpriteRecipe, picture: &Path, baked: BakedFiles) -> FullBake {
+    let written = write(picture, &recipe, &baked);
+    let sheet = |bytes: &[u8]| decode_png(picture, bytes).map(DynamicImage::into_rgba8);
+    let shown = sheet(&baked.picture).and_then(|sprite| {
+        let (layout, detail) = (recipe.layout(), sheet(&baked.detail)?);
+        Baked::new(recipe, layout, &sprite, &detail)
+    });
+    FullBake { baked: shown.ok(), stamps: stamps(picture), written: written.map(|()| baked.findings) }
 }

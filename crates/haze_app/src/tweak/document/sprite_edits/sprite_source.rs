@@ -1,21 +1,23 @@
-//! Origin of a sprite: reads, checks, writes and copies its files.
+//! Origin of a sprite: reads, checks, bakes, writes and copies its files.
 
 use std::path::{Path, PathBuf};
 
 use haze::assets::json;
 use haze::builtin::{self, Builtin};
-use haze::image::decode_png;
+use haze::image::{decode_png, encode_baked_png};
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
 use haze_author::sprite::lint::lint_sprite;
 use image::RgbaImage;
+use serde::{Deserialize, Serialize};
 
 use crate::tweak::platform::asset_loading::sprite_recipe;
-use crate::tweak::platform::file_io::{self, Stamp, read_png, write_baked_png};
+use crate::tweak::platform::file_io::{self, Stamp, read_png};
+use crate::tweak::platform::portable_job::PortableJob;
 
 /// Origin of a sprite, which decides whether it can be edited.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SpriteOrigin {
     /// Not known yet.
     Reading,
@@ -35,9 +37,9 @@ pub enum SpriteOrigin {
 pub type Stamps = [Option<Stamp>; 3];
 
 /// Sprite as read from its files.
+#[derive(Serialize, Deserialize)]
 pub struct SpriteState {
     pub source: SpriteOrigin,
-    pub stamps: Stamps,
     /// Findings of the check of the image, one per line.
     pub findings: Vec<String>,
     /// Error in the recipe's file.
@@ -58,15 +60,32 @@ pub fn stamps(picture: &Path) -> Stamps {
     [picture, &detail_of(picture), &recipe_of(picture)].map(Stamp::of)
 }
 
-/// Reads a sprite and its recipe. `layout` is the one in the preset.
-pub fn read_sprite(name: &str, picture: &Path, layout: SpriteLayout) -> SpriteState {
-    // Stamps are taken before the files are read, so that a write in between counts as a change.
-    let stamps = stamps(picture);
-    let (source, findings, broken) = match builtin::find(builtin::SPRITES, name) {
-        Some(found) => built_in(found).unwrap_or_else(|error| (SpriteOrigin::Missing, vec![error.to_string()], None)),
-        None => file(picture, layout),
-    };
-    SpriteState { source, stamps, findings, broken }
+/// Job that reads a sprite and its recipe, and bakes it to compare both.
+#[derive(Serialize, Deserialize)]
+pub struct ReadSprite {
+    pub name: String,
+    pub picture: PathBuf,
+    /// The one in the preset.
+    pub layout: SpriteLayout,
+}
+
+impl PortableJob for ReadSprite {
+    const NAME: &'static str = "read_sprite";
+    type Output = SpriteState;
+
+    fn reads(&self) -> Vec<PathBuf> {
+        vec![self.picture.clone(), recipe_of(&self.picture)]
+    }
+
+    fn run(self, _: &dyn Fn(u32) -> bool) -> SpriteState {
+        let (source, findings, broken) = match builtin::find(builtin::SPRITES, &self.name) {
+            Some(found) => {
+                built_in(found).unwrap_or_else(|error| (SpriteOrigin::Missing, vec![error.to_string()], None))
+            }
+            None => file(&self.picture, self.layout),
+        };
+        SpriteState { source, findings, broken }
+    }
 }
 
 type Found = (SpriteOrigin, Vec<String>, Option<String>);
@@ -104,7 +123,7 @@ fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
 }
 
 /// Returns the findings of a check of a sheet.
-pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<String> {
+fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<String> {
     match lint_sprite(path, sheet, layout) {
         Ok(findings) => {
             findings.into_iter().map(|finding| format!("{}: {}", finding.name, finding.description)).collect()
@@ -113,11 +132,69 @@ pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<Str
     }
 }
 
+/// Job that bakes a recipe in full.
+#[derive(Serialize, Deserialize)]
+pub struct BakeSprite {
+    pub recipe: SpriteRecipe,
+    /// Image that it is baked for.
+    pub picture: PathBuf,
+}
+
+/// Contents of the files of a baked sprite.
+#[derive(Serialize, Deserialize)]
+pub struct BakedFiles {
+    pub picture: Vec<u8>,
+    pub detail: Vec<u8>,
+    /// Findings of the check of the image, one per line.
+    pub findings: Vec<String>,
+}
+
+/// Reason why nothing was baked.
+#[derive(Serialize, Deserialize)]
+pub enum NotBaked {
+    Stopped,
+    /// The fields of a [`FieldError`].
+    Refused {
+        field: String,
+        problem: String,
+        expected: String,
+    },
+}
+
+impl From<FieldError> for NotBaked {
+    fn from(FieldError { field, problem, expected, .. }: FieldError) -> Self {
+        Self::Refused { field, problem, expected }
+    }
+}
+
+impl PortableJob for BakeSprite {
+    const NAME: &'static str = "bake_sprite";
+    type Output = Result<BakedFiles, NotBaked>;
+
+    fn run(self, progress: &dyn Fn(u32) -> bool) -> Self::Output {
+        let Self { recipe, picture } = self;
+        let baked = recipe.bake(|frames| if progress(frames) { Ok(()) } else { Err(NotBaked::Stopped) })?;
+        encode(&picture, recipe.layout(), baked).map_err(|error| {
+            let expected = "an image that can be written as PNG";
+            FieldError::from_problem("sprite", error.to_string(), expected).into()
+        })
+    }
+}
+
+/// Checks and encodes a baked sprite.
+pub fn encode(picture: &Path, layout: SpriteLayout, baked: BakedSprite) -> Result<BakedFiles, Error> {
+    Ok(BakedFiles {
+        findings: findings(picture, &baked.picture, layout),
+        picture: encode_baked_png(picture, &baked.picture.into())?,
+        detail: encode_baked_png(&detail_of(picture), &baked.detail.into())?,
+    })
+}
+
 /// Writes the recipe first, because the images can be made again from it.
-pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: BakedSprite) -> Result<(), Error> {
+pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: &BakedFiles) -> Result<(), Error> {
     file_io::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
-    write_baked_png(&detail_of(picture), &baked.detail.into())?;
-    write_baked_png(picture, &baked.picture.into())
+    file_io::write(&detail_of(picture), &baked.detail)?;
+    file_io::write(picture, &baked.picture)
 }
 
 /// Returns the recipe of a built-in sprite.

@@ -10,6 +10,7 @@ use haze::assets::memory_files;
 use wasm_bindgen_futures::spawn_local;
 
 use super::page;
+use crate::file_kind::files_to_open;
 
 /// Changes with each write of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,15 +106,20 @@ thread_local! {
 
 /// Returns a file that was dropped on the page, once it is read.
 pub fn dropped_file(context: &egui::Context) -> Option<PathBuf> {
-    for file in context.input(|input| input.raw.dropped_files.clone()) {
+    let files = context.input(|input| input.raw.dropped_files.clone());
+    if !files.is_empty() {
         let context = context.clone();
         spawn_local(async move {
-            if let Ok(bytes) = file.bytes_async().await
-                && memory_files::write_file(file.path(), &bytes).is_ok()
-            {
-                DROPPED.with_borrow_mut(|dropped| dropped.push(file.path().to_owned()));
-                context.request_repaint();
+            let mut read = Vec::new();
+            for file in files {
+                if let Ok(bytes) = file.bytes_async().await
+                    && memory_files::write_file(file.path(), &bytes).is_ok()
+                {
+                    read.push(file.path().to_owned());
+                }
             }
+            DROPPED.with_borrow_mut(|dropped| dropped.extend(files_to_open(read)));
+            context.request_repaint();
         });
     }
     let next = DROPPED.with_borrow_mut(|dropped| if dropped.is_empty() { None } else { Some(dropped.remove(0)) });

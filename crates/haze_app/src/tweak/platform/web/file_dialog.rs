@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::page;
+use crate::file_kind::files_to_open;
 pub use crate::tweak::platform::dialog_answer::{Answer, Purpose};
 
 /// File pickers, one at a time.
@@ -36,9 +37,7 @@ impl Dialogs {
         }
         let (chosen, wake) = (Rc::clone(&self.chosen), Rc::clone(&self.wake));
         page::pick_files(move |files| {
-            // A preset may come with the images that it names.
-            let is_json = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "json");
-            *chosen.borrow_mut() = files.iter().find(is_json).or(files.first()).cloned();
+            *chosen.borrow_mut() = files_to_open(files).into_iter().next();
             wake();
         });
         true

@@ -5,4 +5,5 @@ pub mod file_dialog;
 pub mod lock_file;
 pub mod page;
 pub mod storage;
+mod web_job;
 pub mod worker;

@@ -15,6 +15,11 @@ const LOST: &str = "webglcontextlost";
 /// Largest file to download.
 const MAX_BYTES: u64 = 1 << 30;
 
+/// Returns false in a web worker.
+pub fn is_page() -> bool {
+    web_sys::window().is_some()
+}
+
 fn document() -> Option<Document> {
     web_sys::window()?.document()
 }
@@ -78,6 +83,11 @@ pub async fn next_task() {
 pub fn fragment() -> String {
     let hash = web_sys::window().and_then(|window| window.location().hash().ok());
     hash.unwrap_or_default().trim_start_matches('#').to_owned()
+}
+
+/// Returns the part of the address from `?` to `#`.
+pub fn query() -> String {
+    web_sys::window().and_then(|window| window.location().search().ok()).unwrap_or_default()
 }
 
 /// Replaces the part of the address after `#`. Returns the address.

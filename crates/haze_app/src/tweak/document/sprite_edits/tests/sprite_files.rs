@@ -1,10 +1,13 @@
 //! Tests of sprite files: written, copied, changed by other programs.
 
 use eframe::egui::{ViewportCommand, ViewportEvent, ViewportId};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use super::super::sprite_bake_job::{BakeResult, SpriteBakeJob};
-use super::super::sprite_source::stamps;
+use super::super::sprite_source::{BakeSprite, NotBaked, ReadSprite, SpriteOrigin, stamps};
 use super::*;
+use crate::tweak::platform::portable_job::PortableJob;
 use crate::tweak::window::testing;
 
 #[test]
@@ -96,6 +99,30 @@ fn an_outdated_bake_is_cancelled_and_not_written() {
     assert!(matches!(wait(&bake_job).what, BakeResult::GivenUp));
     assert_eq!(std::fs::read_to_string(folder.path("mine.sprite.json")).unwrap(), "{}");
     assert_eq!(stamps(&picture)[..2], before[..2]);
+}
+
+#[test]
+fn a_bake_and_a_reading_give_the_same_when_they_are_sent_as_text() {
+    fn sent<T: Serialize + DeserializeOwned>(value: &T) -> T {
+        serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
+    }
+    let folder = Folder::new();
+    let picture = folder.path("mine.png");
+    let bake = || BakeSprite { recipe: small(), picture: picture.clone() };
+    let [here, there] = [bake(), sent(&bake())].map(|job| job.run(&|_| true).ok().unwrap());
+    let there = sent(&there);
+    assert!(here.picture == there.picture && here.detail == there.detail && here.findings == there.findings);
+    assert!(matches!(sent(&bake().run(&|_| false)), Err(NotBaked::Stopped)));
+    let refused = BakeSprite { recipe: SpriteRecipe { columns: 0, ..small() }, ..bake() };
+    assert!(matches!(sent(&refused.run(&|_| true)), Err(NotBaked::Refused { field, .. }) if field == "columns"));
+
+    let read = || ReadSprite { name: "mine.png".into(), picture: picture.clone(), layout: small().layout() };
+    // A page sends the files that the job names.
+    assert_eq!(read().reads(), [picture.clone(), folder.path("mine.sprite.json")]);
+    let [here, there] = [read(), sent(&read())].map(|job| job.run(&|_| true));
+    let there = sent(&there);
+    assert!(matches!(here.source, SpriteOrigin::Recipe(_)));
+    assert_eq!((here.source, here.findings, here.broken), (there.source, there.findings, there.broken));
 }
 
 #[test]

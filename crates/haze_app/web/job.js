@@ -1,0 +1,6 @@
+// Runs one job of the tweaker beside the page: the same program, without a window.
+onmessage = async ({ data: { program, module, name, job, files } }) => {
+    const haze = await import(program);
+    await haze.default({ module_or_path: module });
+    postMessage({ output: haze.run_job(name, job, files, (steps) => postMessage({ steps })) });
+};
