@@ -83,8 +83,9 @@ impl FieldVisitor for RandomValues {
             *value = !*value;
         }
     }
-    fn choice(&mut self, _: &'static str, value: &mut dyn Choice) {
-        if self.is_selected() {
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        // A role only names a light. It takes no random number.
+        if name != "role" && self.is_selected() {
             value.set_index(self.index(value.names().len()));
         }
     }

@@ -143,7 +143,7 @@ impl eframe::App for PageApp {
         let Some(window) = &mut self.window else { return };
         window.ui(ui, frame);
         if !storage::save_changed() {
-            window.session.messages.info("storage", "the browser does not keep this file for a reload: save it");
+            window.session.messages.info("storage", "The browser does not keep this file after a reload. Save it.");
         }
         self.frames += 1;
         match self.frames.cmp(&SETTLED_FRAMES) {
