@@ -7,6 +7,7 @@ use super::memory_use::MemoryUse;
 use super::resolved_depth::ResolvedDepth;
 use super::system_state::SystemState;
 use super::targets::TargetViews;
+use crate::view_setup::LightingChoice;
 
 impl Renderer {
     /// Returns the targets of the system with this key, as the last [`prepare`](Self::prepare) fills them, for tools
@@ -33,6 +34,12 @@ impl Renderer {
     /// reason. `None` if the system is out of sight or its path setting is not `auto`.
     pub fn path_choice(&self, key: u64) -> Option<PathChoice> {
         self.states.iter().find(|state| state.key == key)?.choice()
+    }
+
+    /// Returns the lighting resolution that `auto` chose in the last [`prepare`](Self::prepare) for the system with this
+    /// key, with the reason. `None` if the system is out of sight, drawn `forward`, or its setting is not `auto`.
+    pub fn lighting_choice(&self, key: u64) -> Option<LightingChoice> {
+        self.states.iter().find(|state| state.key == key)?.lighting_choice()
     }
 
     /// Computes the overdraw of the sprites of the last [`prepare`](Self::prepare). Every call iterates over all

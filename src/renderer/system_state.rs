@@ -27,8 +27,8 @@ use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, ParticleSystem};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
-    ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid, ViewGeometry,
-    caster_uniform, light_uniforms, system_setup,
+    LightingChoice, ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid,
+    ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
 
 /// Buffers and targets of one system, and its passes of the current frame.
@@ -153,6 +153,12 @@ impl SystemState {
     /// Returns this frame's choice of the path `auto`.
     pub fn choice(&self) -> Option<PathChoice> {
         self.prepared.as_ref()?.choice
+    }
+
+    /// Returns this frame's choice of the lighting resolution `auto`.
+    pub fn lighting_choice(&self) -> Option<LightingChoice> {
+        let settings = &self.measured.as_ref().filter(|_| self.prepared.is_some())?.settings;
+        settings.lighting_choice.filter(|_| !settings.is_forward())
     }
 
     /// Returns the view depth of the smoke's centre, metres.

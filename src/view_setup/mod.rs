@@ -3,6 +3,7 @@
 
 mod attachment_role;
 mod drawing_order;
+mod lighting_choice;
 mod optical_depth;
 mod particle_measures;
 mod particle_space;
@@ -17,6 +18,7 @@ mod view_lights;
 
 pub use attachment_role::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
 pub use drawing_order::DrawingOrder;
+pub use lighting_choice::LightingChoice;
 pub use optical_depth::optical_depth;
 pub use particle_measures::ParticleMeasures;
 pub use particle_space::ParticleSpace;

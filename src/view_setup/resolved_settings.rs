@@ -4,12 +4,9 @@ use std::ops::Deref;
 
 use glam::UVec2;
 
+use super::lighting_choice::LightingChoice;
 use crate::assets::ramp_steps::RampSteps;
 use crate::settings::{Lighting, LightingResolution, RenderPath, Settings, Shadow};
-
-/// Largest step of a ramp times the scale, at which light per texel looks like light per pixel. Steps are those of
-/// [`RampSteps`].
-const SMOOTH_STEP: f32 = 0.4;
 
 /// Capabilities of a device that settings depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +29,8 @@ pub struct ResolvedSettings {
     settings: Settings,
     /// Pixels of the picture per texel of the target, along each side.
     pub scale: u32,
+    /// Choice of the lighting resolution `auto`; `None` for another.
+    pub lighting_choice: Option<LightingChoice>,
 }
 
 impl ResolvedSettings {
@@ -52,12 +51,12 @@ impl ResolvedSettings {
         sprite.size *= particle_scale;
         let scale = settings.accumulate.effective_scale(picture);
         let mut settings = Settings { lighting, shadow, sprite, ..*settings };
-        if settings.accumulate.lighting_resolution == LightingResolution::Auto {
-            let is_smooth = ramp_steps.largest(&settings) * scale as f32 <= SMOOTH_STEP;
-            settings.accumulate.lighting_resolution =
-                if is_smooth { LightingResolution::Target } else { LightingResolution::Full };
+        let is_auto = settings.accumulate.lighting_resolution == LightingResolution::Auto;
+        let lighting_choice = is_auto.then(|| LightingChoice::new(ramp_steps, &settings, scale));
+        if let Some(choice) = lighting_choice {
+            settings.accumulate.lighting_resolution = choice.resolution;
         }
-        Self { settings, scale }
+        Self { settings, scale, lighting_choice }
     }
 
     /// Returns the same settings with the path that `auto` chose.

@@ -2,16 +2,13 @@
 const BUNDLES = {};
 
 // WebGL reads zeros from a depth texture with the filter of a new texture, which blends mip levels, and wgpu leaves it so.
+// Where a sampler reads a texture, the sampler's filter counts.
 const webgl = globalThis.WebGL2RenderingContext?.prototype ?? {};
 const createStorage = webgl.texStorage2D;
-webgl.texStorage2D = function (target, levels, format, width, height) {
-    createStorage.call(this, target, levels, format, width, height);
-    const { DEPTH_COMPONENT16, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH24_STENCIL8, DEPTH32F_STENCIL8 } = this;
-    const depths = [DEPTH_COMPONENT16, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH24_STENCIL8, DEPTH32F_STENCIL8];
-    if (depths.includes(format)) {
-        this.texParameteri(target, this.TEXTURE_MIN_FILTER, this.NEAREST);
-        this.texParameteri(target, this.TEXTURE_MAG_FILTER, this.NEAREST);
-    }
+webgl.texStorage2D = function (target, ...rest) {
+    createStorage.call(this, target, ...rest);
+    this.texParameteri(target, this.TEXTURE_MIN_FILTER, this.NEAREST);
+    this.texParameteri(target, this.TEXTURE_MAG_FILTER, this.NEAREST);
 };
 
 function fail(reason) {

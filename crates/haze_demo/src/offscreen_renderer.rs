@@ -19,7 +19,7 @@ use haze::error::Error;
 use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, ShadowMap, View};
 use haze::preset::Environment;
 use haze::settings::DebugView;
-use haze::{Descriptor, MemoryUse, PathChoice, Renderer, SceneDepthKind, Timing, WarmUp};
+use haze::{Descriptor, LightingChoice, MemoryUse, PathChoice, Renderer, SceneDepthKind, Timing, WarmUp};
 
 /// Off-screen renderer; see the module's documentation.
 #[derive(Debug)]
@@ -105,6 +105,11 @@ impl OffscreenRenderer {
     /// Iterates over the paths chosen in the last frame, for visible systems whose path is `auto`.
     pub fn path_choices(&self) -> impl Iterator<Item = PathChoice> {
         (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.path_choice(key))
+    }
+
+    /// Iterates over the lighting resolutions chosen in the last frame, for visible systems where it is `auto`.
+    pub fn lighting_choices(&self) -> impl Iterator<Item = LightingChoice> {
+        (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.lighting_choice(key))
     }
 
     /// Same as [`Renderer::set_timing`].

@@ -161,9 +161,14 @@ fn drawn(ui: &mut Ui, timings: &FrameTimings) {
             ("Texels", grouped(counts.texels), "Texels of the smoke buffers in use"),
         ],
     );
-    // Empty for a system whose path is not `auto`.
+    // Empty for systems that leave no choice.
     for choice in &timings.stats.choices {
         ui.label(format!("Automatic path: {choice}"));
+    }
+    for choice in &timings.stats.lighting_choices {
+        ui.label(format!("Automatic lighting resolution: {choice}")).on_hover_text(
+            "Smoke is lit once per texel (target) where no ramp has hard steps, and else once per pixel (full)",
+        );
     }
 }
 
@@ -254,6 +259,7 @@ mod tests {
             assert!(harness.query_all_by_label(&name).next().is_some(), "{name}");
         }
         assert!(memory.smoke.targets > 0 && memory.smoke.buffers > 0 && memory.materials > 0 && memory.scene > 0);
+        assert!(harness.query_by_label_contains("Automatic lighting resolution: target: the largest step").is_some());
         harness.get_by_label("Look").click();
         settle(&mut harness);
         let timings = &harness.state_mut().session_mut().timings;

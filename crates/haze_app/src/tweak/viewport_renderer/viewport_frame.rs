@@ -3,7 +3,7 @@
 use eframe::wgpu;
 use glam::{IVec2, UVec2, Vec2};
 use haze::settings::DebugView;
-use haze::{Error, FrameCounts, FrameTimes, Overdraw, PathChoice, Timing};
+use haze::{Error, FrameCounts, FrameTimes, LightingChoice, Overdraw, PathChoice, Timing};
 use haze_demo::capture::Capture;
 use haze_demo::image_metrics::Comparison;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenMemory};
@@ -51,6 +51,8 @@ pub struct RenderStats {
     pub overdraw: Overdraw,
     /// Paths that were chosen where the preset leaves it open.
     pub choices: Vec<PathChoice>,
+    /// Lighting resolutions that were chosen where the preset leaves it open.
+    pub lighting_choices: Vec<LightingChoice>,
     pub memory: OffscreenMemory,
     /// Memory of the strip and the second image, bytes.
     pub other_memory: u64,
@@ -180,6 +182,7 @@ impl RendererState {
             counts: self.main.offscreen.renderer().counts(),
             overdraw: self.main.offscreen.renderer().overdraw(),
             choices: self.main.offscreen.path_choices().collect(),
+            lighting_choices: self.main.offscreen.lighting_choices().collect(),
             memory: self.main.offscreen.memory_use(),
             other_memory: others.map(|cached| cached.offscreen.memory_use().total()).sum(),
         }

@@ -1,0 +1,59 @@
+//! The lighting resolution that `auto` chooses.
+
+use std::fmt;
+
+use crate::assets::ramp_steps::RampSteps;
+use crate::settings::{LightingResolution, Settings};
+
+/// Largest step of a ramp times the scale, at which light per texel looks like light per pixel. Steps are those of
+/// [`RampSteps`].
+const SMOOTH_STEP: f32 = 0.4;
+
+/// Lighting resolution that `auto` chose for a system, with the reason. `Display` formats it as one sentence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
+pub struct LightingChoice {
+    /// [`LightingResolution::Target`] or [`LightingResolution::Full`].
+    pub resolution: LightingResolution,
+    /// Largest step of the ramps in use, 0 to 1: 1 for a hard step from black.
+    pub largest_step: f32,
+    /// Pixels per texel of the target, along each side.
+    pub scale: u32,
+}
+
+impl LightingChoice {
+    pub(super) fn new(ramp_steps: &RampSteps, settings: &Settings, scale: u32) -> Self {
+        let largest_step = ramp_steps.largest(settings);
+        let is_smooth = largest_step * scale as f32 <= SMOOTH_STEP;
+        let resolution = if is_smooth { LightingResolution::Target } else { LightingResolution::Full };
+        Self { resolution, largest_step, scale }
+    }
+}
+
+impl fmt::Display for LightingChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { resolution, largest_step, scale } = self;
+        let limit = SMOOTH_STEP / *scale as f32;
+        let comparison = if *resolution == LightingResolution::Target { "at most" } else { "above" };
+        let name = resolution.name();
+        write!(
+            f,
+            "{name}: the largest step of the ramps is {largest_step:.2}, {comparison} {limit:.2} at scale {scale}"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sentence_compares_the_step_with_the_limit_of_the_scale() {
+        let sentence = |step, scale| {
+            let ramps = RampSteps { diffuse: step, ..RampSteps::default() };
+            LightingChoice::new(&ramps, &Settings::default(), scale).to_string()
+        };
+        assert_eq!(sentence(0.05, 4), "target: the largest step of the ramps is 0.05, at most 0.10 at scale 4");
+        assert_eq!(sentence(0.27, 2), "full: the largest step of the ramps is 0.27, above 0.20 at scale 2");
+    }
+}
