@@ -33,6 +33,7 @@ mod tests;
 
 use egui::{self, Ui};
 
+pub use clipboard::color as parse_color;
 pub use edit_context::DisplayOptions;
 pub use paint::histogram;
 

@@ -8,8 +8,7 @@ use haze::Error;
 use haze::image::Image;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-
-use crate::tweak::next_task;
+use wasm_bindgen_futures::JsFuture;
 
 /// Device of the canvas, and the pipelines on it.
 #[derive(Clone)]
@@ -65,6 +64,15 @@ impl PageRenderer {
         }
         image.take().ok_or_else(|| failed("the picture was not read back"))
     }
+}
+
+/// Waits until the browser has run other tasks.
+async fn next_task() {
+    let wait = js_sys::Promise::new(&mut |done, _| {
+        let window = web_sys::window();
+        let _ = window.map(|window| window.set_timeout_with_callback_and_timeout_and_arguments_0(&done, 4));
+    });
+    let _ = JsFuture::from(wait).await;
 }
 
 fn failed(reason: &str) -> Error {

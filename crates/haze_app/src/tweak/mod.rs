@@ -28,5 +28,3 @@ pub use document::copied_assets::copy_assets;
 pub use page::open_page;
 #[cfg(not(target_arch = "wasm32"))]
 pub use platform::file_dialog::is_dialog_target as is_of_dialogs;
-#[cfg(target_arch = "wasm32")]
-pub use platform::web::page::next_task;

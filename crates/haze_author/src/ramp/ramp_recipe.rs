@@ -209,10 +209,11 @@ impl Gradient {
 /// bits.
 const BAKED_STEP: u16 = 8;
 
-/// Converts sRGB texels to an image of 16 bits per channel, rounded to [`BAKED_STEP`]; black and white stay.
+/// Converts sRGB texels to an image of 16 bits per channel, rounded to [`BAKED_STEP`]. Colors that are exact in
+/// 8 bits stay unchanged.
 pub(super) fn image_of(picture: Image<[u16; 3]>) -> DynamicImage {
-    let rounded = |channel: u16| match channel {
-        u16::MAX => channel,
+    let rounded = |channel: u16| match channel % 257 {
+        0 => channel,
         _ => channel.saturating_add(BAKED_STEP / 2) / BAKED_STEP * BAKED_STEP,
     };
     let texels = picture.texels.into_iter().flatten().map(rounded).collect();

@@ -7,6 +7,7 @@ use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind, LightRole};
 
 use super::comparison_bar::width;
+use super::rows::color_popup::swatch;
 use super::rows::setting_rows::RowContext;
 use super::rows::{Row, setting_rows, value_control};
 use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
@@ -99,7 +100,9 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
     if button.clicked() {
         shown.selected = Some(index);
     }
-    value_control::swatch(ui, &mut light.color).accessible_name(format!("Color of {name}"));
+    // Brighter by the intensity beside it.
+    let range = 0.0..=light.color.max_element().max(1.0);
+    swatch(ui, &mut light.color, &range).accessible_name(format!("Color of {name}"));
     let speed = 0.01 * light.intensity.max(0.1);
     let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
     let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));

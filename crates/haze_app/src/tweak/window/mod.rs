@@ -1,6 +1,5 @@
 //! Main window: its layout, and the order of work in a frame.
 
-mod copy_icon;
 mod device;
 pub mod drag_end;
 #[cfg(not(target_arch = "wasm32"))]
@@ -82,7 +81,7 @@ impl Window {
     pub fn new(renderer: ViewportRenderer, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, persistence, layout, has_dialogs } = start;
         session.attach_window(renderer.egui());
-        renderer.egui().add_glyph_rasterizer(copy_icon::rasterizer());
+        renderer.egui().add_glyph_rasterizer(panels::rows::copy_icon::rasterizer());
         session.view.has_strip = layout.has_strip.unwrap_or(session.view.has_strip);
         match &layout.hints {
             Some(left) => session.hints.resume(left),

@@ -1,5 +1,8 @@
 //! One row of a panel: mark, name, control.
 
+pub mod color_popup;
+mod color_temperature;
+pub mod copy_icon;
 pub mod icon_button;
 pub mod picture_gallery;
 pub mod setting_rows;

@@ -229,8 +229,8 @@ impl FieldVisitor for Rows<'_, '_, '_> {
         });
     }
 
-    fn color(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>) {
-        self.row(name, ("", None), |ui, label, _, _, _| value_control::color(ui, value, label));
+    fn color(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>) {
+        self.row(name, ("", None), |ui, label, _, _, _| value_control::color(ui, value, &range, label));
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {

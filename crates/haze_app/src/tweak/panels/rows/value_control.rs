@@ -7,6 +7,7 @@ use eframe::egui::{self, Response, Ui};
 use glam::Vec3;
 use haze::settings::Choice;
 
+use super::color_popup::swatch;
 use super::value_text::{parse, shown, suffix};
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::session::slider_range::{UsualRange, needs_log_slider, slider_range};
@@ -182,22 +183,10 @@ pub fn vector(
 }
 
 /// Draws a linear RGB color as a swatch and as numbers.
-pub fn color(ui: &mut Ui, value: &mut Vec3, name: &Response) {
-    swatch(ui, value).labelled_by(name.id);
+pub fn color(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>, name: &Response) {
+    swatch(ui, value, range).labelled_by(name.id);
     let [r, g, b] = value.to_array();
     ui.add(egui::Label::new(egui::RichText::new(format!("{r:.3} {g:.3} {b:.3}")).weak()).truncate());
-}
-
-/// Draws a swatch of a linear RGB color. The color may exceed 1; the swatch is then normalised to its largest
-/// channel.
-pub fn swatch(ui: &mut Ui, value: &mut Vec3) -> Response {
-    let peak = value.max_element().max(1.0);
-    let mut shown = (*value / peak).to_array();
-    let button = ui.color_edit_button_rgb(&mut shown);
-    if button.changed() {
-        *value = Vec3::from(shown) * peak;
-    }
-    button
 }
 
 /// Draws the field of a file path. The path is used when the field loses focus, not after each letter; Escape discards

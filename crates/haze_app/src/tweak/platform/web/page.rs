@@ -70,15 +70,6 @@ pub fn pick_files(done: impl FnOnce(Vec<PathBuf>) + 'static) {
     shown.click();
 }
 
-/// Waits until the browser has run other tasks.
-pub async fn next_task() {
-    let wait = js_sys::Promise::new(&mut |done, _| {
-        let window = web_sys::window();
-        let _ = window.map(|window| window.set_timeout_with_callback_and_timeout_and_arguments_0(&done, 4));
-    });
-    let _ = JsFuture::from(wait).await;
-}
-
 /// Returns the part of the address after `#`.
 pub fn fragment() -> String {
     let hash = web_sys::window().and_then(|window| window.location().hash().ok());

@@ -1,0 +1,171 @@
+//! Swatch of a color, and the popup that edits it: a picker, hexadecimal code, temperature and brightness.
+
+use std::ops::RangeInclusive;
+
+use eframe::egui::color_picker::{Alpha, color_picker_hsva_2d, show_color_at};
+use eframe::egui::ecolor::Hsva;
+use eframe::egui::{self, Popup, PopupCloseBehavior, Response, Rgba, Sense, Ui};
+use glam::Vec3;
+use haze::formula::color::{linear_from_srgb, srgb_from_linear};
+use haze_author::ramp::HexColor;
+
+use super::color_temperature::{KELVIN, color_of_temperature, temperature_of_color};
+
+/// Range of the brightness, stops.
+const STOPS: RangeInclusive<f32> = -10.0..=10.0;
+
+/// Draws a swatch of a linear RGB color, whose channels have a range; a click opens the popup. The color may exceed 1; what
+/// is shown is then normalised to its largest channel.
+pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Response {
+    let size = ui.spacing().interact_size;
+    let (rect, mut button) = ui.allocate_exact_size(size, Sense::click());
+    button.widget_info(|| egui::WidgetInfo::new(egui::Role::ColorWell));
+    if ui.is_rect_visible(rect) {
+        let [r, g, b] = shown(*value).to_array();
+        let visuals = ui.style().interact(&button);
+        show_color_at(ui.painter(), Rgba::from_rgb(r, g, b).into(), rect);
+        ui.painter().rect_stroke(rect, visuals.corner_radius, visuals.bg_stroke, egui::StrokeKind::Inside);
+    }
+    let popup = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let edited = popup.show(|ui| popup_content(ui, value)).is_some_and(|shown| shown.inner);
+    if edited {
+        *value = value.clamp(Vec3::splat(*range.start()), Vec3::splat(*range.end()));
+        button.mark_changed();
+    }
+    button
+}
+
+/// Returns the color with its brightest channel at most 1.
+fn shown(value: Vec3) -> Vec3 {
+    value / value.max_element().max(1.0)
+}
+
+fn popup_content(ui: &mut Ui, value: &mut Vec3) -> bool {
+    let before = *value;
+    ui.spacing_mut().slider_width = 240.0;
+    picker(ui, value);
+    egui::Grid::new("color").num_columns(2).show(ui, |ui| {
+        hex(ui, value);
+        ui.end_row();
+        temperature(ui, value);
+        ui.end_row();
+        brightness(ui, value);
+        ui.end_row();
+    });
+    *value != before
+}
+
+/// Draws the picker. It keeps hue and saturation while the color is grey or black.
+fn picker(ui: &mut Ui, value: &mut Vec3) {
+    let peak = value.max_element().max(1.0);
+    let id = ui.scope_id().with("hsv");
+    let rgb = |hsva: Hsva| Vec3::from(hsva.to_rgb());
+    let kept = ui.data(|data| data.get_temp::<Hsva>(id));
+    let kept = kept.filter(|kept| rgb(*kept).abs_diff_eq(*value / peak, 1e-3));
+    let mut hsva = kept.unwrap_or_else(|| Hsva::from_rgb((*value / peak).to_array()));
+    if color_picker_hsva_2d(ui, &mut hsva, Alpha::Opaque) {
+        *value = rgb(hsva) * peak;
+    }
+    ui.data_mut(|data| data.insert_temp(id, hsva));
+}
+
+/// Draws the sRGB code of the shown color. Typed text is used when the field loses focus; text that is no code is dropped.
+fn hex(ui: &mut Ui, value: &mut Vec3) {
+    let peak = value.max_element().max(1.0);
+    let code = HexColor::from_srgb((*value / peak).map(srgb_from_linear));
+    let id = ui.scope_id().with("hex");
+    let mut text = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| String::from(code));
+    let label = ui.label("Hex");
+    let field = ui.add(egui::TextEdit::singleline(&mut text).desired_width(80.0)).labelled_by(label.id);
+    let field = field.on_hover_text("sRGB, #rrggbb");
+    if field.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text));
+        return;
+    }
+    ui.data_mut(|data| data.remove::<String>(id));
+    if field.lost_focus()
+        && let Ok(typed) = egui_gradient::parse_color(&text)
+        && typed != code
+    {
+        *value = Vec3::from(typed.0.map(|channel| linear_from_srgb(f32::from(channel) / 255.0))) * peak;
+    }
+}
+
+/// Draws the temperature of the nearest black body; `—` for a color that is none.
+fn temperature(ui: &mut Ui, value: &mut Vec3) {
+    let label = ui.label("Temperature");
+    let found = temperature_of_color(*value);
+    let mut kelvin = found.unwrap_or(6500.0);
+    let drag = egui::DragValue::new(&mut kelvin).range(KELVIN).speed(20.0).max_decimals(0).suffix(" K");
+    let drag = drag.update_while_editing(false).custom_formatter(move |number, _| match found {
+        Some(_) => format!("{number:.0}"),
+        None => "—".into(),
+    });
+    let drag = ui.add(drag).labelled_by(label.id);
+    if drag.on_hover_text("Color of a black body: candle 1900, bulb 2700, sun 5500, clear sky 12000").changed() {
+        *value = color_of_temperature(kelvin) * value.max_element();
+    }
+}
+
+/// Draws the brightest channel in stops: 0 is 1, each stop doubles it.
+fn brightness(ui: &mut Ui, value: &mut Vec3) {
+    let label = ui.label("Brightness");
+    let peak = value.max_element();
+    let mut stops = peak.max(1e-6).log2();
+    let drag = egui::DragValue::new(&mut stops)
+        .range(STOPS)
+        .speed(0.02)
+        .fixed_decimals(2)
+        .suffix(" stops")
+        .update_while_editing(false);
+    let drag = ui.add_enabled(peak > 0.0, drag).labelled_by(label.id);
+    if drag.on_hover_text("Brightest channel: 0 is 1, each stop doubles it").changed() {
+        *value *= stops.exp2() / peak;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Key, Modifiers, Role, vec2};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::*;
+
+    fn open(value: Vec3) -> Harness<'static, Vec3> {
+        let draw = |ui: &mut Ui, value: &mut Vec3| drop(swatch(ui, value, &(0.0..=100.0)).accessible_name("Tint"));
+        let mut harness = Harness::builder().with_size(vec2(420.0, 520.0)).build_ui_state(draw, value);
+        harness.ctx.add_glyph_rasterizer(super::super::copy_icon::rasterizer());
+        harness.get_by_role(Role::ColorWell).click();
+        harness.run();
+        harness
+    }
+
+    fn type_into(harness: &mut Harness<'_, Vec3>, role: Role, name: &str, text: &str) {
+        harness.get_by_role_and_label(role, name).click();
+        harness.run();
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.get_by(|node| node.is_focused()).type_text(text);
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+    }
+
+    #[test]
+    fn a_typed_code_keeps_the_brightness_and_nonsense_changes_nothing() {
+        let mut harness = open(Vec3::new(4.0, 1.0, 0.5));
+        type_into(&mut harness, Role::TextInput, "Hex", "#00ff00");
+        assert!(harness.state().abs_diff_eq(Vec3::new(0.0, 4.0, 0.0), 1e-4), "{}", harness.state());
+        type_into(&mut harness, Role::TextInput, "Hex", "green");
+        assert!(harness.state().abs_diff_eq(Vec3::new(0.0, 4.0, 0.0), 1e-4), "{}", harness.state());
+    }
+
+    #[test]
+    fn a_temperature_and_stops_set_the_color() {
+        let mut harness = open(Vec3::splat(0.5));
+        type_into(&mut harness, Role::SpinButton, "Temperature", "2700");
+        assert!(harness.state().abs_diff_eq(0.5 * color_of_temperature(2700.0), 1e-4), "{}", harness.state());
+        type_into(&mut harness, Role::SpinButton, "Brightness", "2");
+        assert!(harness.state().abs_diff_eq(4.0 * color_of_temperature(2700.0), 1e-3), "{}", harness.state());
+    }
+}
