@@ -81,6 +81,8 @@ struct PreparedSystem {
     trim: SpriteTrim,
     /// Choice of the path `auto`; `None` for any other path setting.
     choice: Option<PathChoice>,
+    /// Choice of the lighting resolution `auto`; `None` for any other, and for forward smoke.
+    lighting_choice: Option<LightingChoice>,
     /// Number of particles that each one of `sample` represents, if the GPU evaluates the emitter; otherwise `None`.
     sampled: Option<u32>,
     caster: CasterPasses,
@@ -157,8 +159,7 @@ impl SystemState {
 
     /// Returns this frame's choice of the lighting resolution `auto`.
     pub fn lighting_choice(&self) -> Option<LightingChoice> {
-        let settings = &self.measured.as_ref().filter(|_| self.prepared.is_some())?.settings;
-        settings.lighting_choice.filter(|_| !settings.is_forward())
+        self.prepared.as_ref()?.lighting_choice
     }
 
     /// Returns the view depth of the smoke's centre, metres.
@@ -342,6 +343,7 @@ impl SystemState {
             technique: settings.technique,
             trim,
             choice,
+            lighting_choice: settings.lighting_choice.filter(|_| !settings.is_forward()),
             sampled,
             caster: CasterPasses {
                 alive: AliveCopy::new(&system.particles, &self.uniform),

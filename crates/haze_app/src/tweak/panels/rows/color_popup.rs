@@ -26,7 +26,8 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
         show_color_at(ui.painter(), Rgba::from_rgb(r, g, b).into(), rect);
         ui.painter().rect_stroke(rect, visuals.corner_radius, visuals.bg_stroke, egui::StrokeKind::Inside);
     }
-    let popup = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let popup = Popup::from_toggle_button_response(&button);
+    let popup = popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let edited = popup.show(|ui| popup_content(ui, value)).is_some_and(|shown| shown.inner);
     if edited {
         *value = value.clamp(Vec3::splat(*range.start()), Vec3::splat(*range.end()));
