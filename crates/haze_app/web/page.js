@@ -11,6 +11,43 @@ webgl.texStorage2D = function (target, ...rest) {
     this.texParameteri(target, this.TEXTURE_MAG_FILTER, this.NEAREST);
 };
 
+// Files that were chosen for saving, by name; browsers without a dialog for that download instead.
+const saved = new Map();
+
+// Opens the browser's dialog for saving. Returns the chosen name; undefined if it was cancelled.
+globalThis.pickSaveFile = async (suggestedName) => {
+    try {
+        const types = [{ description: "Preset", accept: { "application/json": [".json"] } }];
+        const handle = await showSaveFilePicker({ suggestedName, types });
+        saved.set(handle.name, handle);
+        return handle.name;
+    } catch (error) {
+        if (error.name !== "AbortError") {
+            console.warn(error);
+        }
+    }
+};
+
+// Writes a file to where it was saved before, or offers it as a download.
+globalThis.offerFile = async (name, bytes) => {
+    try {
+        const handle = saved.get(name);
+        if (handle) {
+            const file = await handle.createWritable();
+            await file.write(bytes);
+            return await file.close();
+        }
+    } catch (error) {
+        saved.delete(name);
+        console.warn(error);
+    }
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([bytes]));
+    link.download = name;
+    link.click();
+    URL.revokeObjectURL(link.href);
+};
+
 function fail(reason) {
     if (document.body.dataset.state !== "failed") {
         document.getElementById("reason").textContent = reason;

@@ -146,7 +146,7 @@ mod tests {
         harness.get_by_role_and_label(role, name).click();
         harness.run();
         harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-        harness.get_by(|node| node.is_focused()).type_text(text);
+        harness.event(egui::Event::Text(text.into()));
         harness.run();
         harness.key_press(Key::Enter);
         harness.run();

@@ -129,11 +129,11 @@ pub fn dropped_file(context: &egui::Context) -> Option<PathBuf> {
     next
 }
 
-/// Offers a written file as a download; of a folder, each file.
+/// Writes a file to where the user has saved it, or offers it as a download; of a folder, each file.
 pub fn offer_download(path: &Path) {
     let files = if exists(path) { vec![path.to_owned()] } else { list(path) };
     for file in files {
-        page::download(&file);
+        page::offer(&file);
     }
 }
 

@@ -12,7 +12,7 @@ pub use crate::tweak::platform::dialog_answer::{Answer, Purpose};
 
 /// File pickers, one at a time.
 pub struct Dialogs {
-    chosen: Rc<RefCell<Option<PathBuf>>>,
+    answer: Rc<RefCell<Option<Answer>>>,
     wake: Rc<dyn Fn()>,
 }
 
@@ -22,7 +22,7 @@ impl Dialogs {
     /// # Errors
     /// None; those of a desktop need a thread.
     pub fn new(_: bool, wake: impl Fn() + 'static) -> io::Result<Self> {
-        Ok(Self { chosen: Rc::default(), wake: Rc::new(wake) })
+        Ok(Self { answer: Rc::default(), wake: Rc::new(wake) })
     }
 
     /// Returns true: every browser has a file picker.
@@ -30,21 +30,27 @@ impl Dialogs {
         true
     }
 
-    /// Opens the picker. Returns false for a save: the user types a name, and the browser downloads the file.
-    pub fn ask(&self, purpose: Purpose, _: &Path) -> bool {
-        if purpose == Purpose::SaveAs {
-            return false;
-        }
-        let (chosen, wake) = (Rc::clone(&self.chosen), Rc::clone(&self.wake));
-        page::pick_files(move |files| {
-            *chosen.borrow_mut() = files_to_open(files).into_iter().next();
+    /// Opens a picker that starts with a path. Returns false for a save in a browser without a dialog for it: the user types
+    /// a name, and the browser downloads the file.
+    pub fn ask(&self, purpose: Purpose, near: &Path) -> bool {
+        let (answer, wake) = (Rc::clone(&self.answer), Rc::clone(&self.wake));
+        let finish = move |chosen: Option<PathBuf>| {
+            *answer.borrow_mut() = Some(chosen.map_or(Answer::Cancelled, Answer::Chosen));
             wake();
-        });
+        };
+        match purpose {
+            Purpose::Open => page::pick_files(move |files| finish(files_to_open(files).into_iter().next())),
+            Purpose::SaveAs if page::has_save_dialog() => {
+                let name = near.file_name().unwrap_or_default().to_string_lossy();
+                page::pick_save(name.into_owned(), finish);
+            }
+            Purpose::SaveAs | Purpose::Export => return false,
+        }
         true
     }
 
     /// Returns the answer, once.
     pub fn poll(&mut self) -> Option<Answer> {
-        self.chosen.borrow_mut().take().map(Answer::Chosen)
+        self.answer.borrow_mut().take()
     }
 }

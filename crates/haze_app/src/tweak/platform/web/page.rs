@@ -7,7 +7,7 @@ use std::rc::Rc;
 use haze::assets::{bounded_read, memory_files};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{Document, HtmlAnchorElement, HtmlCanvasElement, HtmlInputElement};
+use web_sys::{Document, HtmlCanvasElement, HtmlInputElement};
 
 /// Event of a canvas.
 const LOST: &str = "webglcontextlost";
@@ -28,21 +28,31 @@ fn create<T: JsCast>(tag: &str) -> Option<T> {
     document()?.create_element(tag).ok()?.dyn_into().ok()
 }
 
-/// Offers a file as a download.
-pub fn download(path: &Path) {
+#[wasm_bindgen]
+extern "C" {
+    /// Functions of page.js.
+    #[wasm_bindgen(js_name = pickSaveFile)]
+    async fn pick_save_file(suggested: &str) -> JsValue;
+    #[wasm_bindgen(js_name = offerFile)]
+    fn offer_file(name: &str, bytes: js_sys::Uint8Array);
+}
+
+/// Writes a file to where the user has saved it before, or offers it as a download.
+pub fn offer(path: &Path) {
     let Ok(bytes) = bounded_read::read(path, "file", MAX_BYTES) else { return };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let offer = || {
-        let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(&bytes[..]));
-        let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).ok()?;
-        let address = web_sys::Url::create_object_url_with_blob(&blob).ok()?;
-        let link: HtmlAnchorElement = create("a")?;
-        link.set_href(&address);
-        link.set_download(&name);
-        link.click();
-        web_sys::Url::revoke_object_url(&address).ok()
-    };
-    offer();
+    offer_file(&name, js_sys::Uint8Array::from(&bytes[..]));
+}
+
+/// Returns true if the browser has a dialog for saving.
+pub fn has_save_dialog() -> bool {
+    let name = JsValue::from_str("showSaveFilePicker");
+    web_sys::window().is_some_and(|window| js_sys::Reflect::has(&window, &name).unwrap_or(false))
+}
+
+/// Opens the browser's dialog for saving, and calls `done` with the chosen name; `None` if it was cancelled.
+pub fn pick_save(suggested: String, done: impl FnOnce(Option<PathBuf>) + 'static) {
+    spawn_local(async move { done(pick_save_file(&suggested).await.as_string().map(PathBuf::from)) });
 }
 
 /// Opens the file picker, and calls `done` with the names of the files once they are read.
