@@ -8,7 +8,7 @@ use haze::image::decode_png;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, FieldError};
 use haze_author::sprite::bake::SpriteRecipe;
-use image::{DynamicImage, RgbaImage};
+use image::DynamicImage;
 
 use super::sprite_source::{BakeSprite, BakedFiles, NotBaked, ReadSprite, SpriteState, Stamps, stamps, write};
 use crate::tweak::platform::worker::Worker;
@@ -101,14 +101,25 @@ impl SpriteBakeJob {
     /// Bakes a recipe at a low resolution. Returns the number of the job.
     pub fn coarse(&mut self, recipe: SpriteRecipe) -> u64 {
         let job = self.number();
-        self.coarse.submit(move |_| {
-            let [size, frames] = COARSE;
-            let (columns, rows) = (recipe.columns.min(frames), recipe.rows.min(frames));
-            let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
-            let baked = small.bake(|_| Ok::<_, FieldError>(())).map_err(Error::from);
-            let shown = baked.and_then(|baked| Baked::new(recipe, small.layout(), &baked.picture, &baked.detail));
-            FinishedBake { job, what: BakeResult::Coarse(shown) }
-        });
+        let [size, frames] = COARSE;
+        let (columns, rows) = (recipe.columns.min(frames), recipe.rows.min(frames));
+        let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
+        let layout = small.layout();
+        let bake = BakeSprite { recipe: small, picture: "sprite.png".into() };
+        self.coarse.submit_portable(
+            bake,
+            |_| true,
+            move |baked| {
+                let shown = match baked {
+                    Ok(files) => Baked::new(recipe, layout, "sprite.png".as_ref(), &files),
+                    Err(NotBaked::Refused { field, problem, expected }) => {
+                        Err(FieldError::from_problem(field, problem, expected).into())
+                    }
+                    Err(NotBaked::Stopped) => return FinishedBake { job, what: BakeResult::GivenUp },
+                };
+                FinishedBake { job, what: BakeResult::Coarse(shown) }
+            },
+        );
         job
     }
 
@@ -148,18 +159,19 @@ impl SpriteBakeJob {
 }
 
 impl Baked {
-    fn new(recipe: SpriteRecipe, layout: SpriteLayout, picture: &RgbaImage, detail: &RgbaImage) -> Result<Self, Error> {
-        let sprite = |sheet: &RgbaImage| Sprite::from_image("sprite".as_ref(), sheet, layout);
-        Ok(Self { sprite: sprite(picture)?, detail: sprite(detail)?, recipe })
+    /// Decodes the images of a bake.
+    fn new(recipe: SpriteRecipe, layout: SpriteLayout, path: &Path, files: &BakedFiles) -> Result<Self, Error> {
+        let sprite = |bytes: &[u8]| {
+            let sheet = decode_png(path, bytes).map(DynamicImage::into_rgba8)?;
+            Sprite::from_image(path, &sheet, layout)
+        };
+        Ok(Self { sprite: sprite(&files.picture)?, detail: sprite(&files.detail)?, recipe })
     }
 }
 
 fn written(recipe: SpriteRecipe, picture: &Path, baked: BakedFiles) -> FullBake {
     let written = write(picture, &recipe, &baked);
-    let sheet = |bytes: &[u8]| decode_png(picture, bytes).map(DynamicImage::into_rgba8);
-    let shown = sheet(&baked.picture).and_then(|sprite| {
-        let (layout, detail) = (recipe.layout(), sheet(&baked.detail)?);
-        Baked::new(recipe, layout, &sprite, &detail)
-    });
-    FullBake { baked: shown.ok(), stamps: stamps(picture), written: written.map(|()| baked.findings) }
+    let layout = recipe.layout();
+    let shown = Baked::new(recipe, layout, picture, &baked).ok();
+    FullBake { baked: shown, stamps: stamps(picture), written: written.map(|()| baked.findings) }
 }

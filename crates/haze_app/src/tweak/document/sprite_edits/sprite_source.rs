@@ -171,6 +171,10 @@ impl PortableJob for BakeSprite {
     const NAME: &'static str = "bake_sprite";
     type Output = Result<BakedFiles, NotBaked>;
 
+    fn stopped() -> Option<Self::Output> {
+        Some(Err(NotBaked::Stopped))
+    }
+
     fn run(self, progress: &dyn Fn(u32) -> bool) -> Self::Output {
         let Self { recipe, picture } = self;
         let baked = recipe.bake(|frames| if progress(frames) { Ok(()) } else { Err(NotBaked::Stopped) })?;

@@ -64,7 +64,7 @@ fn start_worker<J: PortableJob>(
         if let Some(steps) = part("steps").as_f64() {
             if !progress(steps as u32) {
                 ended.terminate();
-                finish(None);
+                finish(J::stopped());
             }
         } else {
             finish(part("output").as_string().and_then(|text| serde_json::from_str(&text).ok()));
