@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
 }
 
 /// Returns a name whose first letter is a capital.
-fn sentence_case(name: &str) -> String {
+pub fn sentence_case(name: &str) -> String {
     let mut letters = name.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }

@@ -34,6 +34,7 @@ mod tests;
 use egui::{self, Ui};
 
 pub use clipboard::color as parse_color;
+pub use controls::sentence_case;
 pub use edit_context::DisplayOptions;
 pub use paint::histogram;
 

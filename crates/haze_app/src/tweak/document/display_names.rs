@@ -1,5 +1,7 @@
 //! Names of fields and choices as panels, undo steps and the search show them.
 
+pub use egui_gradient::sentence_case;
+
 /// Fields, groups and choices whose names in files are abbreviations, or terms of programmers.
 const SPELLED_OUT: [(&str, &str); 16] = [
     ("accumulate", "Smoke buffer"),
@@ -26,12 +28,6 @@ pub fn display_name(name: &str) -> String {
         return shown.into();
     }
     sentence_case(&name.replace('_', " "))
-}
-
-/// Returns a text whose first letter is a capital.
-pub fn sentence_case(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
 #[cfg(test)]

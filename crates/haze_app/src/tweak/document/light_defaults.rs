@@ -2,6 +2,8 @@
 
 use haze::{Light, LightKind, LightRole};
 
+use super::display_names::display_name;
+
 /// Returns the display name of a kind of light, for a name or inside a sentence.
 pub fn kind_name(kind: LightKind) -> &'static str {
     match kind {
@@ -11,23 +13,12 @@ pub fn kind_name(kind: LightKind) -> &'static str {
     }
 }
 
-/// Returns the display name of a role.
-pub fn role_name(role: LightRole) -> &'static str {
-    match role {
-        LightRole::Key => "Key",
-        LightRole::Fill => "Fill",
-        LightRole::Rim => "Rim",
-        LightRole::Practical => "Practical",
-        _ => "None",
-    }
-}
-
 /// Returns the display name of a light, with its role and its index plus one: "Key (Point 1)".
 pub fn light_name(index: usize, light: &Light) -> String {
     let name = format!("{} {}", kind_name(light.kind), index + 1);
     match light.role {
         LightRole::None => name,
-        role => format!("{} ({name})", role_name(role)),
+        role => format!("{} ({name})", display_name(role.name())),
     }
 }
 

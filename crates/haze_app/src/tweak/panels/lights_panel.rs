@@ -10,8 +10,9 @@ use super::comparison_bar::width;
 use super::rows::color_popup::swatch;
 use super::rows::setting_rows::RowContext;
 use super::rows::{Row, setting_rows, value_control};
+use crate::tweak::document::display_names::display_name;
 use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
-use crate::tweak::document::light_defaults::{kind_name, light_name, new_light, role_name};
+use crate::tweak::document::light_defaults::{kind_name, light_name, new_light};
 use crate::tweak::document::light_roles::{keep_one_key, light_of};
 use crate::tweak::session::light_view::LightView;
 use crate::tweak::session::smoke_geometry::{SmokeGeometry, place_behind};
@@ -70,7 +71,7 @@ fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Lig
         let usual = ui.spacing().clone();
         (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (GAP, 4.0);
         // In a narrow panel, the roles are in a list.
-        let button = |role: &LightRole| width(ui, role_name(*role)) + GAP;
+        let button = |role: &LightRole| width(ui, &display_name(role.name())) + GAP;
         if LightRole::ALL.iter().map(button).sum::<f32>() > ui.available_width() {
             *ui.spacing_mut() = usual;
             let tooltip = |choice: &str| tooltips.choice("lights.role", choice);
@@ -79,7 +80,7 @@ fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Lig
         }
         for &role in LightRole::ALL {
             let tooltip = tooltips.choice("lights.role", role.name()).unwrap_or_default();
-            ui.selectable_value(&mut light.role, role, role_name(role)).on_hover_text(tooltip);
+            ui.selectable_value(&mut light.role, role, display_name(role.name())).on_hover_text(tooltip);
         }
     });
     if context.searched_path == Some(path.as_str()) {

@@ -51,7 +51,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         "Hover a ramp to highlight the smoke that uses that color. Hover the smoke to mark its place on the ramps.",
     );
     if is_forward {
-        ui.weak("No histograms: the forward path lights each sprite by itself.");
+        ui.weak("No histograms: the forward path lights each sprite separately.");
     }
     for RampEntry { field, title, tooltip, switch } in &RAMPS {
         let field = *field;

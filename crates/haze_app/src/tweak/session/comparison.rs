@@ -59,7 +59,7 @@ pub static COMPARE_OPTIONS: [CompareOption; 4] = [
         CompareWith::Forward,
         "Forward",
         "Forward shading",
-        "The classic path: each sprite is lit and blended by itself",
+        "The classic path: each sprite is lit and blended separately",
     ),
     offer(CompareWith::Reference, "CPU", "CPU reference", "The same image by the CPU renderer. It takes a while."),
 ];

@@ -85,7 +85,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
     match probe.color {
         Some(color) => picture(ui, color, *exposure),
         None => {
-            ui.weak("The forward path lights each sprite\nby itself: no values to inspect");
+            ui.weak("The forward path lights each sprite\nseparately: no values to inspect");
         }
     }
 }

@@ -6,7 +6,7 @@ use eframe::egui::color_picker::{Alpha, color_picker_hsva_2d, show_color_at};
 use eframe::egui::ecolor::Hsva;
 use eframe::egui::{self, Popup, PopupCloseBehavior, Response, Rgba, Sense, Ui};
 use glam::Vec3;
-use haze::formula::color::{linear_from_srgb, srgb_from_linear};
+use haze::formula::color::srgb_from_linear;
 use haze_author::ramp::HexColor;
 
 use super::color_temperature::{KELVIN, color_of_temperature, temperature_of_color};
@@ -21,7 +21,7 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
     let (rect, mut button) = ui.allocate_exact_size(size, Sense::click());
     button.widget_info(|| egui::WidgetInfo::new(egui::Role::ColorWell));
     if ui.is_rect_visible(rect) {
-        let [r, g, b] = shown(*value).to_array();
+        let [r, g, b] = (*value / shown_peak(*value)).to_array();
         let visuals = ui.style().interact(&button);
         show_color_at(ui.painter(), Rgba::from_rgb(r, g, b).into(), rect);
         ui.painter().rect_stroke(rect, visuals.corner_radius, visuals.bg_stroke, egui::StrokeKind::Inside);
@@ -36,9 +36,9 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
     button
 }
 
-/// Returns the color with its brightest channel at most 1.
-fn shown(value: Vec3) -> Vec3 {
-    value / value.max_element().max(1.0)
+/// Returns what a color is divided by to be shown: its brightest channel if that exceeds 1.
+fn shown_peak(value: Vec3) -> f32 {
+    value.max_element().max(1.0)
 }
 
 fn popup_content(ui: &mut Ui, value: &mut Vec3) -> bool {
@@ -58,7 +58,7 @@ fn popup_content(ui: &mut Ui, value: &mut Vec3) -> bool {
 
 /// Draws the picker. It keeps hue and saturation while the color is grey or black.
 fn picker(ui: &mut Ui, value: &mut Vec3) {
-    let peak = value.max_element().max(1.0);
+    let peak = shown_peak(*value);
     let id = ui.scope_id().with("hsv");
     let rgb = |hsva: Hsva| Vec3::from(hsva.to_rgb());
     let kept = ui.data(|data| data.get_temp::<Hsva>(id));
@@ -72,7 +72,7 @@ fn picker(ui: &mut Ui, value: &mut Vec3) {
 
 /// Draws the sRGB code of the shown color. Typed text is used when the field loses focus; text that is no code is dropped.
 fn hex(ui: &mut Ui, value: &mut Vec3) {
-    let peak = value.max_element().max(1.0);
+    let peak = shown_peak(*value);
     let code = HexColor::from_srgb((*value / peak).map(srgb_from_linear));
     let id = ui.scope_id().with("hex");
     let mut text = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| String::from(code));
@@ -88,7 +88,7 @@ fn hex(ui: &mut Ui, value: &mut Vec3) {
         && let Ok(typed) = egui_gradient::parse_color(&text)
         && typed != code
     {
-        *value = Vec3::from(typed.0.map(|channel| linear_from_srgb(f32::from(channel) / 255.0))) * peak;
+        *value = typed.linear() * peak;
     }
 }
 

@@ -19,6 +19,11 @@ fn planckian_uv(kelvin: f32) -> Vec2 {
     vec2(u, v)
 }
 
+/// Converts chromaticity u, v (CIE 1960) to x, y (CIE 1931).
+fn xy_from_uv(uv: Vec2) -> Vec2 {
+    vec2(3.0 * uv.x, 2.0 * uv.y) / (2.0 * uv.x - 8.0 * uv.y + 4.0)
+}
+
 /// Converts linear sRGB to CIE XYZ; the columns are those of red, green and blue. (IEC 61966-2-1)
 fn xyz_from_rgb() -> Mat3 {
     Mat3::from_cols(
@@ -31,8 +36,7 @@ fn xyz_from_rgb() -> Mat3 {
 /// Returns the linear RGB color of a black body, brightest channel 1. Warmer than 1900 K, sRGB has no such saturated color;
 /// the nearest one is returned.
 pub fn color_of_temperature(kelvin: f32) -> Vec3 {
-    let uv = planckian_uv(kelvin.clamp(*KELVIN.start(), *KELVIN.end()));
-    let xy = vec2(3.0 * uv.x, 2.0 * uv.y) / (2.0 * uv.x - 8.0 * uv.y + 4.0);
+    let xy = xy_from_uv(planckian_uv(kelvin.clamp(*KELVIN.start(), *KELVIN.end())));
     let xyz = vec3(xy.x, xy.y, 1.0 - xy.x - xy.y) / xy.y;
     let rgb = (xyz_from_rgb().inverse() * xyz).max(Vec3::ZERO);
     rgb / rgb.max_element()
@@ -62,8 +66,7 @@ mod tests {
     fn chromaticities_are_those_of_tables() {
         // Illuminant A, and a black body of 6500 K. (CIE 15)
         for (kelvin, x, y) in [(2856.0, 0.4476, 0.4074), (6500.0, 0.3135, 0.3236)] {
-            let uv = planckian_uv(kelvin);
-            let xy = vec2(3.0 * uv.x, 2.0 * uv.y) / (2.0 * uv.x - 8.0 * uv.y + 4.0);
+            let xy = xy_from_uv(planckian_uv(kelvin));
             assert!(xy.distance(vec2(x, y)) < 1e-3, "{kelvin} K: {xy}");
         }
     }
