@@ -37,6 +37,6 @@ fn fragment(in: BakeVertex) -> @location(0) vec4f {
         normal = normalize(cube_direction(i32(in.face), place));
     }
     // Baked by normal only, with the coverage of thick smoke.
-    let unshaded = Shade(vec3f(0.0), vec3f(1.0), vec2f(1.0));
+    let unshaded = shade_of_sprites(vec3f(0.0));
     return vec4f(bounded_light(diffuse_from_lights(normal, 1.0, system.centre, unshaded)), 1.0);
 }

@@ -48,10 +48,11 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
     let covered = coverage(amount, system.boost);
-    var shade = Shade(in.depths_and_heat.xyz, vec3f(1.0), vec2f(1.0));
+    var shade = shade_of_sprites(in.depths_and_heat.xyz);
     if BY_DEPTH {
         let ray = ray_through(position);
         let moments = moments_of_sprite(in.centre_radius);
+        shade.optical_depths = optical_depths_on_ray(in.depths_and_heat.xyz, ray, moments);
         shade.visible = scene_visibility(ray, moments);
         if AMBIENT {
             shade.openness = openness(ray, moments);

@@ -11,13 +11,20 @@
 
 struct ShadowMarch {
     // Position, and 0 in w; or the direction to the light, and 1 in w.
-    lights: array<vec4f, 3>,
+    lights: array<vec4f, SHADOWED_LIGHTS>,
+    // Radii of the lights of each block, in cells.
+    radii: array<vec4f, LIGHT_BLOCKS>,
     // Directions to the sky, and 1 in w. Those to the ground are opposite.
     sky: array<vec4f, 4>,
     // Number of cells along each axis.
     size: vec3f,
-    // First cell of the openness along z.
-    openness_offset: u32,
+    // Cells of a block of the volume along each axis.
+    resolution: u32,
+    // Block of the openness.
+    openness_block: u32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
 }
 
 @group(0) @binding(0) var<uniform> march: ShadowMarch;
@@ -49,12 +56,16 @@ fn sample_density(place: vec3f) -> f32 {
     return sum;
 }
 
-fn optical_depth_towards(light: vec4f, origin: vec3f, steps: u32) -> f32 {
+fn optical_depth_towards(light: vec4f, radius: f32, origin: vec3f, steps: u32) -> f32 {
     let ray = shadow_ray(light, origin, march.size);
     let step = ray.w / f32(steps);
+    // The steps fill the cone between the point and the light's disc.
+    let slope = radius / max(distance(light.xyz, origin), 1.0e-4);
     var depth = 0.0;
     for (var i = 0u; i < steps; i++) {
-        depth += sample_density(origin + ray.xyz * ((f32(i) + 0.5) * step));
+        let along = (f32(i) + 0.5) * step;
+        let aside = light_disc_offset(i, ray.xyz) * (along * slope);
+        depth += sample_density(origin + ray.xyz * along + aside);
     }
     return min(depth * step, MAX_OPTICAL_DEPTH);
 }
@@ -63,19 +74,23 @@ fn optical_depth_towards(light: vec4f, origin: vec3f, steps: u32) -> f32 {
 const SIDE: u32 = 4u;
 
 // One per light and cell of the workgroup.
-var<workgroup> depths: array<array<f32, 64>, SHADOWED_LIGHTS>;
+var<workgroup> depths: array<array<f32, 64>, LIGHTS_PER_BLOCK>;
 
-// An invocation per light and cell: the grid is small, and a march long.
+// An invocation per light of a block and cell: the grid is small, and a march long. The blocks follow each other along z.
 @compute @workgroup_size(4, 4, 12)
 fn march_cells(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) local: vec3u) {
     let place = vec3u(local.xy, local.z % SIDE);
     let light = local.z / SIDE;
-    let cell = workgroup * SIDE + place;
+    let workgroups = (u32(march.size.z) + SIDE - 1u) / SIDE;
+    let block = workgroup.z / workgroups;
+    let cell = vec3u(workgroup.xy, workgroup.z % workgroups) * SIDE + place;
     let index = (place.z * SIDE + place.y) * SIDE + place.x;
-    depths[light][index] = optical_depth_towards(march.lights[light], vec3f(cell) + 0.5, SHADOW_STEPS);
+    let towards = march.lights[block * LIGHTS_PER_BLOCK + light];
+    depths[light][index] = optical_depth_towards(towards, march.radii[block][light], vec3f(cell) + 0.5, SHADOW_STEPS);
     workgroupBarrier();
     if light == 0u && all(cell < vec3u(march.size)) {
-        textureStore(optical_depths, cell, vec4f(depths[0][index], depths[1][index], depths[2][index], 0.0));
+        let found = vec4f(depths[0][index], depths[1][index], depths[2][index], 0.0);
+        textureStore(optical_depths, vec3u(cell.xy, cell.z + block * march.resolution), found);
     }
 }
 
@@ -83,7 +98,7 @@ fn march_cells(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocatio
 fn openness_towards(side: f32, origin: vec3f) -> f32 {
     var sum = 0.0;
     for (var i = 0u; i < SKY_DIRECTIONS; i++) {
-        sum += exp2(-optical_depth_towards(vec4f(march.sky[i].xyz * side, 1.0), origin, SKY_STEPS));
+        sum += exp2(-optical_depth_towards(vec4f(march.sky[i].xyz * side, 1.0), 0.0, origin, SKY_STEPS));
     }
     return sum / f32(SKY_DIRECTIONS);
 }
@@ -93,6 +108,7 @@ fn march_sky(@builtin(global_invocation_id) cell: vec3u) {
     if all(cell < vec3u(march.size)) {
         let origin = vec3f(cell) + 0.5;
         let openness = vec2f(openness_towards(1.0, origin), openness_towards(-1.0, origin));
-        textureStore(optical_depths, vec3u(cell.xy, cell.z + march.openness_offset), vec4f(openness, 0.0, 0.0));
+        let first_cell = march.openness_block * march.resolution;
+        textureStore(optical_depths, vec3u(cell.xy, cell.z + first_cell), vec4f(openness, 0.0, 0.0));
     }
 }

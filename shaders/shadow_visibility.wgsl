@@ -1,8 +1,8 @@
 // shadow_visibility
 // Looks up a host's shadow maps at the cells of the density grid: the share of each cell that a light reaches past the scene.
 //
-// Reads   shadow maps of up to three lights.
-// Writes  visibility of the lights, in the second block of the volume.
+// Reads   shadow maps of the lights of a block.
+// Writes  visibility of the lights, in a block of the volume.
 // Space   Cells of the grid; clip space of the lights.
 
 #import "lib/shadow_map.wgsl"
@@ -22,8 +22,8 @@ struct ShadowVisibility {
     maps: array<ShadowMap, 3>,
     // Number of cells along each axis.
     size: vec3f,
-    // Cells of a block of the volume along each axis.
-    resolution: u32,
+    // First cell of the block along z.
+    first_cell: u32,
 }
 
 @group(0) @binding(0) var<uniform> visibility: ShadowVisibility;
@@ -70,5 +70,5 @@ fn look_up_cells(@builtin(global_invocation_id) cell: vec3u) {
         let place = vec3f(cell) + offset;
         visible += vec3f(is_visible(0u, place), is_visible(1u, place), is_visible(2u, place));
     }
-    textureStore(volume, vec3u(cell.xy, cell.z + visibility.resolution), vec4f(visible / 8.0, 0.0));
+    textureStore(volume, vec3u(cell.xy, cell.z + visibility.first_cell), vec4f(visible / 8.0, 0.0));
 }

@@ -20,11 +20,20 @@ override AMBIENT: bool = false;
 // Smoke and scene between a point of the smoke and the light that falls on it.
 struct Shade {
     // Of other smoke, towards the lights with shadow.
-    optical_depths: vec3f,
+    optical_depths: array<vec3f, LIGHT_BLOCKS>,
     // Share of each of these lights that comes past the scene.
-    visible: vec3f,
+    visible: array<vec3f, LIGHT_BLOCKS>,
     // To sky and ground.
     openness: vec2f,
+}
+
+// Other smoke before sprites. `optical_depths`: towards the lights of the first block.
+fn shade_of_sprites(optical_depths: vec3f) -> Shade {
+    var shade: Shade;
+    shade.optical_depths[0] = optical_depths;
+    shade.visible = fully_visible();
+    shade.openness = vec2f(1.0);
+    return shade;
 }
 
 // Share of a light that comes past the scene and through the smoke before it.

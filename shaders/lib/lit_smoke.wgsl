@@ -72,12 +72,11 @@ fn load_attachments(texel: vec2i) -> Attachments {
 // Decodes a texel of the first texture, and the values of the others.
 fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Surface {
     var surface: Surface;
-    surface.shade.visible = vec3f(1.0);
-    surface.shade.openness = vec2f(1.0);
+    surface.shade = shade_of_sprites(vec3f(0.0));
     surface.tint = vec3f(1.0);
     if OPTICAL_DEPTHS_SLOT != 0u {
         let depths = attachments.optical_depths;
-        surface.shade.optical_depths = depths.rgb / max(depths.a, 1.0e-6);
+        surface.shade.optical_depths[0] = depths.rgb / max(depths.a, 1.0e-6);
     }
     if DEPTH_SLOT != 0u {
         surface.depth = attachments.depth.rg / max(attachments.depth.a, 1.0e-6);
@@ -110,6 +109,8 @@ fn shaded_surface(accumulated: vec4f, attachments: Attachments, pixel: vec2f) ->
     var surface = surface_from_accumulation(accumulated, attachments);
     if DEPTH_SLOT != 0u {
         let ray = ray_of_pixel(pixel);
+        let accumulated_depths = surface.shade.optical_depths[0];
+        surface.shade.optical_depths = optical_depths_on_ray(accumulated_depths, ray, surface.depth);
         surface.shade.visible = scene_visibility(ray, surface.depth);
         if AMBIENT {
             surface.shade.openness = openness(ray, surface.depth);

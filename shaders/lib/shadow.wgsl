@@ -6,7 +6,15 @@
 // True if the system receives shadow.
 override SHADOW: bool = false;
 
-const SHADOWED_LIGHTS: u32 = 3u;
+// Number of blocks with lights that the system reads.
+override SHADOW_BLOCKS: u32 = 1u;
+
+// Lights in a block of the volume of a frame's shadow.
+const LIGHTS_PER_BLOCK: u32 = 3u;
+// Largest number of blocks with lights.
+const LIGHT_BLOCKS: u32 = 5u;
+// LIGHTS_PER_BLOCK * LIGHT_BLOCKS.
+const SHADOWED_LIGHTS: u32 = 15u;
 const SHADOW_STEPS: u32 = 48u;
 // Largest optical depth that is stored. Half floats hold it, and no light is left behind it.
 const MAX_OPTICAL_DEPTH: f32 = 1000.0;
@@ -21,6 +29,17 @@ fn shadow_ray(light: vec4f, origin: vec3f, size: vec3f) -> vec4f {
     let exit = ahead / max(abs(direction), vec3f(1.0e-12));
     let leave = max(min(exit.x, min(exit.y, exit.z)), 0.0);
     return vec4f(direction, select(min(leave, distance), leave, light.w > 0.5));
+}
+
+// Offset of a step of a march from its line, in radii of the light's disc: the steps are spread evenly over the disc. The
+// square of the distance and the angle are a sequence of low discrepancy. (Roberts, "The Unreasonable Effectiveness of
+// Quasirandom Sequences", 2018)
+fn light_disc_offset(step: u32, direction: vec3f) -> vec3f {
+    let place = fract(vec2f(0.7548777, 0.5698403) * (f32(step) + 0.5));
+    let axis = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(direction.y) > 0.9);
+    let right = normalize(cross(direction, axis));
+    let angle = place.y * 6.2831853;
+    return (right * cos(angle) + cross(right, direction) * sin(angle)) * sqrt(place.x);
 }
 
 // Optical depth of a sprite's own smoke from its centre outwards, as a lookup at its centre finds it.
@@ -42,14 +61,35 @@ fn foreign_optical_depths(in_grid: vec3f, own: f32) -> vec3f {
     return max(in_grid - own, vec3f(0.0));
 }
 
+// Optical depths through other sprites towards further lights, looked up at the mean depth of the smoke. What the smoke there
+// adds itself is the mean excess of the depths in the grid towards the first block of lights, `first_in_grid`, over those
+// that the sprites accumulated, `first_foreign`.
+fn further_optical_depths(in_grid: vec3f, first_in_grid: vec3f, first_foreign: vec3f) -> vec3f {
+    let own = dot(max(first_in_grid - first_foreign, vec3f(0.0)), vec3f(1.0 / 3.0));
+    return foreign_optical_depths(in_grid, own);
+}
+
 // Lookup position in the shadow ramp. Across: 0 in full light, 1 behind endless smoke. Up: 0 for a light on the viewer's
 // side, 1 for a light behind the smoke.
 fn shadow_position(optical_depth: f32, to_light: vec3f, to_viewer: vec3f) -> vec2f {
     return vec2f(saturate(1.0 - exp2(-optical_depth)), saturate(0.5 - 0.5 * dot(to_light, to_viewer)));
 }
 
-// Value of a light with shadow: a channel of `values` by the light's slot, 1 to 3; 0 without a slot.
-fn of_slot(slot: f32, values: vec3f) -> f32 {
-    let chosen = max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - slot), vec3f(0.0));
-    return dot(values, chosen);
+// Value of a light with shadow: a channel of the blocks `values` by the light's slot, from 1 on; 0 without a slot.
+fn of_slot(slot: f32, values: array<vec3f, LIGHT_BLOCKS>) -> f32 {
+    var block = values[0];
+    var channel = slot;
+    if SHADOW_BLOCKS > 1u {
+        var blocks = values;
+        let index = min(u32(max(slot - 1.0, 0.0)) / LIGHTS_PER_BLOCK, LIGHT_BLOCKS - 1u);
+        block = blocks[index];
+        channel -= f32(index * LIGHTS_PER_BLOCK);
+    }
+    let chosen = max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - channel), vec3f(0.0));
+    return dot(block, chosen);
+}
+
+// Lights that nothing hides.
+fn fully_visible() -> array<vec3f, LIGHT_BLOCKS> {
+    return array<vec3f, LIGHT_BLOCKS>(vec3f(1.0), vec3f(1.0), vec3f(1.0), vec3f(1.0), vec3f(1.0));
 }

@@ -6,8 +6,13 @@ use glam::{Vec2, Vec3, Vec4};
 use super::density_grid::bump_radius;
 use super::saturate;
 
-/// Number of lights whose shadows are drawn: the hardware blends three values and the amount in one texture.
-pub const SHADOWED_LIGHTS: usize = 3;
+/// Lights in a block of the volume of a frame's shadow: a texel has three values, and the hardware blends three values and
+/// the amount in one texture.
+pub const LIGHTS_PER_BLOCK: usize = 3;
+/// Largest number of blocks with lights.
+pub const LIGHT_BLOCKS: usize = 5;
+/// Largest number of lights whose shadows are drawn.
+pub const SHADOWED_LIGHTS: usize = LIGHTS_PER_BLOCK * LIGHT_BLOCKS;
 
 /// Steps of a march. Cells are at most 1.5 steps apart at a resolution of 32.
 pub const SHADOW_STEPS: u32 = 48;
@@ -24,6 +29,17 @@ pub fn shadow_ray(light: Vec4, from: Vec3, size: Vec3) -> Vec4 {
     let exit = ahead / direction.abs().max(Vec3::splat(1.0e-12));
     let leave = exit.x.min(exit.y).min(exit.z).max(0.0);
     direction.extend(if light.w > 0.5 { leave } else { leave.min(distance) })
+}
+
+/// Offset of a step of a march from its line, in radii of the light's disc: the steps are spread evenly over the disc. The
+/// square of the distance and the angle are a sequence of low discrepancy. (Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018)
+pub fn light_disc_offset(step: u32, direction: Vec3) -> Vec3 {
+    let place = (Vec2::new(0.754_877_7, 0.569_840_3) * (step as f32 + 0.5)).fract();
+    let axis = if direction.y.abs() > 0.9 { Vec3::X } else { Vec3::Y };
+    let right = direction.cross(axis).normalize();
+    let angle = place.y * std::f32::consts::TAU;
+    (right * angle.cos() + right.cross(direction) * angle.sin()) * place.x.sqrt()
 }
 
 /// Optical depth of a sprite's own smoke from its centre outwards, as a lookup at its centre finds it.
@@ -45,16 +61,25 @@ pub fn foreign_optical_depths(in_grid: Vec3, own: f32) -> Vec3 {
     (in_grid - own).max(Vec3::ZERO)
 }
 
+/// Optical depths through other sprites towards further lights, looked up at the mean depth of the smoke. What the smoke there
+/// adds itself is the mean excess of the depths in the grid towards the first block of lights, `first_in_grid`, over those
+/// that the sprites accumulated, `first_foreign`.
+pub fn further_optical_depths(in_grid: Vec3, first_in_grid: Vec3, first_foreign: Vec3) -> Vec3 {
+    let own = (first_in_grid - first_foreign).max(Vec3::ZERO).dot(Vec3::splat(1.0 / 3.0));
+    foreign_optical_depths(in_grid, own)
+}
+
 /// Lookup position in the shadow ramp. Across: 0 in full light, 1 behind endless smoke. Up: 0 for a light on the viewer's
 /// side, 1 for a light behind the smoke.
 pub fn shadow_position(optical_depth: f32, to_light: Vec3, to_viewer: Vec3) -> Vec2 {
     Vec2::new(saturate(1.0 - (-optical_depth).exp2()), saturate(0.5 - 0.5 * to_light.dot(to_viewer)))
 }
 
-/// Value of a light with shadow: a channel of `values` by the light's slot, 1 to 3; 0 without a slot.
-pub fn of_slot(slot: f32, values: Vec3) -> f32 {
-    let chosen = (Vec3::ONE - (Vec3::new(1.0, 2.0, 3.0) - slot).abs()).max(Vec3::ZERO);
-    values.dot(chosen)
+/// Value of a light with shadow: a channel of the blocks `values` by the light's slot, from 1 on; 0 without a slot.
+pub fn of_slot(slot: f32, values: &[Vec3; LIGHT_BLOCKS]) -> f32 {
+    let index = slot as usize;
+    let block = values.get(index.wrapping_sub(1) / LIGHTS_PER_BLOCK);
+    block.map_or(0.0, |block| block[(index - 1) % LIGHTS_PER_BLOCK])
 }
 
 #[cfg(test)]

@@ -135,10 +135,13 @@ uniform! {
 uniform! {
     /// `ShadowMarch` in `shaders/shadow_march.wgsl`.
     ShadowMarchUniform {
-        lights: [Vec4; 3],
+        lights: [Vec4; 15],
+        radii: [Vec4; 5],
         sky: [Vec4; 4],
         size: Vec3,
-        openness_offset: u32,
+        resolution: u32,
+        openness_block: u32,
+        padding: [u32; 3],
     }
 }
 
@@ -158,7 +161,7 @@ uniform! {
     ShadowVisibilityUniform {
         maps: [ShadowMapUniform; 3],
         size: Vec3,
-        resolution: u32,
+        first_cell: u32,
     }
 }
 
@@ -169,8 +172,8 @@ uniform! {
         cells_per_metre: f32,
         size: Vec3,
         strength: f32,
-        lights: [Vec4; 3],
-        indices: [u32; 4],
+        lights: [Vec4; 15],
+        indices: [u32; 16],
     }
 }
 

@@ -75,7 +75,7 @@ settings! {
         outer_angle: f32 = 35.0, number(|this| this.inner_angle..=89.9, "degrees");
         /// Multiplies the glow of this light through the smoke, its specular scatter quad. 0 draws none.
         specular_scatter: f32 = 1.0, number(0.0..=100.0, "");
-        /// Lets smoke shade this light, if it is one of the three brightest. Off: the light shines through all smoke.
+        /// Lets smoke shade this light, if it is one of the `shadow.lights` brightest. Off: the light shines through all smoke.
         smoke_shadow: bool = true, flag;
         /// Part that the light plays: key, fill, rim or practical. Names the light; the picture stays as it is.
         role: LightRole = LightRole::None, choice;

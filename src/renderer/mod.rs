@@ -229,7 +229,7 @@ impl Renderer {
     }
 
     /// Returns the indices in [`FrameInput::lights`] of the lights that cast shadow, in the frame of the last
-    /// [`cast_shadow`](Self::cast_shadow) or [`prepare`](Self::prepare).
+    /// [`cast_shadow`](Self::cast_shadow) or [`prepare`](Self::prepare). The three brightest come first.
     pub fn shadowed_lights(&self) -> impl Iterator<Item = usize> {
         self.shadowed_lights.into_iter().flatten()
     }

@@ -130,6 +130,7 @@ pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &ResolvedSettings,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
         ambient: settings.has_ambient(),
+        shadow_blocks: settings.shadow_blocks(),
         reversed: inputs.reversed,
     };
     Plan::Forward(ForwardPlan { reads_linear, key })
@@ -184,6 +185,7 @@ fn deferred<'a>(
         encoding: accumulate.encoding,
         decode: accumulate.decode,
         attachments: AttachmentSet::of(settings),
+        shadow_blocks: settings.shadow_blocks(),
         diffuse_mode: settings.diffuse.mode,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,

@@ -285,7 +285,8 @@ impl SystemState {
         let material = &system.material.info;
         let MeasuredSystem { space, settings, bounds } = self.measured.take()?;
         let smoke_shadow = context.shadow.map(|grid| grid.shadow);
-        light_uniforms(view, frame.lights, frame.exposure, &bounds, smoke_shadow, &mut self.light_uniforms);
+        let on_system = smoke_shadow.map(|shadow| (shadow, settings.shadow_blocks()));
+        light_uniforms(view, frame.lights, frame.exposure, &bounds, on_system, &mut self.light_uniforms);
         let known = self.particles.known(system.particles);
         let (particles, particles_per_sample) = known.unwrap_or((&[], 1));
         let in_world = SystemInput {

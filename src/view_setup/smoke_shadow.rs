@@ -7,7 +7,7 @@ use super::view_geometry::ViewGeometry;
 use crate::formula::ambient::SKY_DIRECTIONS;
 use crate::formula::color::luminance;
 use crate::formula::lighting::distance_attenuation;
-use crate::formula::shadow::SHADOWED_LIGHTS;
+use crate::formula::shadow::{LIGHT_BLOCKS, LIGHTS_PER_BLOCK, SHADOWED_LIGHTS};
 use crate::formula::shadow_map::MAX_SHADOW_LAYERS;
 use crate::formula::uniforms::{SceneShadowUniform, ShadowMapUniform, ShadowMarchUniform, ShadowVisibilityUniform};
 use crate::frame::{Bounds, Light, LightKind, ShadowProjection};
@@ -70,7 +70,9 @@ pub struct SmokeShadow {
     pub grid_from_view: Mat4,
     /// Largest resolution of all systems: size of the texture along each axis.
     pub resolution: u32,
-    /// Indices of the lights that cast shadows.
+    /// Number of blocks of the volume with optical depths towards lights.
+    pub light_blocks: u32,
+    /// Indices of the lights that cast shadows. The three brightest come first.
     pub lights: [Option<usize>; SHADOWED_LIGHTS],
     pub march: ShadowMarchUniform,
     /// System whose ramp tints the shadow on the scene, and the strength of that shadow; `None` if none falls on it.
@@ -92,12 +94,14 @@ impl SmokeShadow {
     ) -> Option<Self> {
         let mut around = Bounds::EMPTY;
         let (mut resolution, mut on_scene, mut by_depth, mut has_openness) = (None, None, false, false);
+        let mut count = 0;
         for (index, (bounds, settings)) in systems.enumerate() {
             if !bounds.is_empty() {
                 (around.min, around.max) = (around.min.min(bounds.min), around.max.max(bounds.max));
             }
             if settings.receives_shadow() {
                 resolution = resolution.max(Some(settings.shadow.resolution));
+                count = count.max(settings.shadow.lights);
                 by_depth |= settings.lights_by_depth();
                 has_openness |= settings.shades_ambient();
                 on_scene = on_scene.or(Some((index, settings.shadow.scene)));
@@ -105,7 +109,7 @@ impl SmokeShadow {
         }
         let resolution = resolution.filter(|_| !around.is_empty())?;
         let grid = SmokeGrid::new(&around, resolution);
-        let chosen = brightest_lights(lights, &around);
+        let chosen = brightest_lights(lights, &around, count as usize);
         let placed = chosen.map(|index| match index.and_then(|index| lights.get(index)) {
             // A light in the middle of nothing: no smoke is before it.
             None => Vec4::ZERO,
@@ -114,34 +118,50 @@ impl SmokeShadow {
             }
             Some(light) => grid.place(light.position).extend(0.0),
         });
+        let mut radii = [Vec4::ZERO; LIGHT_BLOCKS];
+        for (slot, light) in chosen.iter().enumerate().filter_map(|(slot, index)| Some((slot, lights.get((*index)?)?)))
+        {
+            if light.kind != LightKind::Directional {
+                radii[slot / LIGHTS_PER_BLOCK][slot % LIGHTS_PER_BLOCK] = light.radius * grid.cells_per_metre();
+            }
+        }
         let has_visibility = by_depth && mapped.any(|light| chosen.contains(&Some(light)));
         let mut shadow = Self {
             grid,
             grid_from_view: grid.grid_from_view(view),
             resolution,
+            light_blocks: count.div_ceil(LIGHTS_PER_BLOCK as u32),
             lights: chosen,
             march: ShadowMarchUniform {
                 lights: placed,
+                radii,
                 sky: sky_directions(up).map(|direction| direction.extend(1.0)),
                 size: grid.size.as_vec3(),
-                openness_offset: 0,
+                resolution,
+                openness_block: 0,
+                padding: [0; 3],
             },
             on_scene,
             has_visibility,
             has_openness,
         };
-        shadow.march.openness_offset = shadow.openness_block() * resolution;
+        shadow.march.openness_block = shadow.openness_block();
         Some(shadow)
     }
 
     /// Number of blocks of the volume.
     pub fn blocks(&self) -> u32 {
-        1 + u32::from(self.has_visibility) + u32::from(self.has_openness)
+        self.light_blocks * (1 + u32::from(self.has_visibility)) + u32::from(self.has_openness)
     }
 
-    /// Block that holds the lights' visibility past the scene; 0 for none.
+    /// Number of blocks with lights that are there: a march towards no light is left out.
+    pub fn used_light_blocks(&self) -> u32 {
+        self.lights.iter().flatten().count().div_ceil(LIGHTS_PER_BLOCK) as u32
+    }
+
+    /// First of the blocks that hold the lights' visibility past the scene; 0 for none.
     pub fn visibility_block(&self) -> u32 {
-        u32::from(self.has_visibility)
+        if self.has_visibility { self.light_blocks } else { 0 }
     }
 
     /// Block that holds openness to sky and ground; 0 for none.
@@ -149,13 +169,20 @@ impl SmokeShadow {
         if self.has_openness { self.blocks() - 1 } else { 0 }
     }
 
-    /// Returns the lookups of shadow maps, by the lights' slots. `projection` returns that of a light's map, by its index.
+    /// Returns the lights of a block.
+    pub fn lights_of_block(&self, block: u32) -> [Option<usize>; LIGHTS_PER_BLOCK] {
+        let first = block as usize * LIGHTS_PER_BLOCK;
+        std::array::from_fn(|slot| self.lights.get(first + slot).copied().flatten())
+    }
+
+    /// Returns the lookups of the shadow maps of a block of lights. `projection` returns that of a light's map, by its index.
     pub fn visibility<'a>(
         &self,
+        block: u32,
         projection: impl Fn(usize) -> Option<ShadowProjection<'a>>,
     ) -> ShadowVisibilityUniform {
         let world_from_grid = self.grid.world_from_grid();
-        let maps = self.lights.map(|light| {
+        let maps = self.lights_of_block(block).map(|light| {
             let Some(ShadowProjection { clip_from_world, reversed, bias, .. }) = light.and_then(&projection) else {
                 return ShadowMapUniform::default();
             };
@@ -166,26 +193,31 @@ impl SmokeShadow {
             let layers = clip_from_world.len().min(MAX_SHADOW_LAYERS) as u32;
             ShadowMapUniform { clip_from_grid, layers, reversed: u32::from(reversed), bias, padding: 0.0 }
         });
-        ShadowVisibilityUniform { maps, size: self.march.size, resolution: self.resolution }
+        let first_cell = (self.visibility_block() + block) * self.resolution;
+        ShadowVisibilityUniform { maps, size: self.march.size, first_cell }
     }
 
     /// Returns the shadow on the scene as shaders read it.
     pub fn scene_uniform(&self) -> SceneShadowUniform {
-        let index = |light: Option<usize>| light.map_or(u32::MAX, |index| index as u32);
-        let [first, second, third] = self.lights.map(index);
+        let mut indices = [u32::MAX; 16];
+        for (slot, light) in indices.iter_mut().zip(self.lights) {
+            *slot = light.map_or(u32::MAX, |index| index as u32);
+        }
         SceneShadowUniform {
             origin: self.grid.origin.as_vec3(),
             cells_per_metre: self.grid.cells_per_metre(),
             size: self.march.size,
             strength: self.on_scene.map_or(0.0, |(_, strength)| strength),
             lights: self.march.lights,
-            indices: [first, second, third, u32::MAX],
+            indices,
         }
     }
 
-    /// Returns the channel of a light's optical depths, 1 to 3; 0 for a light without shadow.
-    pub fn slot(&self, light: usize) -> f32 {
-        self.lights.iter().position(|&chosen| chosen == Some(light)).map_or(0.0, |slot| slot as f32 + 1.0)
+    /// Returns the channel of a light's optical depths among those of the first `blocks`, from 1 on; 0 for a light without
+    /// shadow.
+    pub fn slot(&self, light: usize, blocks: u32) -> f32 {
+        let mut read = self.lights.iter().take(blocks as usize * LIGHTS_PER_BLOCK);
+        read.position(|&chosen| chosen == Some(light)).map_or(0.0, |slot| slot as f32 + 1.0)
     }
 }
 
@@ -196,8 +228,9 @@ fn sky_directions(up: Vec3) -> [Vec3; SKY_DIRECTIONS] {
     [x, z, -x, -z].map(|side| (up + side).normalize())
 }
 
-/// Returns the indices of the lights that smoke shades and that are brightest at the box, in ascending order.
-fn brightest_lights(lights: &[Light], bounds: &Bounds) -> [Option<usize>; SHADOWED_LIGHTS] {
+/// Returns the indices of at most `count` lights that smoke shades and that are brightest at the box: those of the first block,
+/// and then the others, each in ascending order.
+fn brightest_lights(lights: &[Light], bounds: &Bounds, count: usize) -> [Option<usize>; SHADOWED_LIGHTS] {
     let brightness = |light: &Light| {
         let emitted = luminance(light.color) * light.intensity;
         if light.kind == LightKind::Directional {
@@ -214,7 +247,9 @@ fn brightest_lights(lights: &[Light], bounds: &Bounds) -> [Option<usize>; SHADOW
         .filter(|(_, brightness)| *brightness > 0.0)
         .collect();
     bright.sort_by(|a, b| b.1.total_cmp(&a.1));
-    bright.truncate(SHADOWED_LIGHTS);
-    bright.sort_by_key(|(index, _)| *index);
+    bright.truncate(count);
+    let in_first_block = bright.len().min(LIGHTS_PER_BLOCK);
+    let (first, further) = bright.split_at_mut(in_first_block);
+    [first, further].into_iter().for_each(|lights| lights.sort_by_key(|(index, _)| *index));
     std::array::from_fn(|slot| bright.get(slot).map(|(index, _)| *index))
 }

@@ -8,13 +8,13 @@ use crate::formula::uniforms::LightUniform;
 use crate::frame::{Bounds, Light, LightKind};
 
 /// Writes the lights that reach the bounding box to `out`, in view space. `exposure` multiplies their colors. `shadow`:
-/// that of the frame.
+/// that of the frame, and the number of blocks of its lights that shade the system.
 pub fn light_uniforms(
     view: &ViewGeometry,
     lights: &[Light],
     exposure: f32,
     bounds: &Bounds,
-    shadow: Option<&SmokeShadow>,
+    shadow: Option<(&SmokeShadow, u32)>,
     out: &mut Vec<LightUniform>,
 ) {
     out.clear();
@@ -25,7 +25,7 @@ pub fn light_uniforms(
     };
     out.extend(lights.iter().enumerate().filter(reaches).map(|(index, light)| {
         let uniform = light.uniform(&view.view_from_world);
-        let shadow_slot = shadow.map_or(0.0, |shadow| shadow.slot(index));
+        let shadow_slot = shadow.map_or(0.0, |(shadow, blocks)| shadow.slot(index, blocks));
         LightUniform { color: uniform.color * exposure, shadow_slot, ..uniform }
     }));
 }

@@ -207,6 +207,8 @@ fn wgsl_constants_match_rust() {
     assert_eq!(constant(&transfer, "DEPTH_SAMPLES"), f64::from(formula::depth_moments::DEPTH_SAMPLES));
     let march = composed("shadow_march.wgsl");
     assert_eq!(constant(&march, "SHADOWED_LIGHTS"), formula::shadow::SHADOWED_LIGHTS as f64);
+    assert_eq!(constant(&march, "LIGHTS_PER_BLOCK"), formula::shadow::LIGHTS_PER_BLOCK as f64);
+    assert_eq!(constant(&march, "LIGHT_BLOCKS"), formula::shadow::LIGHT_BLOCKS as f64);
     assert_eq!(constant(&march, "SKY_DIRECTIONS"), formula::ambient::SKY_DIRECTIONS as f64);
     assert_eq!(constant(&march, "SKY_STEPS"), f64::from(formula::ambient::SKY_STEPS));
     assert_eq!(constant(&march, "SHADOW_STEPS"), f64::from(formula::shadow::SHADOW_STEPS));

@@ -291,6 +291,128 @@ fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
     }
 }
 
+/// Lamps around the smoke, all of which smoke shades, and a sun. The first has the shadow map.
+fn under_many_lights() -> TestScene {
+    let mut scene = under_a_roof();
+    scene.settings.shadow.lights = 15;
+    scene.lights.extend((0..9).map(|i: u32| {
+        let (sine, cosine) = (i as f32 * 0.7).sin_cos();
+        Light { position: vec3(2.5 * cosine, 1.5 * sine, -6.0 + sine), intensity: 0.8, ..Light::default() }
+    }));
+    scene
+}
+
+#[test]
+fn gpu_and_cpu_draw_the_same_shadow_of_many_lights() {
+    if !is_tiled_available() {
+        return;
+    }
+    type Change = fn(&mut TestScene);
+    let changes: &[(&str, Change)] = &[
+        ("raster", |_| {}),
+        ("forward", |s| s.settings.path = RenderPath::Forward),
+        ("tiled", |s| s.settings.path = RenderPath::Tiled),
+        ("six-way", |s| s.settings.lighting = Lighting::SixWay),
+        ("without maps", |s| s.shadow_maps.clear()),
+        ("with ambient light", |s| s.settings.ambient.intensity = 1.0),
+        ("lit per texel", |s| {
+            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+        }),
+        ("large lamps", |s| s.lights.iter_mut().for_each(|light| light.radius = 2.0)),
+    ];
+    for (name, change) in changes {
+        let mut scene = under_many_lights();
+        change(&mut scene);
+        let (seen, reference) = (drawn(&scene), scene.on_cpu());
+        let same = psnr(&seen, &reference);
+        scene.settings.shadow.lights = 3;
+        let effect = psnr(&drawn(&scene), &seen);
+        println!("{name}: {same:.1} dB, with three lights {effect:.1} dB");
+        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+        assert!(effect < 40.0, "{name}: with three lights {effect:.1} dB");
+    }
+}
+
+/// A further light is shaded at the mean depth of the smoke, not at its sprites.
+#[test]
+fn smoke_shades_a_further_light_nearly_as_one_of_the_first_three() {
+    if !is_tiled_available() {
+        return;
+    }
+    let green = |scene: &TestScene| -> Vec<f32> { drawn(scene).texels.iter().map(|texel| texel.y).collect() };
+    let sun = Light {
+        kind: LightKind::Directional,
+        direction: vec3(-0.8, -0.5, -0.2),
+        color: vec3(0.0, 1.0, 0.0),
+        ..Light::default()
+    };
+    let mut scene = shaded();
+    scene.settings.shadow.by_depth = true;
+    scene.settings.shadow.lights = 4;
+    scene.settings.soft_scatter.intensity = 0.0;
+    scene.lights = vec![sun];
+    let first = green(&scene);
+    // Three lights of another color that are brighter.
+    let red = Light { color: vec3(6.0, 0.0, 0.0), ..sun };
+    scene.lights = vec![red, red, red, sun];
+    let further = green(&scene);
+    scene.settings.shadow.lights = 3;
+    let unshaded = green(&scene);
+    let error = |other: &[f32]| {
+        let difference: f32 = first.iter().zip(other).map(|(a, b)| (a - b).abs()).sum();
+        difference / first.iter().sum::<f32>()
+    };
+    println!("difference from a first light: {}, unshaded {}", error(&further), error(&unshaded));
+    assert!(error(&unshaded) > 0.1, "{}", error(&unshaded));
+    assert!(error(&further) < 0.1 * error(&unshaded), "{} {}", error(&further), error(&unshaded));
+}
+
+#[test]
+fn a_larger_lamp_casts_a_softer_shadow() {
+    let mut scene = shaded();
+    keep_one_particle(&mut scene);
+    scene.particles[0].amount = 0.3;
+    scene.settings.shadow.resolution = 64;
+    // Makes room for the cone of the light in the grid.
+    scene.bounds = Some(Bounds { min: vec3(-2.0, -2.0, -7.0), max: vec3(1.0, 1.0, -4.0) });
+    let centre = scene.particles[0].position;
+    let depth = Image::new(SIZE, 1.0);
+    let shares = |radius| {
+        let position = centre + vec3(0.0, 3.0, 0.0);
+        let lights = [Light { position, radius, range: f32::INFINITY, ..Light::default() }];
+        let systems = [haze_reference::ParticleSystem {
+            bounds: scene.bounds,
+            ..haze_reference::ParticleSystem::new(&scene.particles, &scene.settings, &scene.material)
+        }];
+        let frame = haze_reference::FrameInput {
+            lights: &lights,
+            systems: &systems,
+            ..haze_reference::FrameInput::new(scene.view, &depth)
+        };
+        let frame = haze_reference::PreparedFrame::new(&frame, SIZE).unwrap();
+        let shadow = frame.scene_shadow().unwrap();
+        let place = |i: u32| centre + vec3(i as f32 * 0.05 - 1.5, -1.5, 0.0);
+        (0..60).map(|i| 1.0 - shadow.haze_transmittance(place(i), 0).y).collect::<Vec<f32>>()
+    };
+    let (small, large) = (shares(0.0), shares(1.5));
+    let darkest = |shares: &[f32]| shares.iter().copied().fold(0.0, f32::max);
+    let width = |shares: &[f32]| shares.iter().sum::<f32>() / darkest(shares);
+    println!("darkest {} {}, width {} {}", darkest(&small), darkest(&large), width(&small), width(&large));
+    assert!(darkest(&large) < 0.8 * darkest(&small) && width(&large) > 1.3 * width(&small));
+}
+
+#[test]
+fn further_lights_do_not_shade_smoke_without_its_depth() {
+    if !is_tiled_available() {
+        return;
+    }
+    let mut scene = under_many_lights();
+    scene.settings.shadow.by_depth = false;
+    let many = drawn(&scene);
+    scene.settings.shadow.lights = 3;
+    assert_eq!(many.texels, drawn(&scene).texels);
+}
+
 #[test]
 fn gpu_and_cpu_draw_the_same_ambient_light() {
     type Change = fn(&mut TestScene);

@@ -8,9 +8,10 @@ use super::shadow_views::{ShadowView, casters};
 use super::shot::Shot;
 use haze::assets::image::Image;
 use haze::error::Error;
+use haze::formula::shadow::LIGHTS_PER_BLOCK;
 use haze::frame::{Light, Particle};
 use haze::settings::Settings;
-use haze_reference::PreparedFrame;
+use haze_reference::{PreparedFrame, SceneShadow};
 
 impl Shot {
     /// Renders the shot on the CPU. Returns linear HDR.
@@ -27,8 +28,11 @@ impl Shot {
         let shadow_maps = maps.maps();
         let lights = self.lights();
         let frame = PreparedFrame::new(&self.reference_frame(&depth, &systems, &shadow_maps, &lights), self.size)?;
-        let through = |world, light: u32| {
-            frame.scene_shadow().map_or(Vec3::ONE, |shadow| shadow.haze_transmittance(world, light as usize))
+        // The scene's renderer keeps the light of as many lights apart.
+        let apart = |shadow: &SceneShadow, light| shadow.lights().take(LIGHTS_PER_BLOCK).any(|index| index == light);
+        let through = |world, light: u32| match frame.scene_shadow() {
+            Some(shadow) if apart(shadow, light as usize) => shadow.haze_transmittance(world, light as usize),
+            _ => Vec3::ONE,
         };
         let mut color = match self.shows_scene() {
             true => ray_caster::render_color(&scene, &view, &depth, through),

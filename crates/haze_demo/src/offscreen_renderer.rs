@@ -16,6 +16,7 @@ use crate::headless::Headless;
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
+use haze::formula::shadow::LIGHTS_PER_BLOCK;
 use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, ShadowMap, View};
 use haze::preset::Environment;
 use haze::settings::DebugView;
@@ -203,7 +204,7 @@ impl OffscreenRenderer {
             environment,
             lights: lights.clone(),
             view,
-            shadowed: self.renderer.shadowed_lights().collect(),
+            shadowed: self.renderer.shadowed_lights().take(LIGHTS_PER_BLOCK).collect(),
         };
         if sized.scene_inputs.as_ref() != Some(&scene_inputs) {
             scene.record(encoder, &mut sized.targets, &shot.scene(), &view, &scene_inputs.shadowed);

@@ -15,14 +15,17 @@ impl PlacedSystems<'_> {
     pub fn shadow_volume(&self, frame: &FrameInput<'_>, shadow: &SmokeShadow) -> OpticalDepths {
         let density = self.density(shadow);
         let openness = shadow.has_openness.then(|| march_to_sky(&density, shadow));
-        let cells = march_to_lights(&density, shadow);
-        OpticalDepths { size: shadow.grid.size, cells, visible: visibility(frame, shadow), openness }
+        let blocks = (0..shadow.used_light_blocks()).map(|block| march_to_lights(&density, shadow, block)).collect();
+        OpticalDepths { size: shadow.grid.size, blocks, visible: visibility(frame, shadow), openness }
     }
 
-    /// As [`shadow_volume`](Self::shadow_volume), without the optical depths towards the lights.
-    pub fn shadow_volume_without_lights(&self, frame: &FrameInput<'_>, shadow: &SmokeShadow) -> OpticalDepths {
+    /// As [`shadow_volume`](Self::shadow_volume), without optical depths if the sprites accumulated all that are read.
+    pub fn shadow_volume_of_texels(&self, frame: &FrameInput<'_>, shadow: &SmokeShadow) -> OpticalDepths {
+        if shadow.light_blocks > 1 {
+            return self.shadow_volume(frame, shadow);
+        }
         let openness = shadow.has_openness.then(|| march_to_sky(&self.density(shadow), shadow));
-        OpticalDepths { size: shadow.grid.size, cells: Vec::new(), visible: visibility(frame, shadow), openness }
+        OpticalDepths { size: shadow.grid.size, blocks: Vec::new(), visible: visibility(frame, shadow), openness }
     }
 
     /// Optical depths across the cells of the density grid.
@@ -36,6 +39,8 @@ impl PlacedSystems<'_> {
     }
 }
 
-fn visibility(frame: &FrameInput<'_>, shadow: &SmokeShadow) -> Option<Vec<Vec3>> {
-    shadow.has_visibility.then(|| shadow_visibility(frame.shadow_maps, shadow))
+/// By block of lights.
+fn visibility(frame: &FrameInput<'_>, shadow: &SmokeShadow) -> Option<Vec<Vec<Vec3>>> {
+    let of_block = |block| shadow_visibility(frame.shadow_maps, shadow, block);
+    shadow.has_visibility.then(|| (0..shadow.used_light_blocks()).map(of_block).collect())
 }

@@ -7,23 +7,24 @@ use glam::{IVec3, UVec3, Vec3};
 pub struct OpticalDepths {
     /// Number of cells along each axis.
     pub size: UVec3,
-    /// Cells, x first; a channel per light.
-    pub cells: Vec<Vec3>,
-    /// Visibility of the lights, if shadow maps shade smoke.
-    pub visible: Option<Vec<Vec3>>,
+    /// Cells of each block of lights, x first; a channel per light.
+    pub blocks: Vec<Vec<Vec3>>,
+    /// Visibility of the lights of each block, if shadow maps shade smoke.
+    pub visible: Option<Vec<Vec<Vec3>>>,
     /// Openness to sky and ground in x and y, if smoke shades ambient light.
     pub openness: Option<Vec<Vec3>>,
 }
 
 impl OpticalDepths {
-    /// Optical depths at a place, in cells, clamped to the centres of the outermost cells.
-    pub fn sample(&self, place: Vec3) -> Vec3 {
-        self.sample_cells(&self.cells, place)
+    /// Optical depths towards a block of lights at a place, in cells, clamped to the centres of the outermost cells.
+    pub fn sample(&self, block: usize, place: Vec3) -> Vec3 {
+        self.blocks.get(block).map_or(Vec3::ZERO, |cells| self.sample_cells(cells, place))
     }
 
-    /// Visibility of the lights at a place, in cells; 1 without shadow maps.
-    pub fn sample_visible(&self, place: Vec3) -> Vec3 {
-        self.visible.as_ref().map_or(Vec3::ONE, |cells| self.sample_cells(cells, place))
+    /// Visibility of a block of lights at a place, in cells; 1 without shadow maps.
+    pub fn sample_visible(&self, block: usize, place: Vec3) -> Vec3 {
+        let cells = self.visible.as_ref().and_then(|blocks| blocks.get(block));
+        cells.map_or(Vec3::ONE, |cells| self.sample_cells(cells, place))
     }
 
     /// Openness to sky and ground at a place, in cells; 1 if smoke does not shade ambient light.

@@ -110,8 +110,7 @@ pub fn probe(
     pixels: &[UVec2],
 ) -> Result<Vec<Probe>, FieldError> {
     let placed = place_systems(frame, behind.size)?;
-    // The optical depths towards the lights are in the texels.
-    let volume = placed.shadow.map(|shadow| Arc::new(placed.shadow_volume_without_lights(frame, &shadow)));
+    let volume = placed.shadow.map(|shadow| Arc::new(placed.shadow_volume_of_texels(frame, &shadow)));
     let mut visible = placed.visible;
     visible.iter_mut().for_each(|(_, visible)| visible.optical_depths = volume.clone());
     let mut deferred = Vec::new();

@@ -10,6 +10,7 @@ use haze::assets::ramp::Ramp;
 use haze::formula::ramp::sample_ramp_2d;
 use haze::formula::saturate;
 use haze::formula::scene_shadow::{grid_entry, transmitted_light};
+use haze::formula::shadow::LIGHTS_PER_BLOCK;
 use haze::formula::uniforms::SceneShadowUniform;
 use haze::settings::RampFilter;
 use haze::view_setup::SmokeShadow;
@@ -29,6 +30,11 @@ impl SceneShadow {
         (strength > 0.0).then(|| Self { uniform: shadow.scene_uniform(), depths: depths.clone(), ramp })
     }
 
+    /// Indices in the frame of the lights that cast shadow. The three brightest come first.
+    pub fn lights(&self) -> impl Iterator<Item = usize> {
+        self.uniform.indices.into_iter().filter(|index| *index != u32::MAX).map(|index| index as usize)
+    }
+
     /// Share of a light that reaches a point of the world through the smoke. `light`: its index in the frame.
     pub fn haze_transmittance(&self, world_position: Vec3, light: usize) -> Vec3 {
         let SceneShadowUniform { origin, cells_per_metre, size, strength, lights, indices } = self.uniform;
@@ -38,7 +44,7 @@ impl SceneShadow {
         if entry.w < 0.5 {
             return Vec3::ONE;
         }
-        let optical_depth = self.depths.sample(entry.truncate())[slot];
+        let optical_depth = self.depths.sample(slot / LIGHTS_PER_BLOCK, entry.truncate())[slot % LIGHTS_PER_BLOCK];
         let coordinate = Vec2::new(saturate(1.0 - (-optical_depth).exp2()), 1.0);
         let painted = sample_ramp_2d(&self.ramp, RampFilter::Bilinear, coordinate);
         Vec3::ONE.lerp(transmitted_light(optical_depth, painted), strength)

@@ -146,7 +146,7 @@ impl VisibleSystem<'_> {
             return Vec3::ZERO;
         };
         let own = own_optical_depth(density_radius(system, particle), sprite_optical_depth(system, particle));
-        foreign_optical_depths(depths.sample(system.grid_from_view.transform_point3(centre)), own)
+        foreign_optical_depths(depths.sample(0, system.grid_from_view.transform_point3(centre)), own)
     }
 
     /// Heat of a particle.

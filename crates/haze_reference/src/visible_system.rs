@@ -63,7 +63,8 @@ impl<'a> VisibleSystem<'a> {
         let MeasuredSystem { material, space, settings, mut measures, bounds } = measured;
         let material = &material;
         let mut lights = Vec::new();
-        light_uniforms(view, frame.lights, frame.exposure, &bounds, shadow, &mut lights);
+        let on_system = shadow.map(|shadow| (shadow, settings.shadow_blocks()));
+        light_uniforms(view, frame.lights, frame.exposure, &bounds, on_system, &mut lights);
         let in_world = SystemInput {
             particles_per_sample: 1,
             bounds: &bounds,

@@ -99,7 +99,21 @@ fn extreme_sprites_and_lights_give_finite_depths() {
     assert!((optical_depth_of_steps(0, 3) / (3.0 * 65536.0) - 1.0).abs() < 1e-6);
     let across = [0.0, 1.0, 1e30, f32::INFINITY, f32::NAN].map(|depth| shadow_position(depth, Vec3::X, Vec3::Z).x);
     assert!(across.iter().zip([0.0, 0.5, 1.0, 1.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6), "{across:?}");
-    for (slot, expected) in [(0.0, 0.0), (1.0, 5.0), (2.0, 6.0), (3.0, 7.0)] {
-        assert!((of_slot(slot, vec3(5.0, 6.0, 7.0)) - expected).abs() < 1e-6, "{slot}");
+    let blocks = std::array::from_fn(|block| vec3(5.0, 6.0, 7.0) + 10.0 * block as f32);
+    for (slot, expected) in [(0.0, 0.0), (1.0, 5.0), (2.0, 6.0), (3.0, 7.0), (4.0, 15.0), (15.0, 47.0), (16.0, 0.0)] {
+        assert!((of_slot(slot, &blocks) - expected).abs() < 1e-6, "{slot}");
+    }
+}
+
+#[test]
+fn the_steps_of_a_march_are_spread_evenly_over_the_disc_of_the_light() {
+    for direction in [Vec3::Y, Vec3::NEG_X, vec3(0.3, -0.7, 0.6).normalize()] {
+        let offsets: Vec<Vec3> = (0..SHADOW_STEPS).map(|step| light_disc_offset(step, direction)).collect();
+        assert!(offsets.iter().all(|offset| offset.length() < 1.0 && offset.dot(direction).abs() < 1e-5));
+        // The mean is the centre; the mean square of the distance is a half.
+        let count = SHADOW_STEPS as f32;
+        let mean = offsets.iter().sum::<Vec3>() / count;
+        let square = offsets.iter().map(|offset| offset.length_squared()).sum::<f32>() / count;
+        assert!(mean.length() < 0.05 && (square - 0.5).abs() < 0.03, "{mean} {square}");
     }
 }

@@ -25,6 +25,7 @@ pub(crate) struct ForwardKey {
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
     pub ambient: bool,
+    pub shadow_blocks: u32,
     pub reversed: bool,
 }
 
@@ -45,6 +46,7 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
         constants: key.sprite.constants([
             enum_constant!("BLEND_MODE", key.blend_mode),
             bool_constant("BY_DEPTH", key.sprite.lights_by_depth()),
+            ("SHADOW_BLOCKS", f64::from(key.shadow_blocks)),
             bool_constant("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
             enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
             enum_constant!("BACKLIGHT", key.backlight),

@@ -17,6 +17,7 @@ pub(crate) struct LightingKey {
     pub encoding: NormalEncoding,
     pub decode: NormalDecode,
     pub attachments: AttachmentSet,
+    pub shadow_blocks: u32,
     pub diffuse_mode: DiffuseMode,
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
@@ -38,6 +39,7 @@ impl LightingKey {
             enum_constant!("RAMP_FILTER", self.ramp_filter),
             bool_constant("EXACT_FILTERING", self.exact_filtering),
             bool_constant("SHADOW", self.attachments.contains(AttachmentRole::OpticalDepths)),
+            ("SHADOW_BLOCKS", f64::from(self.shadow_blocks)),
         ];
         shared.into_iter().chain(attachment_constants(self.attachments)).chain(of_pass).collect()
     }

@@ -38,6 +38,8 @@ pub(crate) struct ShadowMarch {
     pub inputs: wgpu::BindGroup,
     /// Number of cells along each axis.
     pub size: UVec3,
+    /// Number of blocks of lights.
+    pub light_blocks: u32,
 }
 
 impl ShadowMarch {
@@ -45,9 +47,11 @@ impl ShadowMarch {
         let mut pass = begin_compute(encoder, "shadow_march", timing);
         pass.set_bind_group(0, &self.inputs, &[]);
         let workgroups = |cells: u32| cells.div_ceil(SIDE);
-        for pipeline in [Some(&self.to_lights), self.to_sky.as_ref()].into_iter().flatten() {
+        let marches = [(Some(&self.to_lights), self.light_blocks), (self.to_sky.as_ref(), 1)];
+        for (pipeline, blocks) in marches.into_iter().filter_map(|(pipeline, blocks)| Some((pipeline?, blocks))) {
             pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), workgroups(self.size.z));
+            let along_z = workgroups(self.size.z) * blocks;
+            pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), along_z);
         }
     }
 }

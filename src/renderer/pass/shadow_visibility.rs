@@ -1,7 +1,7 @@
 //! shadow_visibility: looks up a host's shadow maps at the cells of the density grid.
 //!
-//! Reads: shadow maps of up to three lights.
-//! Writes: visibility of the lights, in the second block of the volume.
+//! Reads: shadow maps of the lights.
+//! Writes: visibility of the lights, in blocks of the volume.
 
 use glam::UVec3;
 
@@ -21,8 +21,8 @@ pub(crate) fn describe((): ()) -> ComputePipelineDescription {
 #[derive(Debug)]
 pub(crate) struct ShadowVisibility {
     pub pipeline: wgpu::ComputePipeline,
-    /// Group 0.
-    pub inputs: wgpu::BindGroup,
+    /// Group 0, by block of lights.
+    pub inputs: Vec<wgpu::BindGroup>,
     /// Number of cells along each axis.
     pub size: UVec3,
 }
@@ -31,8 +31,10 @@ impl ShadowVisibility {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         let mut pass = begin_compute(encoder, "shadow_visibility", timing);
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.inputs, &[]);
         let workgroups = |cells: u32| cells.div_ceil(SIDE);
-        pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), workgroups(self.size.z));
+        for inputs in &self.inputs {
+            pass.set_bind_group(0, inputs, &[]);
+            pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), workgroups(self.size.z));
+        }
     }
 }

@@ -5,7 +5,7 @@ use glam::UVec2;
 use super::storage_buffers::{bind, storage};
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
-use crate::formula::shadow::SHADOWED_LIGHTS;
+use crate::formula::shadow::LIGHTS_PER_BLOCK;
 use crate::formula::uniforms::{ShadowMarchUniform, ShadowVisibilityUniform, SplatUniform};
 use crate::frame::ShadowMap;
 use crate::renderer::gpu::Gpu;
@@ -42,18 +42,18 @@ struct VolumeBuffers {
     density: wgpu::Buffer,
     optical_depths: wgpu::TextureView,
     march: wgpu::BindGroup,
-    /// Present if shadow maps shade smoke.
-    maps: Option<MapBuffers>,
+    /// By block of lights; empty unless shadow maps shade smoke.
+    maps: Vec<MapBuffers>,
 }
 
-/// Lookups of a host's shadow maps.
+/// Lookups of a host's shadow maps of a block of lights.
 #[derive(Debug)]
 struct MapBuffers {
     uniform: wgpu::Buffer,
     /// In place of a light without map.
     no_map: wgpu::Texture,
     /// Textures and first layers of the lights' maps, by slot.
-    bound: [(wgpu::Texture, u32); SHADOWED_LIGHTS],
+    bound: [(wgpu::Texture, u32); LIGHTS_PER_BLOCK],
     group: wgpu::BindGroup,
 }
 
@@ -80,15 +80,15 @@ impl ShadowVolume {
         let Some(shadow) = shadow else { return };
         let fits = |held: &VolumeBuffers| {
             (held.resolution, held.blocks) == (shadow.resolution, shadow.blocks())
-                && held.maps.is_some() == shadow.has_visibility
+                && held.maps.len() == map_blocks(shadow)
         };
         if !self.buffers.as_ref().is_some_and(fits) {
             self.buffers = None;
         }
         let buffers = self.buffers.get_or_insert_with(|| VolumeBuffers::new(gpu.device, tiled, shadow));
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&shadow.march));
-        if let Some(held) = &mut buffers.maps {
-            held.write(gpu, tiled, shadow, maps, &buffers.optical_depths);
+        for (block, held) in (0..).zip(&mut buffers.maps) {
+            held.write(gpu, tiled, (shadow, block), maps, &buffers.optical_depths);
         }
     }
 
@@ -107,19 +107,28 @@ impl ShadowVolume {
     pub fn march(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowMarch> {
         let inputs = self.buffers.as_ref()?.march.clone();
         let to_sky = shadow.has_openness.then(|| tiled.shadow_march.get(MarchTo::Sky));
-        Some(ShadowMarch { to_lights: tiled.shadow_march.get(MarchTo::Lights), to_sky, inputs, size: shadow.grid.size })
+        let to_lights = tiled.shadow_march.get(MarchTo::Lights);
+        Some(ShadowMarch {
+            to_lights,
+            to_sky,
+            inputs,
+            size: shadow.grid.size,
+            light_blocks: shadow.used_light_blocks(),
+        })
     }
 
     /// Returns the pass that looks up the host's shadow maps, if they shade smoke.
     pub fn look_up(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowVisibility> {
-        let inputs = self.buffers.as_ref()?.maps.as_ref()?.group.clone();
+        let maps = self.buffers.as_ref().map(|held| &held.maps).filter(|maps| !maps.is_empty())?;
+        let used = maps.iter().take(shadow.used_light_blocks() as usize);
+        let inputs = used.map(|maps| maps.group.clone()).collect();
         Some(ShadowVisibility { pipeline: tiled.shadow_visibility.get(()), inputs, size: shadow.grid.size })
     }
 
     /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.buffers.as_ref().map_or(0, |held| {
-            let maps = held.maps.as_ref().map_or(0, |maps| maps.uniform.size());
+            let maps = held.maps.iter().map(|maps| maps.uniform.size()).sum::<u64>();
             let volume = u64::from(held.blocks) * TEXEL_BYTES * u64::from(held.resolution).pow(3);
             held.uniform.size() + held.density.size() + volume + maps
         })
@@ -138,9 +147,14 @@ impl VolumeBuffers {
             wgpu::BindingResource::TextureView(&optical_depths),
         ];
         let march = bind(device, &tiled.layouts.shadow_march, resources);
-        let maps = shadow.has_visibility.then(|| MapBuffers::new(device, tiled, &optical_depths));
+        let maps = (0..map_blocks(shadow)).map(|_| MapBuffers::new(device, tiled, &optical_depths)).collect();
         Self { resolution, blocks, uniform, density, optical_depths, march, maps }
     }
+}
+
+/// Number of blocks of lights whose shadow maps shade smoke.
+fn map_blocks(shadow: &SmokeShadow) -> usize {
+    if shadow.has_visibility { shadow.light_blocks as usize } else { 0 }
 }
 
 impl MapBuffers {
@@ -165,14 +179,14 @@ impl MapBuffers {
         &mut self,
         gpu: &Gpu<'_>,
         tiled: &TiledPipelines,
-        shadow: &SmokeShadow,
+        (shadow, block): (&SmokeShadow, u32),
         maps: &[ShadowMap<'_>],
         volume: &wgpu::TextureView,
     ) {
         let of_light = |light: usize| maps.iter().find(|map| map.projection.light == light);
-        let uniform = shadow.visibility(|light| of_light(light).map(|map| map.projection));
+        let uniform = shadow.visibility(block, |light| of_light(light).map(|map| map.projection));
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        let used = shadow.lights.map(|light| match light.and_then(of_light) {
+        let used = shadow.lights_of_block(block).map(|light| match light.and_then(of_light) {
             Some(map) => (map.depth, map.first_layer),
             None => (&self.no_map, 0),
         });
@@ -187,7 +201,7 @@ fn bind_maps(
     device: &wgpu::Device,
     tiled: &TiledPipelines,
     uniform: &wgpu::Buffer,
-    maps: &[(wgpu::Texture, u32); SHADOWED_LIGHTS],
+    maps: &[(wgpu::Texture, u32); LIGHTS_PER_BLOCK],
     volume: &wgpu::TextureView,
 ) -> wgpu::BindGroup {
     let views = maps.each_ref().map(|(map, first_layer)| {

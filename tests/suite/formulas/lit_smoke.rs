@@ -239,7 +239,8 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "BACKLIGHT = u32(x(0)); \
                    SHADOW = x(8) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), Shade(vec3f(0.3, 0.8, x(8)), vec3f(1.0, 0.5, 0.9), vec2f(1.0))));",
+                   var shade = shade_of_sprites(vec3f(0.3, 0.8, x(8))); shade.visible[0] = vec3f(1.0, 0.5, 0.9); \
+                   y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), shade));",
             reference: |x| {
                 let settings = changed(|s| s.diffuse.backlight = Backlight::ALL[x[0] as usize]);
                 let (visible, shade) = (shaded_system(&settings, x[8] > 0.5), shade(Vec3::new(0.3, 0.8, x[8])));
@@ -272,7 +273,8 @@ fn diffuse() -> Vec<Formula> {
             wgsl: "let s = SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
                    system.six_way_color = vec3f(0.9, 0.7, 0.5); \
                    SHADOW = x(0) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), Shade(vec3f(0.3, 0.8, x(1)), vec3f(1.0, 0.5, 0.9), vec2f(1.0))));",
+                   var shade = shade_of_sprites(vec3f(0.3, 0.8, x(1))); shade.visible[0] = vec3f(1.0, 0.5, 0.9); \
+                   y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), shade));",
             reference: |x| {
                 let mut visible = shaded_system(&DEFAULTS, x[0] > 0.5);
                 visible.system.six_way_color = Vec3::new(0.9, 0.7, 0.5);
@@ -296,11 +298,13 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "SHADOW = true; system.shadow_strength = 0.8; let position = vec3f(x(7), x(8), x(9)); \
                    let to_viewer = direction_to_viewer(position, view.orthographic); \
-                   y3(0, shadow_on_light(x(0), Shade(vec3f(x(1), x(2), x(3)), vec3f(0.9, 0.5, 0.7), vec2f(1.0)), vec3f(x(4), x(5), x(6)), to_viewer));",
+                   var shade = shade_of_sprites(vec3f(x(1), x(2), x(3))); shade.visible[0] = vec3f(0.9, 0.5, 0.7); \
+                   y3(0, shadow_on_light(x(0), shade, vec3f(x(4), x(5), x(6)), to_viewer));",
             reference: |x| {
                 let visible = shaded_system(&DEFAULTS, true);
                 let light = LightUniform { shadow_slot: x[0], ..visible.lights[0] };
-                let shade = Shade { optical_depths: v3(&x[1..]), visible: Vec3::new(0.9, 0.5, 0.7), ..Shade::NONE };
+                let mut shade = Shade::of_sprites(v3(&x[1..]));
+                shade.visible[0] = Vec3::new(0.9, 0.5, 0.7);
                 visible.shadow_on_light(&light, v3(&x[4..]), v3(&x[7..]), &shade).to_array().to_vec()
             },
             cases: unit_vectors(
@@ -385,7 +389,9 @@ fn diffuse() -> Vec<Formula> {
 }
 
 fn shade(optical_depths: Vec3) -> Shade {
-    Shade { optical_depths, visible: Vec3::new(1.0, 0.5, 0.9), ..Shade::NONE }
+    let mut shade = Shade::of_sprites(optical_depths);
+    shade.visible[0] = Vec3::new(1.0, 0.5, 0.9);
+    shade
 }
 
 fn surfaces() -> Vec<Formula> {
@@ -412,7 +418,7 @@ fn surfaces() -> Vec<Formula> {
                    NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, x(9) < 0.3); \
                    let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), \
                    Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5), vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8)), vec4f(x(2), x(4), x(6), x(8)), vec4f(0.0))); \
-                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.shade.optical_depths); y(12, s.depth.x); y(13, s.depth.y); y(14, s.heat.x); y(15, s.heat.y);",
+                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.shade.optical_depths[0]); y(12, s.depth.x); y(13, s.depth.y); y(14, s.heat.x); y(15, s.heat.y);",
             reference: |x| {
                 let settings = changed(|s| {
                     s.accumulate.decode = NormalDecode::ALL[x[0] as usize];
@@ -428,7 +434,7 @@ fn surfaces() -> Vec<Formula> {
                 let attachments = [v4(&x[1..]), v4(&x[5..]), v4(&x[5..]), v4(&x[1..]), v4(&x[5..]), heat, Vec4::ZERO];
                 let surface = with_target(&settings, |_| {}, |target| target.surface(&attachments));
                 let SixWay { positive, negative } = surface.six_way;
-                let vectors = [surface.normal, positive, negative, surface.shade.optical_depths];
+                let vectors = [surface.normal, positive, negative, surface.shade.optical_depths[0]];
                 let pairs = [surface.depth, surface.heat];
                 vectors.iter().flat_map(Vec3::to_array).chain(pairs.iter().flat_map(|pair| pair.to_array())).collect()
             },
@@ -464,7 +470,7 @@ fn lit_surfaces() -> Vec<Formula> {
         file: "lib/lit_smoke.wgsl",
         wgsl: "DIFFUSE_MODE = u32(x(0)); SIX_WAY_SLOT = u32(x(8) > 0.8); system.diffuse_intensity = 0.6; \
                    for (var i = 0u; i < 9u; i++) { system.spherical_harmonics[i] = vec4f(0.3, 0.2, 0.1, 0.0) * f32(i); } \
-                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), Shade(vec3f(0.0), vec3f(1.0), vec2f(1.0)), vec2f(0.0), vec2f(0.0), vec3f(0.9, 0.8, x(4))); \
+                   let s = Surface(vec3f(x(1), x(2), x(3)), SixWay(vec3f(0.2, 0.4, 0.6), vec3f(0.1, 0.3, 0.5)), shade_of_sprites(vec3f(0.0)), vec2f(0.0), vec2f(0.0), vec3f(0.9, 0.8, x(4))); \
                    y3(0, diffuse(s, x(4), vec3f(x(5), x(6), x(7))));",
         reference: |x| {
             let settings = changed(|s| {

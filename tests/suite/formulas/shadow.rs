@@ -137,11 +137,40 @@ fn lookups() -> Vec<Formula> {
         Formula {
             name: "of_slot",
             file: "lib/shadow.wgsl",
-            wgsl: "y(0, of_slot(x(0), vec3f(x(1), x(2), x(3))));",
-            reference: |x| vec![shadow::of_slot(x[0], v3(&x[1..]))],
-            cases: with_choices(4, &[(0.0, 3.0), (0.0, 3.0), (0.0, 3.0)]),
+            wgsl: "SHADOW_BLOCKS = 5u; let v = vec3f(x(1), x(2), x(3)); \
+                   y(0, of_slot(x(0), array<vec3f, 5>(v, v * 2.0, v * 3.0, v * 4.0, v * 5.0)));",
+            reference: |x| {
+                vec![shadow::of_slot(x[0], &std::array::from_fn(|block| v3(&x[1..]) * (block as f32 + 1.0)))]
+            },
+            cases: with_choices(16, &[(0.1, 3.0), (0.1, 3.0), (0.1, 3.0)]),
             tolerance: ARITHMETIC,
-            mutants: &[("vec3f(1.0, 2.0, 3.0)", "vec3f(3.0, 2.0, 1.0)")],
+            mutants: &[
+                ("vec3f(1.0, 2.0, 3.0)", "vec3f(3.0, 2.0, 1.0)"),
+                ("channel -= f32(index * LIGHTS_PER_BLOCK)", "channel -= f32(index)"),
+                ("max(slot - 1.0, 0.0)", "slot"),
+            ],
+        },
+        Formula {
+            name: "light_disc_offset",
+            file: "lib/shadow.wgsl",
+            wgsl: "y3(0, light_disc_offset(u32(x(0)), vec3f(x(1), x(2), x(3))));",
+            reference: |x| shadow::light_disc_offset(x[0] as u32, v3(&x[1..])).to_array().to_vec(),
+            cases: unit_vectors(with_choices(48, &[SIDE, SIDE, SIDE]), 1),
+            // The sine of a large angle.
+            tolerance: TRANSCENDENTAL * 10.0,
+            mutants: &[("sqrt(place.x)", "place.x"), ("0.7548777, 0.5698403", "0.5698403, 0.7548777")],
+        },
+        Formula {
+            name: "further_optical_depths",
+            file: "lib/shadow.wgsl",
+            wgsl: "y3(0, further_optical_depths(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), vec3f(x(6), x(7), x(8))));",
+            reference: |x| shadow::further_optical_depths(v3(x), v3(&x[3..]), v3(&x[6..])).to_array().to_vec(),
+            cases: random(60, &[(0.0, 4.0); 9]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("dot(max(first_in_grid - first_foreign, vec3f(0.0)), vec3f(1.0 / 3.0))", "0.0"),
+                ("max(first_in_grid - first_foreign, vec3f(0.0))", "first_in_grid - first_foreign"),
+            ],
         },
     ]
 }

@@ -16,15 +16,35 @@ use haze::formula::lighting::{
     backlight_weight, coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
 };
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
-use haze::formula::shadow::{of_slot, shadow_position};
+use haze::formula::shadow::{LIGHT_BLOCKS, further_optical_depths, of_slot, shadow_position};
 use haze::formula::six_way::{SixWay, six_way_response};
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
 
 impl VisibleSystem<'_> {
-    /// Share of each light with shadow that reaches the smoke at a pixel past the scene. `moments`: those of its depth.
-    pub fn scene_visibility(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
-        self.mean_along_ray(pixel, moments, OpticalDepths::sample_visible)
+    /// Optical depths of the smoke at a pixel, through other smoke. `accumulated`: those that its sprites found towards the lights
+    /// of the first block. `moments`: those of its depth.
+    pub fn optical_depths_on_ray(&self, accumulated: Vec3, pixel: Vec2, moments: Vec2) -> [Vec3; LIGHT_BLOCKS] {
+        let in_grid = |block| self.mean_along_ray(pixel, moments, |volume, place| volume.sample(block, place));
+        let mut depths = [Vec3::ZERO; LIGHT_BLOCKS];
+        depths[0] = accumulated;
+        let blocks = self.settings.shadow_blocks() as usize;
+        if blocks > 1 {
+            let first = in_grid(0);
+            for (block, depths) in depths.iter_mut().enumerate().take(blocks).skip(1) {
+                *depths = further_optical_depths(in_grid(block), first, accumulated);
+            }
+        }
+        depths
+    }
+
+    /// Share of each light with shadow that reaches the smoke at a pixel past the scene.
+    pub fn scene_visibility(&self, pixel: Vec2, moments: Vec2) -> [Vec3; LIGHT_BLOCKS] {
+        let mut visible = [Vec3::ONE; LIGHT_BLOCKS];
+        for (block, visible) in visible.iter_mut().enumerate().take(self.settings.shadow_blocks() as usize) {
+            *visible = self.mean_along_ray(pixel, moments, |volume, place| volume.sample_visible(block, place));
+        }
+        visible
     }
 
     /// Openness of the smoke at a pixel to sky and ground.
@@ -115,9 +135,9 @@ impl VisibleSystem<'_> {
             return Vec3::ONE;
         }
         let to_viewer = direction_to_viewer(position, self.view.orthographic);
-        let at = shadow_position(of_slot(light.shadow_slot, shade.optical_depths), to_light, to_viewer);
+        let at = shadow_position(of_slot(light.shadow_slot, &shade.optical_depths), to_light, to_viewer);
         let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
-        Vec3::ONE.lerp(painted, self.system.shadow_strength) * of_slot(light.shadow_slot, shade.visible)
+        Vec3::ONE.lerp(painted, self.system.shadow_strength) * of_slot(light.shadow_slot, &shade.visible)
     }
 
     /// Sum of all lights through six-way maps.

@@ -28,10 +28,11 @@ impl VisibleSystem<'_> {
                 let normal = fragment.normal / fragment.normal.length_squared().max(1.0e-12).sqrt();
                 let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
                 let covered = coverage(amount, system.boost);
-                let mut shade = Shade { optical_depths: sprite.optical_depths, ..Shade::NONE };
+                let mut shade = Shade::of_sprites(sprite.optical_depths);
                 if self.settings.lights_by_depth() {
                     let moments = self.moments_of_sprite(sprite.view_depth, sprite.radius);
                     let pixel = at.as_vec2() + 0.5;
+                    shade.optical_depths = self.optical_depths_on_ray(sprite.optical_depths, pixel, moments);
                     shade.visible = self.scene_visibility(pixel, moments);
                     shade.openness = self.openness(pixel, moments);
                 }

@@ -5,13 +5,20 @@ use half::f16;
 
 use crate::optical_depths::{cell_index, trilinear};
 use haze::formula::ambient::{SKY_DIRECTIONS, SKY_STEPS};
-use haze::formula::shadow::{MAX_OPTICAL_DEPTH, SHADOW_STEPS, shadow_ray};
+use haze::formula::shadow::{LIGHTS_PER_BLOCK, MAX_OPTICAL_DEPTH, SHADOW_STEPS, light_disc_offset, shadow_ray};
 use haze::view_setup::SmokeShadow;
 
-/// Marches from every cell of a density grid to every light with shadow. `density`: optical depths across the cells.
-pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow) -> Vec<Vec3> {
-    let towards = |origin, light: Vec4| optical_depth_towards(density, shadow, light, origin, SHADOW_STEPS);
-    let march = |origin| Vec3::from(shadow.march.lights.map(|light| stored(towards(origin, light))));
+/// Marches from every cell of a density grid to the lights of a block. `density`: optical depths across the cells.
+pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow, block: u32) -> Vec<Vec3> {
+    let block = block as usize;
+    let lights = &shadow.march.lights[block * LIGHTS_PER_BLOCK..][..LIGHTS_PER_BLOCK];
+    let radii = shadow.march.radii[block];
+    let march = |origin| {
+        let towards = |slot: usize| {
+            stored(optical_depth_towards(density, shadow, (lights[slot], radii[slot]), origin, SHADOW_STEPS))
+        };
+        Vec3::from([0, 1, 2].map(towards))
+    };
     cell_centres(shadow.grid.size).map(march).collect()
 }
 
@@ -19,7 +26,7 @@ pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow) -> Vec<Vec3> {
 pub fn march_to_sky(density: &[f32], shadow: &SmokeShadow) -> Vec<Vec3> {
     let openness = |origin: Vec3, side: f32| {
         let directions = shadow.march.sky.map(|direction| (direction.truncate() * side).extend(1.0));
-        let depths = directions.map(|to| optical_depth_towards(density, shadow, to, origin, SKY_STEPS));
+        let depths = directions.map(|to| optical_depth_towards(density, shadow, (to, 0.0), origin, SKY_STEPS));
         stored(depths.map(|depth| (-depth).exp2()).iter().sum::<f32>() / SKY_DIRECTIONS as f32)
     };
     let march = |origin| Vec3::new(openness(origin, 1.0), openness(origin, -1.0), 0.0);
@@ -31,13 +38,25 @@ fn cell_centres(size: UVec3) -> impl Iterator<Item = Vec3> {
     (0..size.element_product()).map(move |index| cell(index).as_vec3() + 0.5)
 }
 
-fn optical_depth_towards(density: &[f32], shadow: &SmokeShadow, light: Vec4, origin: Vec3, steps: u32) -> f32 {
+/// `light`: as in [`shadow_ray`], and its radius in cells.
+fn optical_depth_towards(
+    density: &[f32],
+    shadow: &SmokeShadow,
+    (light, radius): (Vec4, f32),
+    origin: Vec3,
+    steps: u32,
+) -> f32 {
     let load =
         |cell: IVec3| cell_index(shadow.grid.size, cell).and_then(|index| density.get(index).copied()).unwrap_or(0.0);
     let ray = shadow_ray(light, origin, shadow.march.size);
     let step = ray.w / steps as f32;
-    let places = (0..steps).map(|i| origin + ray.truncate() * ((i as f32 + 0.5) * step));
-    let depth: f32 = places.map(|place| trilinear(place, load)).sum();
+    // The steps fill the cone between the point and the light's disc.
+    let slope = radius / light.truncate().distance(origin).max(1.0e-4);
+    let place = |i: u32| {
+        let along = (i as f32 + 0.5) * step;
+        origin + ray.truncate() * along + light_disc_offset(i, ray.truncate()) * (along * slope)
+    };
+    let depth: f32 = (0..steps).map(|i| trilinear(place(i), load)).sum();
     (depth * step).min(MAX_OPTICAL_DEPTH)
 }
 

@@ -9,11 +9,11 @@ use haze::formula::shadow_map::{shadow_map_place, shadow_map_visibility};
 use haze::formula::uniforms::ShadowMapUniform;
 use haze::view_setup::SmokeShadow;
 
-/// Share of each cell of the density grid that the lights with shadow reach past the scene.
-pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow) -> Vec<Vec3> {
+/// Share of each cell of the density grid that the lights of a block reach past the scene.
+pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u32) -> Vec<Vec3> {
     let of_light = |light: usize| maps.iter().find(|map| map.projection.light == light);
-    let uniform = shadow.visibility(|light| of_light(light).map(|map| map.projection));
-    let layers = shadow.lights.map(|light| light.and_then(of_light).map_or(&[][..], |map| map.layers));
+    let uniform = shadow.visibility(block, |light| of_light(light).map(|map| map.projection));
+    let layers = shadow.lights_of_block(block).map(|light| light.and_then(of_light).map_or(&[][..], |map| map.layers));
     let size = shadow.grid.size;
     let look_up = |index: u32| {
         let cell = UVec3::new(index % size.x, index / size.x % size.y, index / (size.x * size.y));

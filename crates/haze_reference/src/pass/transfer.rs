@@ -147,6 +147,8 @@ impl AccumulatedTarget<'_> {
     pub fn shaded_surface(&self, attachments: &Attachments, pixel: Vec2) -> Surface {
         let mut surface = self.surface(attachments);
         if AttachmentRole::Depth.is_used(&self.visible.settings) {
+            let accumulated = surface.shade.optical_depths[0];
+            surface.shade.optical_depths = self.visible.optical_depths_on_ray(accumulated, pixel, surface.depth);
             surface.shade.visible = self.visible.scene_visibility(pixel, surface.depth);
             surface.shade.openness = self.visible.openness(pixel, surface.depth);
         }
@@ -168,7 +170,7 @@ impl AccumulatedTarget<'_> {
         let settings = self.visible.settings;
         let accumulate = &settings.accumulate;
         let [accumulated, six_way, weights, depths, moments, heat, tint] = *attachments;
-        let shade = Shade { optical_depths: depths.xyz() / depths.w.max(1.0e-6), ..Shade::NONE };
+        let shade = Shade::of_sprites(depths.xyz() / depths.w.max(1.0e-6));
         let depth = moments.xy() / moments.w.max(1.0e-6);
         let tint = match AttachmentRole::Tint.is_used(&settings) {
             true => tint.xyz().max(Vec3::ZERO) / tint.w.max(1.0e-6),
