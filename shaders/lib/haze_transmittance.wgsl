@@ -20,10 +20,10 @@ struct SceneShadow {
     indices: array<vec4u, 4>,
 }
 
-@group(0) @binding(0) var<uniform> haze_scene_shadow: SceneShadow;
-@group(0) @binding(1) var haze_optical_depths: texture_3d<f32>;
-@group(0) @binding(2) var haze_shadow_ramp: texture_2d<f32>;
-@group(0) @binding(3) var haze_linear_sampler: sampler;
+@group(3) @binding(0) var<uniform> haze_scene_shadow: SceneShadow;
+@group(3) @binding(1) var haze_optical_depths: texture_3d<f32>;
+@group(3) @binding(2) var haze_shadow_ramp: texture_2d<f32>;
+@group(3) @binding(3) var haze_linear_sampler: sampler;
 
 // Share of a light that reaches a point through the smoke, linear RGB: multiply the light's diffuse and specular parts.
 // `light`: index in FrameInput::lights. 1 for lights without shadow, and where there is no smoke before the light.

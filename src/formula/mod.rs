@@ -18,6 +18,7 @@ pub mod normal;
 pub mod order;
 pub mod ramp;
 pub mod scene_shadow;
+pub mod screen_shadow;
 pub mod shadow;
 pub mod shadow_map;
 pub mod six_way;

@@ -146,7 +146,7 @@ uniform! {
 }
 
 uniform! {
-    /// `ShadowMap` in `shaders/shadow_visibility.wgsl`.
+    /// `ShadowMap` in `shaders/lib/shadow_map_lookup.wgsl`.
     ShadowMapUniform {
         clip_from_grid: [Mat4; 6],
         layers: u32,
@@ -157,7 +157,7 @@ uniform! {
 }
 
 uniform! {
-    /// `ShadowVisibility` in `shaders/shadow_visibility.wgsl`.
+    /// `ShadowVisibility` in `shaders/lib/shadow_map_lookup.wgsl`.
     ShadowVisibilityUniform {
         maps: [ShadowMapUniform; 3],
         size: Vec3,
@@ -174,6 +174,15 @@ uniform! {
         strength: f32,
         lights: [Vec4; 15],
         indices: [u32; 16],
+    }
+}
+
+uniform! {
+    /// `ScreenShadow` in `shaders/screen_shadow.wgsl`.
+    ScreenShadowUniform {
+        world_from_view: Mat4,
+        ambient: Vec3,
+        light_count: u32,
     }
 }
 

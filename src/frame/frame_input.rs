@@ -26,6 +26,10 @@ pub struct FrameInput<'a> {
     /// Shadow maps of lights, at most one per light. They shade the smoke of systems with
     /// [`shadow.by_depth`](crate::settings::Shadow::by_depth), for the lights that cast shadow.
     pub shadow_maps: &'a [ShadowMap<'a>],
+    /// Prepares [`Renderer::render_scene_shadow`](crate::Renderer::render_scene_shadow): the light that reaches every surface
+    /// of the scene, such as that of the sky, as a white matte surface shows it, in the units of the lights. `None`
+    /// prepares nothing.
+    pub scene_ambient: Option<Vec3>,
     /// Particle systems, in any order. They are drawn far to near.
     pub systems: &'a [ParticleSystem<'a>],
     /// Multiplies all light that the smoke sends to the viewer, for hosts whose target holds exposed light. 1 leaves it
@@ -50,6 +54,7 @@ impl<'a> FrameInput<'a> {
             target_size: None,
             lights: &[],
             shadow_maps: &[],
+            scene_ambient: None,
             systems: &[],
             exposure: 1.0,
             time: 0.0,

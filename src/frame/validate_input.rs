@@ -101,7 +101,12 @@ pub fn validate_shadow_projections<'a>(
 }
 
 /// Validates the numbers of a frame.
-pub fn validate_frame_numbers(exposure: f32, time: f32, up: Vec3) -> Result<(), FieldError> {
+pub fn validate_frame_numbers(
+    exposure: f32,
+    time: f32,
+    up: Vec3,
+    scene_ambient: Option<Vec3>,
+) -> Result<(), FieldError> {
     if !exposure.is_finite() || exposure < 0.0 {
         return Err(FieldError::new("exposure", exposure, "a finite number, at least 0"));
     }
@@ -110,6 +115,9 @@ pub fn validate_frame_numbers(exposure: f32, time: f32, up: Vec3) -> Result<(), 
     }
     if up.normalize_or_zero() == Vec3::ZERO {
         return Err(FieldError::new("up", up, "a direction that is not zero"));
+    }
+    if let Some(light) = scene_ambient.filter(|light| !light.is_finite() || light.min_element() < 0.0) {
+        return Err(FieldError::new("scene_ambient", light, "finite numbers, at least 0, or None"));
     }
     Ok(())
 }

@@ -8,6 +8,7 @@ use glam::{UVec2, Vec3};
 use super::auto::PathModel;
 use super::gpu::Gpu;
 use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
+use super::gpu::host_pass::HostPass;
 use super::gpu::pipeline::PipelineStore;
 use super::gpu::timing::Timing;
 use super::layouts::Layouts;
@@ -103,6 +104,7 @@ impl Context {
         plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()
             .try_for_each(|plan| shared.pipelines.compile(plan))?;
+        shared.pipelines.screen_shadow.check(HostPass::color_only(wgpu::TextureFormat::Rgba16Float))?;
         // OpenGL cannot read multisampled depth.
         if shared.read_only_depth {
             shared.pipelines.depth_resolve.check(DepthResolveKey { reversed: false })?;

@@ -1,7 +1,9 @@
 //! Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. See `shaders/lib/bindings.wgsl`.
 
 use super::gpu::capabilities::tiles_are_supported;
-use crate::formula::uniforms::{LightUniform, SceneShadowUniform, SystemUniform, ViewUniform};
+use crate::formula::uniforms::{
+    LightUniform, SceneShadowUniform, ScreenShadowUniform, ShadowVisibilityUniform, SystemUniform, ViewUniform,
+};
 use crate::frame::MAX_LIGHTS;
 use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 
@@ -37,6 +39,9 @@ pub(crate) struct Layouts {
     pub lit: wgpu::BindGroupLayout,
     /// Of a host's shaders: shadow of the smoke on the scene.
     pub scene_shadow: wgpu::BindGroupLayout,
+    /// A host's shadow maps of a block of lights.
+    pub shadow_maps: wgpu::BindGroupLayout,
+    pub screen_shadow: wgpu::BindGroupLayout,
 }
 
 impl Layouts {
@@ -89,6 +94,7 @@ impl Layouts {
             view_dimension: D2,
             multisampled: true,
         };
+        let map = texture(unfilterable, D2Array);
         let mut transfer = [texture(unfilterable, D2); TRANSFER_TEXTURES];
         transfer[2] = texture(filterable, D2Array);
         Self {
@@ -114,6 +120,14 @@ impl Layouts {
                     texture(filterable, D2),
                     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                 ],
+            ),
+            shadow_maps: layout(
+                "haze shadow maps",
+                &[uniform(size_of::<ShadowVisibilityUniform>() as u64), map, map, map],
+            ),
+            screen_shadow: layout(
+                "haze screen_shadow inputs",
+                &[uniform(size_of::<ScreenShadowUniform>() as u64), uniform(LIGHTS_SIZE)],
             ),
         }
     }

@@ -19,7 +19,9 @@ mod pipelines;
 mod plan;
 mod resolved_depth;
 mod scene_shadow;
+mod screen_shadow;
 pub mod shader;
+mod shadow_map_bindings;
 mod sprite_instances;
 mod system_particles;
 mod system_passes;
@@ -58,6 +60,7 @@ use pass::depth_resolve::DepthResolveKey;
 use plan::{PipelineInputs, plan};
 use resolved_depth::ResolvedDepth;
 use scene_shadow::SceneShadow;
+use screen_shadow::ScreenShadowState;
 use system_passes::SystemPasses;
 use system_state::SystemState;
 use tiled::ShadowVolume;
@@ -82,6 +85,7 @@ pub struct Renderer {
     bindings: FrameBindings,
     shadow_volume: ShadowVolume,
     scene_shadow: SceneShadow,
+    screen_shadow: ScreenShadowState,
     /// Lights of the frame that cast shadow.
     shadowed_lights: [Option<usize>; SHADOWED_LIGHTS],
     /// True between `cast_shadow` and the `prepare` that completes the frame.
@@ -120,6 +124,7 @@ impl Renderer {
             bindings: FrameBindings::new(device),
             shadow_volume: ShadowVolume::default(),
             scene_shadow: SceneShadow::new(context.shared()),
+            screen_shadow: ScreenShadowState::default(),
             shadowed_lights: [None; SHADOWED_LIGHTS],
             has_cast: false,
             states: Vec::new(),
@@ -153,6 +158,9 @@ impl Renderer {
             settings.validate(path)?;
             AttachmentSet::validate(settings, path)?;
             // The material is not known yet: compiles for one frame and for several, for smooth ramps and hard ones.
+            if settings.receives_shadow() {
+                shared.pipelines.screen_shadow.check(self.host)?;
+            }
             for (frame_count, ramps) in
                 [(1.0, RampSteps::default()), (2.0, RampSteps::default()), (2.0, RampSteps::HARD)]
             {
@@ -277,6 +285,9 @@ impl Renderer {
         let grid = shadow.as_ref().and_then(|shadow| self.shadow_volume.of_frame(shadow));
         grid.iter().for_each(|_| self.shadow_volume.clear(encoder));
         self.scene_shadow.write(shared, frame, grid);
+        if self.screen_shadow.write(shared, frame, &view, shadow.as_ref().filter(|_| grid.is_some())) {
+            shared.pipelines.screen_shadow.check(self.host)?;
+        }
         let (host_size, bindings) = (host_size(frame), &self.bindings);
         let context =
             FrameContext { gpu, shared, frame, view: &view, host_size, inputs: &inputs, bindings, shadow: grid };
@@ -315,6 +326,25 @@ impl Renderer {
     /// constant unchanged.
     pub fn render(&self, pass: &mut wgpu::RenderPass<'_>) {
         self.render_debug_view(pass, DebugView::Final);
+    }
+
+    /// Darkens the host's picture by the shadow of the smoke, for hosts whose shaders do not call
+    /// [`shader::scene_shadow_wgsl`]: record it in the pass of [`render`](Self::render), after the opaque scene and before
+    /// the smoke. Needs [`FrameInput::scene_ambient`]. State of the pass as in `render`.
+    ///
+    /// Each pixel is multiplied by the share of its light that is left, for a white matte surface whose normal comes from
+    /// the scene depth, under the lights of the frame, in the shadow of [`FrameInput::shadow_maps`] of the three brightest.
+    /// Reflections and glowing surfaces darken as well: a host's own shader does better.
+    pub fn render_scene_shadow(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(view) = self.view.as_ref().filter(|_| !self.has_cast) else { return };
+        let Some(frame) = self.bindings.any() else { return };
+        let shared = self.context.shared();
+        let Some(shadow) = self.screen_shadow.pass(shared, self.host, &frame.frame, self.scene_shadow.group()) else {
+            return;
+        };
+        self.submission.track_pass(pass);
+        set_viewport_and_scissor(pass, view.origin, view.size);
+        Timing::measure_in_pass(self.timing.as_ref(), "screen_shadow", pass, |pass| shadow.record(pass));
     }
 
     /// Records a debug view instead of the final image. Draws nothing unless `debug_view` is one of the frame's

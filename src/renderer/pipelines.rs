@@ -1,6 +1,7 @@
 //! Shaders of all passes, and their pipelines.
 
 use super::gpu::capabilities::tiles_are_supported;
+use super::gpu::host_pass::HostPass;
 use super::gpu::pipeline::{PipelineStore, PipelineVariants, Shader, pipeline_variants};
 use super::layouts::Layouts;
 use super::pass::accumulate::{self, AccumulateKey};
@@ -10,6 +11,7 @@ use super::pass::depth_slopes::{self, DepthSlopesKey};
 use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
 use super::pass::light_target::{self, LightingKey};
+use super::pass::screen_shadow;
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
 use super::pass::transfer_lit::{self, TransferLitKey};
@@ -30,6 +32,7 @@ pub(crate) struct Pipelines {
     pub transfer_lit: PipelineVariants<TransferLitKey>,
     pub specular_scatter: PipelineVariants<SpecularScatterKey>,
     pub forward: PipelineVariants<ForwardKey>,
+    pub screen_shadow: PipelineVariants<HostPass>,
     pub store: PipelineStore,
     /// `None` if the device does not support the path `tiled`.
     pub tiled: Option<TiledPipelines>,
@@ -48,6 +51,8 @@ impl Pipelines {
         let accumulate = with(&layouts.material, &layouts.accumulate);
         let transfer = with(&layouts.lighting, &layouts.transfer);
         let lit = with(&layouts.lighting, &layouts.lit);
+        let screen_shadow =
+            [&layouts.shadow_maps, &layouts.frame, &layouts.screen_shadow, &layouts.scene_shadow].map(Some);
         Ok(Self {
             depth_downsample: pipeline_variants!(store, shader, depth_downsample, &frame_and_system),
             depth_resolve: pipeline_variants!(store, shader, depth_resolve, &[Some(&layouts.depth_resolve)]),
@@ -59,6 +64,7 @@ impl Pipelines {
             transfer_lit: pipeline_variants!(store, shader, transfer_lit, &lit),
             specular_scatter: pipeline_variants!(store, shader, specular_scatter, &lit),
             forward: pipeline_variants!(store, shader, forward, &material),
+            screen_shadow: pipeline_variants!(store, shader, screen_shadow, &screen_shadow),
             store: store.clone(),
             tiled: match tiles_are_supported(&store.device) {
                 true => Some(TiledPipelines::new(store, layouts, &shader)?),

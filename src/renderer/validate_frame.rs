@@ -24,7 +24,7 @@ use crate::settings::{DepthSource, RenderPath, Technique};
 /// # Errors
 /// Names the first field that is not valid.
 pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &FrameInput<'_>) -> Result<(), FieldError> {
-    validate_frame_numbers(frame.exposure, frame.time, frame.up)?;
+    validate_frame_numbers(frame.exposure, frame.time, frame.up, frame.scene_ambient)?;
     let size = validate_scene_depth(shared, frame)?;
     if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
         let View { size: pixels, origin, .. } = frame.view;

@@ -28,4 +28,4 @@ pub use smoke_shadow::{SmokeGrid, SmokeShadow};
 pub use sprite_projector::{ProjectedSprite, SpriteProjector, SpriteTrim, TexelGrid};
 pub use system_setup::{SystemInput, SystemSetup, caster_uniform, system_setup};
 pub use view_geometry::ViewGeometry;
-pub use view_lights::light_uniforms;
+pub use view_lights::{light_uniforms, scene_light_uniforms};

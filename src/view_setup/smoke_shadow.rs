@@ -169,6 +169,11 @@ impl SmokeShadow {
         if self.has_openness { self.blocks() - 1 } else { 0 }
     }
 
+    /// Returns the matrix from cells to world space.
+    pub fn world_from_grid(&self) -> Mat4 {
+        self.grid.world_from_grid().as_mat4()
+    }
+
     /// Returns the lights of a block.
     pub fn lights_of_block(&self, block: u32) -> [Option<usize>; LIGHTS_PER_BLOCK] {
         let first = block as usize * LIGHTS_PER_BLOCK;

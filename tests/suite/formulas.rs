@@ -207,6 +207,8 @@ const INDIRECT: &[(&str, &str)] = &[
     ("optical_depths_on_ray", "calls mean_along_ray and further_optical_depths"),
     ("scene_visibility", "calls mean_along_ray"),
     ("fully_visible", "a constant"),
+    ("scene_point", "reads the scene's depth; whole frames with a shaded scene cover it"),
+    ("scene_share", "reads a host's shadow map; whole frames with a shaded scene cover it"),
     ("shade_of_sprites", "fills a struct; whole frames with shadow cover it"),
     ("openness", "calls mean_along_ray"),
     ("openness_towards", "reads the density grid; whole frames with ambient light cover it"),

@@ -1,8 +1,8 @@
 //! Compares definitions that exist in both Rust and WGSL: struct layouts, constants, and the numbers of setting enums.
 
 use haze::formula::uniforms::{
-    EmitterUniform, LightUniform, MeasureUniform, SceneShadowUniform, ShadowMapUniform, ShadowMarchUniform,
-    ShadowVisibilityUniform, SplatUniform, SystemUniform, TilesUniform, UniformField, ViewUniform,
+    EmitterUniform, LightUniform, MeasureUniform, SceneShadowUniform, ScreenShadowUniform, ShadowMapUniform,
+    ShadowMarchUniform, ShadowVisibilityUniform, SplatUniform, SystemUniform, TilesUniform, UniformField, ViewUniform,
 };
 use haze::{Particle, formula, frame, settings, shader, view_setup};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -113,6 +113,8 @@ fn wgsl_structs_match_rust() {
     assert_layout(&composed("lib/emitter.wgsl"), "Emitter", EmitterUniform::FIELDS, size_of::<EmitterUniform>());
     assert_layout(&composed("measure.wgsl"), "Measure", MeasureUniform::FIELDS, size_of::<MeasureUniform>());
     assert_layout(&composed("density_splat.wgsl"), "Splat", SplatUniform::FIELDS, size_of::<SplatUniform>());
+    let screen = composed("screen_shadow.wgsl");
+    assert_layout(&screen, "ScreenShadow", ScreenShadowUniform::FIELDS, size_of::<ScreenShadowUniform>());
     let scene = composed("lib/haze_transmittance.wgsl");
     assert_layout(&scene, "SceneShadow", SceneShadowUniform::FIELDS, size_of::<SceneShadowUniform>());
     let maps = composed("shadow_visibility.wgsl");

@@ -367,6 +367,77 @@ fn smoke_shades_a_further_light_nearly_as_one_of_the_first_three() {
     assert!(error(&further) < 0.1 * error(&unshaded), "{} {}", error(&further), error(&unshaded));
 }
 
+/// A picture of the scene that the smoke darkens.
+fn over_a_lit_scene() -> TestScene {
+    let mut scene = under_a_roof();
+    scene.lights.push(Light { position: vec3(-2.0, 1.0, -4.5), intensity: 4.0, ..Light::default() });
+    scene.scene_ambient = Some(vec3(0.1, 0.15, 0.2));
+    scene
+}
+
+#[test]
+fn gpu_and_cpu_shade_the_scene_alike() {
+    if !is_tiled_available() {
+        return;
+    }
+    type Change = fn(&mut TestScene);
+    let changes: &[(&str, Change)] = &[
+        ("depth buffer", |_| {}),
+        ("linear depth", |s| (s.depth, s.attach_depth) = (DepthKind::Linear, false)),
+        ("multisampled", |s| (s.depth, s.host.samples) = (DepthKind::Multisampled, 4)),
+        ("without maps", |s| s.shadow_maps.clear()),
+        ("no ambient light", |s| s.scene_ambient = Some(Vec3::ZERO)),
+        ("forward", |s| s.settings.path = RenderPath::Forward),
+        ("many lights", |s| {
+            s.settings.shadow.lights = 15;
+            let light = |i: u32| Light { position: vec3(i as f32 - 3.0, 1.0, -4.0), ..Light::default() };
+            s.lights.extend((0..6).map(light));
+        }),
+    ];
+    for (name, change) in changes {
+        let mut scene = over_a_lit_scene();
+        change(&mut scene);
+        let (seen, reference) = (drawn(&scene), scene.on_cpu());
+        let same = psnr(&seen, &reference);
+        scene.scene_ambient = None;
+        let effect = psnr(&drawn(&scene), &seen);
+        println!("{name}: {same:.1} dB, scene not shaded {effect:.1} dB");
+        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
+        assert!(effect < 45.0, "{name}: scene not shaded {effect:.1} dB");
+    }
+}
+
+#[test]
+fn under_one_light_the_scene_keeps_what_comes_through_the_smoke() {
+    let mut scene = over_a_lit_scene();
+    scene.lights.truncate(1);
+    scene.shadow_maps.clear();
+    scene.wall_everywhere = true;
+    scene.lights[0].direction = vec3(0.1, -0.2, -1.0);
+    let depth = scene.ndc_depth();
+    let systems = [haze_reference::ParticleSystem::new(&scene.particles, &scene.settings, &scene.material)];
+    let frame = haze_reference::FrameInput {
+        lights: &scene.lights,
+        systems: &systems,
+        scene_ambient: Some(Vec3::ZERO),
+        ..haze_reference::FrameInput::new(scene.view, &depth)
+    };
+    let frame = haze_reference::PreparedFrame::new(&frame, SIZE).unwrap();
+    let mut picture = Image::new(SIZE, Vec4::ONE);
+    frame.shade_scene(&mut picture);
+    let shadow = frame.scene_shadow().unwrap();
+    let world_from_clip = (scene.view.clip_from_view * scene.view.view_from_world).inverse();
+    let mut darkest = 1.0_f32;
+    picture.clone().for_each(|at, texel| {
+        let uv = (at.as_vec2() + 0.5) / SIZE.as_vec2();
+        let ndc = vec3(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, depth.load(at.as_ivec2()));
+        let expected = shadow.haze_transmittance(world_from_clip.project_point3(ndc), 0);
+        assert!((texel.truncate() - expected).abs().max_element() < 1e-2, "{at}: {texel} {expected}");
+    });
+    picture.texels.iter().for_each(|texel| darkest = darkest.min(texel.y));
+    assert!(darkest < 0.7, "{darkest}");
+}
+
 #[test]
 fn a_larger_lamp_casts_a_softer_shadow() {
     let mut scene = shaded();

@@ -237,6 +237,7 @@ impl Host {
             .collect();
         let frame = FrameInput {
             shadow_maps: &shadow_maps,
+            scene_ambient: scene.scene_ambient,
             lights: &scene.lights,
             systems: &systems,
             target_size: scene.host.target_size,
@@ -251,7 +252,10 @@ impl Host {
 
     /// Records the host's pass, the second half of a frame.
     pub fn render(&self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) {
-        self.render_with(encoder, scene, |pass| self.renderer.render_debug_view(pass, scene.debug_view));
+        self.render_with(encoder, scene, |pass| {
+            self.renderer.render_scene_shadow(pass);
+            self.renderer.render_debug_view(pass, scene.debug_view);
+        });
     }
 
     /// Records the host's pass; `draw` records its contents.

@@ -27,6 +27,8 @@ pub struct TestScene {
     pub view_direction_z: f32,
     pub lights: Vec<Light>,
     pub shadow_maps: Vec<TestShadowMap>,
+    /// Shades the backdrop by the smoke, with this ambient light.
+    pub scene_ambient: Option<Vec3>,
     pub particles: Vec<Particle>,
     /// Particles and settings of further systems.
     pub others: Vec<(Vec<Particle>, Settings)>,
@@ -189,6 +191,7 @@ impl TestScene {
                 Light { position: vec3(0.5, 0.3, -8.5), intensity: 3.0, ..Light::default() },
             ],
             shadow_maps: Vec::new(),
+            scene_ambient: None,
             particles: (0..60).map(particle).collect(),
             others: Vec::new(),
             bounds: None,
@@ -270,6 +273,7 @@ impl TestScene {
             .collect();
         let frame = haze_reference::FrameInput {
             shadow_maps: &shadow_maps,
+            scene_ambient: self.scene_ambient,
             view: self.view,
             scene_depth: &self.ndc_depth(),
             lights: &self.lights,
@@ -279,7 +283,9 @@ impl TestScene {
             up: self.up,
             debug_view: self.debug_view,
         };
-        haze_reference::render(&frame, &mut picture)?;
+        let frame = haze_reference::PreparedFrame::new(&frame, picture.size)?;
+        frame.shade_scene(&mut picture);
+        frame.render(&mut picture);
         Ok(picture)
     }
 }

@@ -18,6 +18,8 @@ pub struct FrameInput<'a> {
     pub lights: &'a [Light],
     /// Shadow maps of lights, at most one per light.
     pub shadow_maps: &'a [ShadowMap<'a>],
+    /// As [`haze::FrameInput::scene_ambient`], for [`PreparedFrame::shade_scene`](super::PreparedFrame::shade_scene).
+    pub scene_ambient: Option<Vec3>,
     /// Particle systems, drawn far to near.
     pub systems: &'a [ParticleSystem<'a>],
     /// Multiplies all light that the smoke sends to the viewer.
@@ -39,6 +41,7 @@ impl<'a> FrameInput<'a> {
             scene_depth,
             lights: &[],
             shadow_maps: &[],
+            scene_ambient: None,
             systems: &[],
             exposure: 1.0,
             time: 0.0,

@@ -10,6 +10,7 @@ pub mod optical_depths;
 pub mod pass;
 mod probe;
 mod scene_shadow;
+mod screen_shadow;
 pub mod shade;
 pub mod sprite;
 pub mod visible_system;
@@ -21,12 +22,14 @@ use glam::{UVec2, Vec4};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::settings::DebugView;
+use haze::view_setup::ViewGeometry;
 
 pub use accumulated::AccumulatedTextures;
 use accumulated::{AccumulatedTarget, LitTarget};
 pub use input::{FrameInput, ParticleSystem, ShadowMap};
 pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
 pub use scene_shadow::SceneShadow;
+use screen_shadow::ScreenShadow;
 use visible_system::{VisibleSystem, place_systems};
 
 /// Frame whose shadow is computed, before its smoke is drawn.
@@ -34,6 +37,7 @@ pub struct PreparedFrame<'a> {
     systems: Vec<(usize, VisibleSystem<'a>)>,
     debug_view: DebugView,
     scene_shadow: Option<SceneShadow>,
+    screen_shadow: Option<ScreenShadow<'a>>,
 }
 
 impl<'a> PreparedFrame<'a> {
@@ -45,17 +49,26 @@ impl<'a> PreparedFrame<'a> {
         let placed = place_systems(frame, picture)?;
         let volume = placed.shadow.map(|shadow| (shadow, Arc::new(placed.shadow_volume(frame, &shadow))));
         let mut systems = placed.visible;
-        let mut scene_shadow = None;
+        let (mut scene_shadow, mut screen_shadow) = (None, None);
         if let Some((shadow, depths)) = volume {
             systems.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(depths.clone()));
             scene_shadow = SceneShadow::new(frame, &shadow, &depths);
+            screen_shadow = ScreenShadow::new(frame, &ViewGeometry::new(&frame.view)?, &shadow);
         }
-        Ok(Self { systems, debug_view: frame.debug_view, scene_shadow })
+        Ok(Self { systems, debug_view: frame.debug_view, scene_shadow, screen_shadow })
     }
 
     /// Shadow of the smoke on the scene, if it casts any.
     pub fn scene_shadow(&self) -> Option<&SceneShadow> {
         self.scene_shadow.as_ref()
+    }
+
+    /// Darkens a lit picture of the scene by the shadow of the smoke, as
+    /// [`Renderer::render_scene_shadow`](haze::Renderer::render_scene_shadow) does.
+    pub fn shade_scene(&self, picture: &mut Image<Vec4>) {
+        if let (Some(screen), Some(shadow)) = (&self.screen_shadow, &self.scene_shadow) {
+            screen.shade(shadow, picture);
+        }
     }
 
     /// Blends the smoke over `picture`, linear HDR.

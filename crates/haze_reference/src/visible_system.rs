@@ -162,7 +162,7 @@ pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<Place
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
     validate_shadow_projections(frame.lights.len(), frame.shadow_maps.iter().map(|map| map.projection))?;
-    validate_frame_numbers(frame.exposure, frame.time, frame.up)?;
+    validate_frame_numbers(frame.exposure, frame.time, frame.up, frame.scene_ambient)?;
     for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture)] {
         if size != frame.view.size {
             let value = format!("{}x{}", size.x, size.y);

@@ -12,6 +12,7 @@ pub(crate) mod emit;
 pub(crate) mod forward;
 pub(crate) mod light_target;
 pub(crate) mod measure;
+pub(crate) mod screen_shadow;
 pub(crate) mod shadow_march;
 pub(crate) mod shadow_visibility;
 pub(crate) mod sort;

@@ -36,7 +36,7 @@ pub fn compose(text: &str) -> Result<String, String> {
 pub fn scene_shadow_wgsl(group: u32) -> String {
     let text = Sources::embedded().compose_text("#import \"lib/haze_transmittance.wgsl\"\n");
     // The embedded file exists: the tests compose it.
-    text.map(|composed| composed.text).unwrap_or_default().replace("@group(0)", &format!("@group({group})"))
+    text.map(|composed| composed.text).unwrap_or_default().replace("@group(3)", &format!("@group({group})"))
 }
 
 #[cfg(test)]

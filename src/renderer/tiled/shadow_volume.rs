@@ -5,8 +5,7 @@ use glam::UVec2;
 use super::storage_buffers::{bind, storage};
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
-use crate::formula::shadow::LIGHTS_PER_BLOCK;
-use crate::formula::uniforms::{ShadowMarchUniform, ShadowVisibilityUniform, SplatUniform};
+use crate::formula::uniforms::{ShadowMarchUniform, SplatUniform};
 use crate::frame::ShadowMap;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
@@ -16,6 +15,7 @@ use crate::renderer::pass::Groups;
 use crate::renderer::pass::density_splat::DensitySplat;
 use crate::renderer::pass::shadow_march::{MarchTo, ShadowMarch};
 use crate::renderer::pass::shadow_visibility::ShadowVisibility;
+use crate::renderer::shadow_map_bindings::ShadowMapBindings;
 use crate::renderer::sprite_instances::Sprites;
 use crate::view_setup::SmokeShadow;
 
@@ -43,18 +43,7 @@ struct VolumeBuffers {
     optical_depths: wgpu::TextureView,
     march: wgpu::BindGroup,
     /// By block of lights; empty unless shadow maps shade smoke.
-    maps: Vec<MapBuffers>,
-}
-
-/// Lookups of a host's shadow maps of a block of lights.
-#[derive(Debug)]
-struct MapBuffers {
-    uniform: wgpu::Buffer,
-    /// In place of a light without map.
-    no_map: wgpu::Texture,
-    /// Textures and first layers of the lights' maps, by slot.
-    bound: [(wgpu::Texture, u32); LIGHTS_PER_BLOCK],
-    group: wgpu::BindGroup,
+    maps: Vec<ShadowMapBindings>,
 }
 
 /// Density grid of a frame.
@@ -88,7 +77,8 @@ impl ShadowVolume {
         let buffers = self.buffers.get_or_insert_with(|| VolumeBuffers::new(gpu.device, tiled, shadow));
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&shadow.march));
         for (block, held) in (0..).zip(&mut buffers.maps) {
-            held.write(gpu, tiled, (shadow, block), maps, &buffers.optical_depths);
+            let volume = Some(&buffers.optical_depths);
+            held.write(gpu, &tiled.layouts.shadow_visibility, (shadow, block), maps, volume);
         }
     }
 
@@ -121,14 +111,14 @@ impl ShadowVolume {
     pub fn look_up(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowVisibility> {
         let maps = self.buffers.as_ref().map(|held| &held.maps).filter(|maps| !maps.is_empty())?;
         let used = maps.iter().take(shadow.used_light_blocks() as usize);
-        let inputs = used.map(|maps| maps.group.clone()).collect();
+        let inputs = used.map(|maps| maps.group().clone()).collect();
         Some(ShadowVisibility { pipeline: tiled.shadow_visibility.get(()), inputs, size: shadow.grid.size })
     }
 
     /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.buffers.as_ref().map_or(0, |held| {
-            let maps = held.maps.iter().map(|maps| maps.uniform.size()).sum::<u64>();
+            let maps = held.maps.iter().map(ShadowMapBindings::bytes).sum::<u64>();
             let volume = u64::from(held.blocks) * TEXEL_BYTES * u64::from(held.resolution).pow(3);
             held.uniform.size() + held.density.size() + volume + maps
         })
@@ -147,7 +137,9 @@ impl VolumeBuffers {
             wgpu::BindingResource::TextureView(&optical_depths),
         ];
         let march = bind(device, &tiled.layouts.shadow_march, resources);
-        let maps = (0..map_blocks(shadow)).map(|_| MapBuffers::new(device, tiled, &optical_depths)).collect();
+        let maps = (0..map_blocks(shadow))
+            .map(|_| ShadowMapBindings::new(device, &tiled.layouts.shadow_visibility, Some(&optical_depths)))
+            .collect();
         Self { resolution, blocks, uniform, density, optical_depths, march, maps }
     }
 }
@@ -155,69 +147,6 @@ impl VolumeBuffers {
 /// Number of blocks of lights whose shadow maps shade smoke.
 fn map_blocks(shadow: &SmokeShadow) -> usize {
     if shadow.has_visibility { shadow.light_blocks as usize } else { 0 }
-}
-
-impl MapBuffers {
-    fn new(device: &wgpu::Device, tiled: &TiledPipelines, volume: &wgpu::TextureView) -> Self {
-        let uniform = uniform_buffer(device, "haze shadow_visibility", size_of::<ShadowVisibilityUniform>() as u64);
-        let no_map = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("haze no shadow map"),
-            size: wgpu::Extent3d::default(),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Depth32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
-        let bound = std::array::from_fn(|_| (no_map.clone(), 0));
-        let group = bind_maps(device, tiled, &uniform, &bound, volume);
-        Self { uniform, no_map, bound, group }
-    }
-
-    fn write(
-        &mut self,
-        gpu: &Gpu<'_>,
-        tiled: &TiledPipelines,
-        (shadow, block): (&SmokeShadow, u32),
-        maps: &[ShadowMap<'_>],
-        volume: &wgpu::TextureView,
-    ) {
-        let of_light = |light: usize| maps.iter().find(|map| map.projection.light == light);
-        let uniform = shadow.visibility(block, |light| of_light(light).map(|map| map.projection));
-        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        let used = shadow.lights_of_block(block).map(|light| match light.and_then(of_light) {
-            Some(map) => (map.depth, map.first_layer),
-            None => (&self.no_map, 0),
-        });
-        if used.iter().zip(&self.bound).any(|((map, layer), bound)| (*map, *layer) != (&bound.0, bound.1)) {
-            self.bound = used.map(|(map, layer)| (map.clone(), layer));
-            self.group = bind_maps(gpu.device, tiled, &self.uniform, &self.bound, volume);
-        }
-    }
-}
-
-fn bind_maps(
-    device: &wgpu::Device,
-    tiled: &TiledPipelines,
-    uniform: &wgpu::Buffer,
-    maps: &[(wgpu::Texture, u32); LIGHTS_PER_BLOCK],
-    volume: &wgpu::TextureView,
-) -> wgpu::BindGroup {
-    let views = maps.each_ref().map(|(map, first_layer)| {
-        map.create_view(&wgpu::TextureViewDescriptor {
-            label: Some("haze shadow map"),
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            aspect: wgpu::TextureAspect::DepthOnly,
-            mip_level_count: Some(1),
-            base_array_layer: *first_layer,
-            ..Default::default()
-        })
-    });
-    let maps = views.iter().map(wgpu::BindingResource::TextureView);
-    let resources = [uniform.as_entire_binding()].into_iter().chain(maps);
-    let resources = resources.chain([wgpu::BindingResource::TextureView(volume)]);
-    bind(device, &tiled.layouts.shadow_visibility, resources)
 }
 
 /// Creates a volume of `blocks` cubes along z.

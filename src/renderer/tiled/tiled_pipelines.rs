@@ -209,7 +209,7 @@ impl TiledLayouts {
             multisampled: false,
         };
         let map = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
             view_dimension: wgpu::TextureViewDimension::D2Array,
             multisampled: false,
         };

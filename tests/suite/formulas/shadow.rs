@@ -1,6 +1,7 @@
-//! Formula tests of `shaders/lib/density_grid.wgsl`, `shaders/lib/shadow.wgsl` and `shaders/lib/scene_shadow.wgsl`.
+//! Formula tests of `shaders/lib/density_grid.wgsl`, `shaders/lib/shadow.wgsl`, `shaders/lib/scene_shadow.wgsl` and
+//! `shaders/lib/screen_shadow.wgsl`.
 
-use haze::formula::{density_grid, depth_moments, scene_shadow, shadow, shadow_map};
+use haze::formula::{density_grid, depth_moments, scene_shadow, screen_shadow, shadow, shadow_map};
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v3, with_choices};
@@ -10,7 +11,7 @@ const SIDE: (f32, f32) = (-1.0, 1.0);
 const PLACE: [(f32, f32); 3] = [(0.0, 9.0), (0.0, 12.0), (0.0, 7.0)];
 
 pub fn formulas() -> Vec<Formula> {
-    [density(), lookups(), on_scene(), by_depth()].into_iter().flatten().collect()
+    [density(), lookups(), on_scene(), on_screen(), by_depth()].into_iter().flatten().collect()
 }
 
 fn density() -> Vec<Formula> {
@@ -217,6 +218,51 @@ fn on_scene() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             // The first: the sign of the shadow.
             mutants: &[("exp(-optical_depth)", "exp(optical_depth)"), ("exp2(-optical_depth)", "exp(-optical_depth)")],
+        },
+    ]
+}
+
+fn on_screen() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "smoother_step",
+            file: "lib/screen_shadow.wgsl",
+            wgsl: "y3(0, smoother_step(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))));",
+            reference: |x| screen_shadow::smoother_step(v3(x), v3(&x[3..])).to_array().to_vec(),
+            cases: random(60, &[SIDE; 6]),
+            tolerance: ARITHMETIC,
+            mutants: &[("select(b, a,", "select(a, b,")],
+        },
+        Formula {
+            name: "scene_normal",
+            file: "lib/screen_shadow.wgsl",
+            wgsl: "let c = vec3f(0.1, 0.2, -5.0); \
+                   y3(0, scene_normal(c, c + vec3f(-0.1, 0.0, x(0)), c + vec3f(0.1, 0.0, x(1)), \
+                   c + vec3f(0.0, 0.1, x(2)), c + vec3f(0.0, -0.1, x(3))));",
+            reference: |x| {
+                let c = glam::vec3(0.1, 0.2, -5.0);
+                let at = |dx, dy, dz| c + glam::vec3(dx, dy, dz);
+                let normal = screen_shadow::scene_normal(
+                    c,
+                    at(-0.1, 0.0, x[0]),
+                    at(0.1, 0.0, x[1]),
+                    at(0.0, 0.1, x[2]),
+                    at(0.0, -0.1, x[3]),
+                );
+                normal.to_array().to_vec()
+            },
+            cases: random(60, &[(-0.3, 0.3); 4]),
+            tolerance: TRANSCENDENTAL * 10.0,
+            mutants: &[("cross(across, up)", "cross(up, across)"), ("centre - left", "left - centre")],
+        },
+        Formula {
+            name: "share_of_light",
+            file: "lib/screen_shadow.wgsl",
+            wgsl: "y3(0, share_of_light(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))));",
+            reference: |x| screen_shadow::share_of_light(v3(x), v3(&x[3..])).to_array().to_vec(),
+            cases: random(60, &[(0.5, 4.0), (0.5, 4.0), (0.5, 4.0), (0.0, 4.0), (0.0, 4.0), (0.0, 4.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("(shaded + 1.0e-6) / (full + 1.0e-6)", "shaded")],
         },
     ]
 }

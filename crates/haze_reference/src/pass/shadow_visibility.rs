@@ -29,7 +29,8 @@ pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u3
     (0..size.element_product()).map(look_up).collect()
 }
 
-fn is_visible(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3) -> f32 {
+/// 1 if a light reaches a point past the scene. `place`: in cells.
+pub fn is_visible(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3) -> f32 {
     let inside = |(clip_from_grid, layer): (&Mat4, _)| {
         let at = shadow_map_place(*clip_from_grid * place.extend(1.0));
         (at.w > 0.5).then_some((at, layer))
