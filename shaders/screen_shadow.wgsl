@@ -47,7 +47,7 @@ fn scene_share(slot: f32, world: vec3f) -> f32 {
         return 1.0;
     }
     let place = (world - haze_scene_shadow.origin) * haze_scene_shadow.cells_per_metre;
-    return is_visible(u32(slot) - 1u, place);
+    return map_visibility(u32(slot) - 1u, place);
 }
 
 @fragment
@@ -65,6 +65,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         scene_point(pixel + vec2i(0, 1)),
     );
     let world = (screen.world_from_view * vec4f(point, 1.0)).xyz;
+    // A pixel off the surface, which must not shade itself.
+    let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, -point.z, view.orthographic);
+    let above = (screen.world_from_view * vec4f(point + normal * (2.0 / pixels), 1.0)).xyz;
     var full = screen.ambient;
     var shaded = screen.ambient;
     for (var i = 0u; i < screen.light_count; i++) {
@@ -73,7 +76,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if facing <= 0.0 {
             continue;
         }
-        let arriving = lights[i].color * (facing * scene_share(lights[i].shadow_slot, world));
+        let arriving = lights[i].color * (facing * scene_share(lights[i].shadow_slot, above));
         full += arriving;
         shaded += arriving * haze_transmittance(world, i);
     }

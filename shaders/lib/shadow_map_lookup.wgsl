@@ -26,27 +26,44 @@ struct ShadowVisibility {
 @group(0) @binding(2) var map_1: texture_2d_array<f32>;
 @group(0) @binding(3) var map_2: texture_2d_array<f32>;
 
-// Depth of a map at a position, 0 to 1 from the upper left corner.
-fn load_map(light: u32, position: vec2f, layer: u32) -> f32 {
+// Depth of a texel of a map. Texels outside are those of its border.
+fn load_map(light: u32, texel: vec2i, layer: u32) -> f32 {
     switch light {
-        case 0u: { return textureLoad(map_0, map_texel(position, textureDimensions(map_0)), layer, 0).r; }
-        case 1u: { return textureLoad(map_1, map_texel(position, textureDimensions(map_1)), layer, 0).r; }
-        default: { return textureLoad(map_2, map_texel(position, textureDimensions(map_2)), layer, 0).r; }
+        case 0u: { return textureLoad(map_0, inside_map(texel, textureDimensions(map_0)), layer, 0).r; }
+        case 1u: { return textureLoad(map_1, inside_map(texel, textureDimensions(map_1)), layer, 0).r; }
+        default: { return textureLoad(map_2, inside_map(texel, textureDimensions(map_2)), layer, 0).r; }
     }
 }
 
-fn map_texel(position: vec2f, size: vec2u) -> vec2u {
-    return min(vec2u(position * vec2f(size)), size - 1u);
+fn inside_map(texel: vec2i, size: vec2u) -> vec2i {
+    return clamp(texel, vec2i(0), vec2i(size) - 1);
 }
 
-// 1 if a light reaches a point past the scene. Points outside of all layers are lit.
-fn is_visible(light: u32, place: vec3f) -> f32 {
+fn map_size(light: u32) -> vec2u {
+    switch light {
+        case 0u: { return textureDimensions(map_0); }
+        case 1u: { return textureDimensions(map_1); }
+        default: { return textureDimensions(map_2); }
+    }
+}
+
+// Share of a light that reaches a point past the scene, between the four nearest texels. Points outside of all layers are
+// lit.
+fn map_visibility(light: u32, place: vec3f) -> f32 {
     for (var layer = 0u; layer < min(visibility.maps[light].layers, MAX_SHADOW_LAYERS); layer++) {
         let at = shadow_map_place(visibility.maps[light].clip_from_grid[layer] * vec4f(place, 1.0));
         if at.w > 0.5 {
-            let stored = load_map(light, at.xy, layer);
             let map = &visibility.maps[light];
-            return shadow_map_visibility(at.z, stored, (*map).bias, (*map).reversed == 1u);
+            let corner = at.xy * vec2f(map_size(light)) - 0.5;
+            let base = vec2i(floor(corner));
+            var lit: vec4f;
+            for (var i = 0; i < 4; i++) {
+                let stored = load_map(light, base + vec2i(i & 1, i >> 1u), layer);
+                lit[i] = shadow_map_visibility(at.z, stored, (*map).bias, (*map).reversed == 1u);
+            }
+            let fraction = fract(corner);
+            let rows = mix(lit.xz, lit.yw, fraction.x);
+            return mix(rows.x, rows.y, fraction.y);
         }
     }
     return 1.0;

@@ -3,7 +3,7 @@
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::input::FrameInput;
-use super::pass::shadow_visibility::is_visible;
+use super::pass::shadow_visibility::map_visibility;
 use super::scene_shadow::SceneShadow;
 use haze::assets::image::Image;
 use haze::formula::depth::{SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
@@ -11,7 +11,7 @@ use haze::formula::lighting::sample_light;
 use haze::formula::screen_shadow::{scene_normal, share_of_light};
 use haze::formula::shadow::LIGHTS_PER_BLOCK;
 use haze::formula::uniforms::{LightUniform, ShadowMapUniform, ViewUniform};
-use haze::formula::view::{ndc_from_pixel, view_position};
+use haze::formula::view::{ndc_from_pixel, pixels_per_metre, view_position};
 use haze::view_setup::{SmokeShadow, ViewGeometry, scene_light_uniforms};
 
 /// Shadow of a frame's smoke on a picture of the scene.
@@ -59,6 +59,9 @@ impl<'a> ScreenShadow<'a> {
             let beside = |x, y| self.scene_point(at + IVec2::new(x, y));
             let normal = scene_normal(point, beside(-1, 0), beside(1, 0), beside(0, -1), beside(0, 1));
             let world = self.world_from_view.transform_point3(point);
+            let ViewUniform { size, ray_scale, orthographic, .. } = self.view;
+            let pixels = pixels_per_metre(size.y, ray_scale.y, -point.z, orthographic);
+            let above = self.world_from_view.transform_point3(point + normal * (2.0 / pixels));
             let (mut full, mut shaded) = (self.ambient, self.ambient);
             for (index, light) in self.lights.iter().enumerate() {
                 let sample = sample_light(light, point);
@@ -70,7 +73,7 @@ impl<'a> ScreenShadow<'a> {
                 let visible = self
                     .maps
                     .get(slot)
-                    .map_or(1.0, |(map, layers)| is_visible(map, layers, grid_from_world.transform_point3(world)));
+                    .map_or(1.0, |(map, layers)| map_visibility(map, layers, grid_from_world.transform_point3(above)));
                 let arriving = light.color * (facing * visible);
                 full += arriving;
                 shaded += arriving * shadow.haze_transmittance(world, index);

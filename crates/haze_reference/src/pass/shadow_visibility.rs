@@ -1,6 +1,6 @@
 //! CPU version of `shaders/shadow_visibility.wgsl`.
 
-use glam::{Mat4, UVec3, Vec3, Vec4, Vec4Swizzles};
+use glam::{IVec2, Mat4, UVec3, Vec3, Vec4, Vec4Swizzles};
 use half::f16;
 
 use crate::input::ShadowMap;
@@ -21,7 +21,7 @@ pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u3
             .map(|corner| {
                 let offset = UVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2).as_vec3() * 0.5 + 0.25;
                 let place = cell.as_vec3() + offset;
-                Vec3::from([0, 1, 2].map(|slot| is_visible(&uniform.maps[slot], layers[slot], place)))
+                Vec3::from([0, 1, 2].map(|slot| map_visibility(&uniform.maps[slot], layers[slot], place)))
             })
             .sum();
         Vec3::from((visible / 8.0).to_array().map(|visible| f16::from_f32(visible).to_f32()))
@@ -29,16 +29,25 @@ pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u3
     (0..size.element_product()).map(look_up).collect()
 }
 
-/// 1 if a light reaches a point past the scene. `place`: in cells.
-pub fn is_visible(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3) -> f32 {
+/// Share of a light that reaches a point past the scene, between the four nearest texels. `place`: in cells.
+pub fn map_visibility(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3) -> f32 {
     let inside = |(clip_from_grid, layer): (&Mat4, _)| {
         let at = shadow_map_place(*clip_from_grid * place.extend(1.0));
         (at.w > 0.5).then_some((at, layer))
     };
     let found: Option<(Vec4, &Image<f32>)> = map.clip_from_grid.iter().zip(layers).find_map(inside);
     found.map_or(1.0, |(at, layer)| {
-        let texel = (at.xy() * layer.size.as_vec2()).min(layer.size.as_vec2() - 1.0);
-        let stored = layer.load(texel.as_ivec2());
-        shadow_map_visibility(at.z, stored, map.bias, map.reversed == 1)
+        let corner = at.xy() * layer.size.as_vec2() - 0.5;
+        let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
+        let lit = |x, y| {
+            let texel = (base + IVec2::new(x, y)).clamp(IVec2::ZERO, layer.size.as_ivec2() - 1);
+            shadow_map_visibility(at.z, layer.load(texel), map.bias, map.reversed == 1)
+        };
+        let row = |y| lerp(lit(0, y), lit(1, y), fraction.x);
+        lerp(row(0), row(1), fraction.y)
     })
+}
+
+fn lerp(a: f32, b: f32, share: f32) -> f32 {
+    a + (b - a) * share
 }
