@@ -9,7 +9,7 @@
 //!                      depth_downsample   scene depth ─► reduced depth, linear view metres
 //!                      sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU)
 //!                      density_splat      sprites ─► density grid, if a system receives shadow
-//!                      shadow_march       density grid ─► optical depths towards three lights
+//!                      shadow_march       density grid ─► optical depths towards lights
 //!                      diffuse_bake       lights ─► cubemap or motif, if a system uses one
 //!                      accumulate         sprites × normal map × soft fade ─► premultiplied normal, amount
 //! Renderer::render     transfer           the system's bounding box: decode, light, upsample, blend on the scene

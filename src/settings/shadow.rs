@@ -26,7 +26,7 @@ settings! {
         /// shadow maps, `FrameInput::shadow_maps`. One more texture is accumulated.
         by_depth: bool = false, flag;
         /// Mix of full light and the shadow that the smoke casts on the scene, tinted by the shadow ramp. The first system of
-        /// a frame with shadow decides it. The demo scene shows it; a host's renderer does if its shaders call
+        /// a frame that casts any decides it. The demo scene shows it; a host's renderer does if its shaders call
         /// `haze_transmittance`.
         scene: f32 = 1.0, number(0.0..=1.0, "");
     }

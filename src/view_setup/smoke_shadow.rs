@@ -104,7 +104,8 @@ impl SmokeShadow {
                 count = count.max(settings.shadow.lights);
                 by_depth |= settings.lights_by_depth();
                 has_openness |= settings.shades_ambient();
-                on_scene = on_scene.or(Some((index, settings.shadow.scene)));
+                let strength = settings.shadow.scene;
+                on_scene = on_scene.or((strength > 0.0).then_some((index, strength)));
             }
         }
         let resolution = resolution.filter(|_| !around.is_empty())?;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy::asset::AssetId;
 use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::prelude::*;
+use bevy::light::NotShadowCaster;
 use bevy::math::Vec3;
 use bevy::prelude::{ChildOf, GlobalTransform, InheritedVisibility, Time, warn_once};
 use bevy::render::Extract;
@@ -36,6 +37,8 @@ pub(crate) struct ExtractedSmoke {
     pub source: Source,
     /// True if its fire is a light of the scene.
     pub has_fire_light: bool,
+    /// True if its shadow falls on meshes.
+    pub shades_meshes: bool,
 }
 
 /// Source of the particles of an entity's smoke.
@@ -63,6 +66,7 @@ pub(crate) fn extract_smoke(
             Option<&RenderLayers>,
             Option<&SmokeParticles>,
             Option<&SmokeBuffer>,
+            Has<NotShadowCaster>,
         )>,
     >,
     fire_lights: Extract<Query<&ChildOf, With<SmokeFireLight>>>,
@@ -70,7 +74,7 @@ pub(crate) fn extract_smoke(
     extracted.seconds = time.elapsed_secs_f64();
     extracted.smokes.clear();
     let burning: Vec<_> = fire_lights.iter().map(ChildOf::parent).collect();
-    for (entity, smoke, clock, transform, visibility, layers, particles, buffer) in &smokes {
+    for (entity, smoke, clock, transform, visibility, layers, particles, buffer, is_shadowless) in &smokes {
         if !visibility.get() {
             continue;
         }
@@ -94,6 +98,7 @@ pub(crate) fn extract_smoke(
                 (None, None) => Source::Preset,
             },
             has_fire_light: burning.contains(&entity),
+            shades_meshes: !is_shadowless,
         });
     }
 }

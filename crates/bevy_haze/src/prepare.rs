@@ -104,13 +104,19 @@ pub(crate) fn prepare_smoke(
     let span = recorder.time_span(encoder, "smoke");
     let frame_lights = sources.of_frame(&view, &systems);
     let shadow_maps: Vec<_> = frame_lights.shadows.iter().map(LightShadow::map).collect();
+    // The pass of a composited view is not Bevy's.
+    let shades_meshes = !kept.pass.composited && systems.iter().any(ViewSystem::shades_meshes);
     let frame = FrameInput {
+        scene_ambient: shades_meshes.then_some(ambient),
         lights: &frame_lights.lights,
         shadow_maps: &shadow_maps,
         time: smokes.seconds as f32,
         ..FrameInput::new(haze_view(&view), read_depth(&view, encoder))
     };
     prepare_systems(kept, *view.camera_entity, encoder, &frame, systems);
+    if shades_meshes {
+        shade_meshes(kept, encoder, view.target, view.depth);
+    }
     kept.composite = view.targets.light.as_ref().and_then(|light| {
         draw_light(kept, encoder, light, view.depth);
         let tonemapping = view.tonemapping.copied().unwrap_or(Tonemapping::None);
@@ -127,7 +133,7 @@ impl LightSources<'_, '_> {
         let layers = view.layers.unwrap_or_default();
         let mut scene = scene_lights(&self.points, &self.suns, (layers, view.camera.exposure), &origins);
         scene.truncate(MAX_LIGHTS - lights.len());
-        let is_shaded = systems.iter().any(|system| system.settings.shadow.by_depth);
+        let is_shaded = systems.iter().any(|system| system.settings.shadow.by_depth || system.shades_meshes());
         let shadows = match (view.shadows.filter(|_| is_shaded), origins.first()) {
             (Some(views), Some(origin)) => self.shadow_views.maps(&scene, lights.len(), views, *origin),
             _ => Vec::new(),
@@ -239,6 +245,26 @@ fn draw_light(kept: &ViewRenderer, encoder: &mut CommandEncoder, light: &LightTa
         ..Default::default()
     });
     kept.renderer.render(&mut pass);
+}
+
+/// Darkens what Bevy has drawn by the shadow of the smoke.
+fn shade_meshes(
+    kept: &ViewRenderer,
+    encoder: &mut CommandEncoder,
+    target: &ViewTarget,
+    depth: &ViewDepthStencilTexture,
+) {
+    let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some("smoke_shadow"),
+        color_attachments: &[Some(target.get_color_attachment())],
+        depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
+            view: &depth.attachment.texture.default_view,
+            depth_ops: None,
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    kept.renderer.render_scene_shadow(&mut pass);
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::storage::GpuShaderBuffer;
-use haze::settings::Ambient;
+use haze::settings::{Ambient, Shadow};
 use haze::{EmitterSnapshot, ParticleBuffer, ParticleSystem, Particles, Settings, glam, wgpu};
 
 use crate::extract::{ExtractedSmoke, Source};
@@ -42,6 +42,8 @@ pub(crate) fn view_systems<'a>(
     preset.systems.iter().take(count).enumerate().map(move |(index, system)| {
         // Up and down are alike: Bevy's ambient light has no direction.
         let intensity = if ambient == glam::Vec3::ZERO { 0.0 } else { 1.0 };
+        let scene = if smoke.shades_meshes { system.preset.settings.shadow.scene } else { 0.0 };
+        let shadow = Shadow { scene, ..system.preset.settings.shadow };
         let ambient = Ambient { intensity, sky_color: ambient, ground_color: ambient };
         ViewSystem {
             smoke,
@@ -49,12 +51,17 @@ pub(crate) fn view_systems<'a>(
             key: system_key(smoke.entity, index),
             snapshot: system.preset.emitter_snapshot(smoke.seconds as f32),
             buffer,
-            settings: Settings { ambient, ..system.preset.settings },
+            settings: Settings { ambient, shadow, ..system.preset.settings },
         }
     })
 }
 
 impl ViewSystem<'_> {
+    /// True if its shadow falls on meshes.
+    pub fn shades_meshes(&self) -> bool {
+        self.settings.receives_shadow() && self.settings.shadow.scene > 0.0
+    }
+
     /// The system as haze takes it.
     pub fn input(&self) -> ParticleSystem<'_> {
         let (particles, bounds) = match (&self.smoke.source, self.buffer) {

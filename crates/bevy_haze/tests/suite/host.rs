@@ -8,6 +8,7 @@ use bevy::asset::{AssetPlugin, RenderAssetUsages};
 use bevy::camera::{Exposure, Hdr, RenderTarget};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::log::LogPlugin;
+use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
@@ -122,11 +123,11 @@ impl Host {
         world.insert_resource(GlobalAmbientLight { brightness: AMBIENT, ..default() });
     }
 
-    /// Column of smoke at the origin, held at [`SECONDS`].
+    /// Column of smoke at the origin, held at [`SECONDS`]. It does not shade meshes: the boxes shine by themselves.
     pub fn smoke(&mut self) -> Entity {
         let world = self.app.world_mut();
         let asset = world.resource_mut::<Assets<SmokeAsset>>().add(SmokeAsset::builtin("column").unwrap());
-        world.spawn((Smoke::from(asset), SmokeClock::paused_at(SECONDS))).id()
+        world.spawn((Smoke::from(asset), SmokeClock::paused_at(SECONDS), NotShadowCaster)).id()
     }
 
     /// Scene with one camera. Returns camera and smoke.

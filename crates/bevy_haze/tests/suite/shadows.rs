@@ -1,10 +1,12 @@
-//! Shadows of meshes on smoke, by the shadow maps of every kind of light.
+//! Shadows of meshes on smoke, by the shadow maps of every kind of light, and of smoke on meshes.
 
+use bevy::camera::Hdr;
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use crate::host::{Host, SIZE, host};
-use crate::picture::Picture;
+use crate::picture::{Picture, count};
 
 /// Light from the left over the top of a wall: the lower part of the smoke is in its shadow.
 fn light(host: &mut Host, kind: usize) -> Entity {
@@ -66,4 +68,38 @@ fn a_wall_shades_smoke_under_every_kind_of_light() {
         assert!(upper > 0.9 * upper_lit && lower < 0.6 * lower_lit, "{name}");
         host.app.world_mut().despawn(lamp);
     }
+}
+
+#[test]
+fn smoke_shades_meshes() {
+    let mut host = host("assets".as_ref());
+    let camera = host.camera();
+    let world = host.app.world_mut();
+    world.insert_resource(GlobalAmbientLight { brightness: 40.0, ..default() });
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Plane3d::new(Vec3::Y, Vec2::splat(8.0)));
+    let material = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.0, ..default() };
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(material);
+    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), Transform::from_xyz(0.0, -0.2, 0.0)));
+    let at = Transform::from_xyz(-6.0, 5.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y);
+    world.spawn((DirectionalLight { illuminance: 900.0, shadow_maps_enabled: true, ..default() }, at));
+    let smoke = host.smoke();
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        host.app.world_mut().entity_mut(camera).insert(msaa);
+        host.app.world_mut().entity_mut(smoke).insert(NotShadowCaster);
+        let lit = host.picture();
+        host.app.world_mut().entity_mut(smoke).remove::<NotShadowCaster>();
+        let shaded = host.picture();
+        let mask = lit.mask_of_difference(&shaded);
+        // Right of the smoke, on the ground.
+        let share = shaded.mean(&mask) / lit.mean(&mask);
+        let [x, y] = lit.center(&mask);
+        println!("{msaa:?}: {share} of the light at {} pixels around {x} {y}", count(&mask));
+        assert!(count(&mask) > 200 && share < 0.85 && share > 0.1, "{msaa:?}: {share}");
+        assert!(x > SIZE.x as f32 * 0.5, "{msaa:?}: {x}");
+    }
+    // Without Hdr, Bevy tonemaps in the shader of each mesh, and smoke does not shade it.
+    host.app.world_mut().entity_mut(camera).insert((Msaa::Off, Tonemapping::Reinhard)).remove::<Hdr>();
+    let casting = host.picture();
+    host.app.world_mut().entity_mut(smoke).insert(NotShadowCaster);
+    assert_eq!(count(&casting.mask_of_difference(&host.picture())), 0);
 }

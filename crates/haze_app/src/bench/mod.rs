@@ -13,8 +13,10 @@ mod report;
 mod report_csv;
 mod report_json;
 mod run;
+mod shadow_suite;
 mod soft_particles;
 mod sprite_shots;
+mod suite;
 mod suites;
 mod terminal_table;
 

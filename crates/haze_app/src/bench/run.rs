@@ -52,10 +52,11 @@ pub struct Arguments {
 const QUICK: u32 = 100;
 const THOROUGH: u32 = 360;
 /// Suites that render shots; the limits are measured before them.
-const SHOTS: [Suite; 8] = [
+const SHOTS: [Suite; 9] = [
     Suite::Scale,
     Suite::Overdraw,
     Suite::Lights,
+    Suite::Shadow,
     Suite::Soft,
     Suite::Upsample,
     Suite::Presets,

@@ -1,6 +1,5 @@
 //! Suites of the benchmark: groups of shots that are measured in turn and compared with each other.
 
-use clap::ValueEnum;
 use glam::{UVec2, Vec3};
 use haze::settings::{
     AccumulationFormat, BlendOrder, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, RenderPath,
@@ -9,57 +8,10 @@ use haze::settings::{
 use haze::{Error, Light, builtin};
 use haze_demo::shot::Shot;
 
+use super::shadow_suite;
 use super::sprite_shots::{BEYOND_IMAGE, CrowdExtent, WITHIN_IMAGE, layers, small_sprites, sprite_count, with_alpha};
-
-/// A suite of measurements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Suite {
-    /// Buffer scale 1 to 1/8, by overdraw, format and path.
-    Scale,
-    /// 4 to 1024 layers of different alpha, by path.
-    Overdraw,
-    /// 1 to 64 lights, deferred against forward.
-    Lights,
-    /// Every technique and every fade curve, against hard edges.
-    Soft,
-    /// Every depth downsample with every upsample filter.
-    Upsample,
-    /// Every preset, deferred at each scale against forward.
-    Presets,
-    /// 1,000 to 1,000,000 particles: evaluating, sorting, drawing.
-    Particles,
-    /// The path `auto` against `raster` and `tiled`, which it chooses from, by overdraw, scale, technique and size.
-    Auto,
-    /// The limits of this adapter: bare blending, texture fetches, copies.
-    Limits,
-    /// All suites.
-    All,
-}
-
-impl Suite {
-    /// Name on the command line.
-    pub fn name(self) -> String {
-        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
-    }
-}
-
-/// Shots that are measured in turn.
-pub struct Group {
-    pub suite: Suite,
-    pub cases: Vec<Case>,
-    /// Deferred shot at full resolution that the images are compared with.
-    pub reference: Shot,
-}
-
-/// One shot to measure.
-pub struct Case {
-    /// Unique in its suite.
-    pub name: String,
-    pub shot: Shot,
-    /// Kind of work and its amount. The cost of cases of one kind is about proportional to the amount, which predicts
-    /// the ones that take too long.
-    pub work: (String, f64),
-}
+pub use super::suite::{Case, Group, Suite};
+use super::suite::{at_scale, changed, full_resolution};
 
 /// Returns all paths but `auto`. A path that is added to the settings is included.
 fn paths() -> impl Iterator<Item = RenderPath> {
@@ -87,6 +39,7 @@ pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Erro
         Suite::Scale => scale(size, quick),
         Suite::Overdraw => overdraw(size, quick),
         Suite::Lights => lights(size, quick),
+        Suite::Shadow => shadow_suite::groups(size, quick),
         Suite::Soft => soft(size, quick),
         Suite::Upsample => upsample(size, quick),
         Suite::Presets => presets(size, quick),
@@ -94,21 +47,6 @@ pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Erro
         Suite::Auto => auto(size, quick),
         Suite::Limits | Suite::All => Ok(Vec::new()),
     }
-}
-
-fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
-    let mut shot = shot.clone();
-    shot.preset.systems.iter_mut().for_each(|system| change(&mut system.settings));
-    shot
-}
-
-fn at_scale(path: RenderPath, scale: u32) -> impl Fn(&mut Settings) {
-    move |settings| (settings.path, settings.accumulate.scale) = (path, scale)
-}
-
-/// The reference of a group: deferred, at full resolution.
-fn full_resolution(shot: &Shot) -> Shot {
-    changed(shot, at_scale(RenderPath::Raster, 1))
 }
 
 /// Scales to measure on a path; forward has only full resolution.
