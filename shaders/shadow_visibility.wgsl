@@ -14,12 +14,5 @@ fn look_up_cells(@builtin(global_invocation_id) cell: vec3u) {
     if any(cell >= vec3u(visibility.size)) {
         return;
     }
-    // Eight places in the cell.
-    var visible = vec3f(0.0);
-    for (var corner = 0u; corner < 8u; corner++) {
-        let offset = vec3f(vec3u(corner & 1u, (corner >> 1u) & 1u, corner >> 2u)) * 0.5 + 0.25;
-        let place = vec3f(cell) + offset;
-        visible += vec3f(map_visibility(0u, place), map_visibility(1u, place), map_visibility(2u, place));
-    }
-    textureStore(volume, vec3u(cell.xy, cell.z + visibility.first_cell), vec4f(visible / 8.0, 0.0));
+    textureStore(volume, vec3u(cell.xy, cell.z + visibility.first_cell), vec4f(cell_visibility(cell), 0.0));
 }

@@ -104,6 +104,7 @@ impl Context {
         plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()
             .try_for_each(|plan| shared.pipelines.compile(plan))?;
+        shared.pipelines.compile_shadow_slices()?;
         shared.pipelines.screen_shadow.check(HostPass::color_only(wgpu::TextureFormat::Rgba16Float))?;
         // OpenGL cannot read multisampled depth.
         if shared.read_only_depth {
@@ -125,7 +126,7 @@ impl Context {
             no_ramp: upload_ramp(&Gpu { device: &device, queue }, "haze no ramp", &white, &mut 0),
             no_shadow: volume(&device, 1, 1, wgpu::TextureUsages::empty()),
             read_only_depth: read_only_depth_is_supported(&device),
-            support: Support { six_way: six_way_is_supported(&device), shadow: pipelines.tiled.is_some() },
+            support: Support { six_way: six_way_is_supported(&device) },
             path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
             device,
             queue: queue.clone(),

@@ -20,7 +20,7 @@ impl Renderer {
     pub fn memory_use(&self) -> MemoryUse {
         let targets = self.resolved_depth.as_ref().map_or(0, ResolvedDepth::bytes);
         let buffers = self.bindings.bytes() + self.scene_shadow.bytes();
-        let shadow = self.shadow_volume.bytes() + self.screen_shadow.bytes();
+        let shadow = self.shadow_volume.bytes() + self.sliced_shadow.bytes() + self.screen_shadow.bytes();
         let own = MemoryUse { targets, buffers, shadow, ..MemoryUse::default() };
         self.states.iter().map(SystemState::memory_use).chain([own]).sum()
     }

@@ -2,7 +2,8 @@
 
 use super::gpu::capabilities::tiles_are_supported;
 use crate::formula::uniforms::{
-    LightUniform, SceneShadowUniform, ScreenShadowUniform, ShadowVisibilityUniform, SystemUniform, ViewUniform,
+    LightUniform, SceneShadowUniform, ScreenShadowUniform, ShadowMarchUniform, ShadowVisibilityUniform, SystemUniform,
+    ViewUniform,
 };
 use crate::frame::MAX_LIGHTS;
 use crate::view_setup::MAX_TARGET_ATTACHMENTS;
@@ -42,6 +43,8 @@ pub(crate) struct Layouts {
     /// A host's shadow maps of a block of lights.
     pub shadow_maps: wgpu::BindGroupLayout,
     pub screen_shadow: wgpu::BindGroupLayout,
+    /// Optical depths across the cells of the density grid, on devices without compute shaders.
+    pub shadow_march_slice: wgpu::BindGroupLayout,
 }
 
 impl Layouts {
@@ -124,6 +127,10 @@ impl Layouts {
             shadow_maps: layout(
                 "haze shadow maps",
                 &[uniform(size_of::<ShadowVisibilityUniform>() as u64), map, map, map],
+            ),
+            shadow_march_slice: layout(
+                "haze shadow_march_slice inputs",
+                &[uniform(size_of::<ShadowMarchUniform>() as u64), texture(unfilterable, D3)],
             ),
             screen_shadow: layout(
                 "haze screen_shadow inputs",

@@ -22,6 +22,7 @@ mod scene_shadow;
 mod screen_shadow;
 pub mod shader;
 mod shadow_map_bindings;
+mod sliced_shadow;
 mod sprite_instances;
 mod system_particles;
 mod system_passes;
@@ -61,6 +62,7 @@ use plan::{PipelineInputs, plan};
 use resolved_depth::ResolvedDepth;
 use scene_shadow::SceneShadow;
 use screen_shadow::ScreenShadowState;
+use sliced_shadow::SlicedShadow;
 use system_passes::SystemPasses;
 use system_state::SystemState;
 use tiled::ShadowVolume;
@@ -84,6 +86,7 @@ pub struct Renderer {
     resolved_depth: Option<ResolvedDepth>,
     bindings: FrameBindings,
     shadow_volume: ShadowVolume,
+    sliced_shadow: SlicedShadow,
     scene_shadow: SceneShadow,
     screen_shadow: ScreenShadowState,
     /// Lights of the frame that cast shadow.
@@ -123,6 +126,7 @@ impl Renderer {
             resolved_depth: None,
             bindings: FrameBindings::new(device),
             shadow_volume: ShadowVolume::default(),
+            sliced_shadow: SlicedShadow::default(),
             scene_shadow: SceneShadow::new(context.shared()),
             screen_shadow: ScreenShadowState::default(),
             shadowed_lights: [None; SHADOWED_LIGHTS],
@@ -279,10 +283,12 @@ impl Renderer {
         let shadow = SmokeShadow::new((&view, frame.up.normalize_or(glam::Vec3::Y)), frame.lights, mapped, measured);
         self.shadowed_lights = shadow.map_or([None; SHADOWED_LIGHTS], |shadow| shadow.lights);
         // Places and clears the density grid around all systems, if any system receives shadow.
-        if let Some(tiled) = &shared.pipelines.tiled {
-            self.shadow_volume.write(&gpu, tiled, shadow.as_ref(), frame.shadow_maps);
+        match &shared.pipelines.tiled {
+            Some(tiled) => self.shadow_volume.write(&gpu, tiled, shadow.as_ref(), frame.shadow_maps),
+            None => self.sliced_shadow.write(shared, shadow.as_ref(), frame.shadow_maps),
         }
-        let grid = shadow.as_ref().and_then(|shadow| self.shadow_volume.of_frame(shadow));
+        let of_frame = |shadow| self.shadow_volume.of_frame(shadow).or_else(|| self.sliced_shadow.of_frame(shadow));
+        let grid = shadow.as_ref().and_then(of_frame);
         grid.iter().for_each(|_| self.shadow_volume.clear(encoder));
         self.scene_shadow.write(shared, frame, grid);
         if self.screen_shadow.write(shared, frame, &view, shadow.as_ref().filter(|_| grid.is_some())) {
@@ -313,9 +319,18 @@ impl Renderer {
             state.splat().iter().for_each(|pass| pass.record(encoder, timing));
         }
         // Marches from the cells of the density grid to the lights; looks up the host's shadow maps.
-        if let (Some(shadow), Some(tiled)) = (&shadow, &shared.pipelines.tiled) {
-            self.shadow_volume.look_up(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
-            self.shadow_volume.march(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
+        match (&shadow, &shared.pipelines.tiled) {
+            (Some(shadow), Some(tiled)) => {
+                self.shadow_volume.look_up(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
+                self.shadow_volume.march(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
+            }
+            // Without compute shaders, the CPU adds the sprites to the grid.
+            (Some(shadow), None) => {
+                let cast = self.states.iter().filter_map(SystemState::cast);
+                cast.for_each(|(system, particles)| self.sliced_shadow.add(shadow, system, particles));
+                self.sliced_shadow.march(shared, shadow).iter().for_each(|pass| pass.record(encoder));
+            }
+            (None, _) => {}
         }
         self.view = Some(view);
         Ok(())

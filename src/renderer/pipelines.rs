@@ -12,6 +12,8 @@ use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
 use super::pass::light_target::{self, LightingKey};
 use super::pass::screen_shadow;
+use super::pass::shadow_march::MarchTo;
+use super::pass::shadow_slices;
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
 use super::pass::transfer_lit::{self, TransferLitKey};
@@ -33,6 +35,8 @@ pub(crate) struct Pipelines {
     pub specular_scatter: PipelineVariants<SpecularScatterKey>,
     pub forward: PipelineVariants<ForwardKey>,
     pub screen_shadow: PipelineVariants<HostPass>,
+    pub shadow_march_slice: PipelineVariants<MarchTo>,
+    pub shadow_visibility_slice: PipelineVariants<()>,
     pub store: PipelineStore,
     /// `None` if the device does not support the path `tiled`.
     pub tiled: Option<TiledPipelines>,
@@ -65,6 +69,20 @@ impl Pipelines {
             specular_scatter: pipeline_variants!(store, shader, specular_scatter, &lit),
             forward: pipeline_variants!(store, shader, forward, &material),
             screen_shadow: pipeline_variants!(store, shader, screen_shadow, &screen_shadow),
+            shadow_march_slice: PipelineVariants::new(
+                store,
+                "shadow_march_slice",
+                shader("shadow_march_slice")?,
+                shadow_slices::describe_march,
+                &[Some(&layouts.shadow_march_slice)],
+            ),
+            shadow_visibility_slice: PipelineVariants::new(
+                store,
+                "shadow_visibility_slice",
+                shader("shadow_visibility_slice")?,
+                shadow_slices::describe_visibility,
+                &[Some(&layouts.shadow_maps)],
+            ),
             store: store.clone(),
             tiled: match tiles_are_supported(&store.device) {
                 true => Some(TiledPipelines::new(store, layouts, &shader)?),
@@ -77,7 +95,7 @@ impl Pipelines {
     pub fn compile(&self, plan: &Plan<'_>) -> Result<(), Error> {
         self.tiled.as_ref().map_or(Ok(()), TiledPipelines::compile_measure)?;
         if plan.receives_shadow() {
-            self.tiled.as_ref().map_or(Ok(()), TiledPipelines::compile_shadow)?;
+            self.tiled.as_ref().map_or_else(|| self.compile_shadow_slices(), TiledPipelines::compile_shadow)?;
         }
         match plan {
             Plan::Skip => Ok(()),
@@ -104,6 +122,13 @@ impl Pipelines {
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(key))
             }
         }
+    }
+
+    /// Compiles the shadow of devices without compute shaders.
+    pub fn compile_shadow_slices(&self) -> Result<(), Error> {
+        self.shadow_march_slice.check(MarchTo::Lights)?;
+        self.shadow_march_slice.check(MarchTo::Sky)?;
+        self.shadow_visibility_slice.check(())
     }
 
     /// Compiles the sort of a host's particles, which is needed if they arrive unsorted.

@@ -25,7 +25,8 @@ impl ShadowMapBindings {
         let uniform = uniform_buffer(device, "haze shadow maps", size_of::<ShadowVisibilityUniform>() as u64);
         let no_map = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("haze no shadow map"),
-            size: wgpu::Extent3d::default(),
+            // OpenGL takes a texture of one layer for one without layers.
+            size: wgpu::Extent3d { depth_or_array_layers: 2, ..wgpu::Extent3d::default() },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,

@@ -65,6 +65,11 @@ impl SystemParticles {
         known_particles(particles, &self.sample)
     }
 
+    /// Returns the uploaded particles.
+    pub fn uploaded(&self) -> &[Particle] {
+        self.instances.particles()
+    }
+
     /// Returns the drawn particles that the CPU knows, and the number of particles that each represents. `sampled`:
     /// that number if the GPU evaluates the emitter.
     pub fn drawn(&self, sampled: Option<u32>) -> (&[Particle], u32) {
@@ -134,8 +139,8 @@ impl SystemParticles {
             Particles::Buffer(particles) => is_readable_by_compute(particles),
             _ => true,
         };
-        let shadow = shadow.filter(|_| is_readable)?;
-        Some(self.splat.write(gpu, tiled, (sprites, groups), shadow.density))
+        let density = shadow.filter(|_| is_readable)?.density?;
+        Some(self.splat.write(gpu, tiled, (sprites, groups), density))
     }
 
     /// Releases buffers that have not been needed for 120 frames. `is_untiled`: true if that is so for the path

@@ -24,7 +24,7 @@ use super::tiled::TiledSystem;
 use super::validate_frame::tiled_unavailable_reason;
 use crate::assets::material_assets::MaterialInfo;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use crate::frame::{Bounds, ParticleSystem};
+use crate::frame::{Bounds, Particle, ParticleSystem};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
     LightingChoice, ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid,
@@ -96,6 +96,7 @@ struct CasterPasses {
     measure: Option<Measure>,
     particle_pass: Option<ParticlePass>,
     splat: Option<DensitySplat>,
+    uniform: SystemUniform,
 }
 
 impl SystemState {
@@ -150,6 +151,11 @@ impl SystemState {
     /// Returns the pass that adds the system to the density grid of the frame. It comes after the particles are produced.
     pub fn splat(&self) -> Option<&DensitySplat> {
         self.caster()?.splat.as_ref()
+    }
+
+    /// Returns the particles that the CPU adds to the density grid of the frame, with the uniforms of the system.
+    pub fn cast(&self) -> Option<(&SystemUniform, &[Particle])> {
+        Some((&self.caster()?.uniform, self.particles.uploaded()))
     }
 
     /// Returns this frame's choice of the path `auto`.
@@ -351,6 +357,7 @@ impl SystemState {
                 measure,
                 particle_pass,
                 splat,
+                uniform: setup.uniform,
             },
             passes,
         })
@@ -376,6 +383,7 @@ impl SystemState {
             measure: None,
             particle_pass,
             splat,
+            uniform: *uniform,
         })
     }
 

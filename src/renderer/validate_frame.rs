@@ -42,7 +42,7 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &FrameInput<'_>)
     validate_lights(frame.lights)?;
     validate_shadow_projections(frame.lights.len(), frame.shadow_maps.iter().map(|map| map.projection))?;
     for (index, map) in frame.shadow_maps.iter().enumerate() {
-        validate_shadow_map(index, map)?;
+        validate_shadow_map(shared, index, map)?;
     }
     for (index, system) in frame.systems.iter().enumerate() {
         if let Some(other) = frame.systems[..index].iter().position(|other| other.key == system.key) {
@@ -100,7 +100,7 @@ fn validate_scene_depth(shared: &Shared, frame: &FrameInput<'_>) -> Result<UVec2
     Ok(host_size(frame))
 }
 
-fn validate_shadow_map(index: usize, map: &ShadowMap<'_>) -> Result<(), FieldError> {
+fn validate_shadow_map(shared: &Shared, index: usize, map: &ShadowMap<'_>) -> Result<(), FieldError> {
     let refuse =
         |problem, expected| Err(FieldError::from_problem(format!("shadow_maps[{index}].depth"), problem, expected));
     let texture = map.depth;
@@ -117,6 +117,10 @@ fn validate_shadow_map(index: usize, map: &ShadowMap<'_>) -> Result<(), FieldErr
     if u64::from(map.first_layer) + needed > u64::from(layers) {
         let problem = format!("has {layers} layers");
         return refuse(problem, "a layer per matrix, from first_layer on");
+    }
+    // The flag is off on OpenGL.
+    if layers < 2 && !shared.read_only_depth {
+        return refuse("has 1 layer".into(), "at least 2 layers on this backend (OpenGL)");
     }
     Ok(())
 }

@@ -6,20 +6,18 @@ use glam::UVec2;
 
 use super::lighting_choice::LightingChoice;
 use crate::assets::ramp_steps::RampSteps;
-use crate::settings::{Lighting, LightingResolution, RenderPath, Settings, Shadow};
+use crate::settings::{Lighting, LightingResolution, RenderPath, Settings};
 
 /// Capabilities of a device that settings depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Support {
     /// True if it can light by six-way maps; otherwise normals replace them.
     pub six_way: bool,
-    /// True if smoke can shade smoke; otherwise it is drawn without shadow.
-    pub shadow: bool,
 }
 
 impl Support {
     /// Everything, as the CPU renderer supports it.
-    pub const ALL: Self = Self { six_way: true, shadow: true };
+    pub const ALL: Self = Self { six_way: true };
 }
 
 /// Settings of a system for one frame, after every choice that depends on the view, the sprite or the device. Both
@@ -45,12 +43,10 @@ impl ResolvedSettings {
         support: Support,
     ) -> Self {
         let lighting = if support.six_way { settings.lighting } else { Lighting::Normals };
-        let strength = if support.shadow { settings.shadow.strength } else { 0.0 };
-        let shadow = Shadow { strength, ..settings.shadow };
         let mut sprite = settings.sprite.for_frames(frame_count);
         sprite.size *= particle_scale;
         let scale = settings.accumulate.effective_scale(picture);
-        let mut settings = Settings { lighting, shadow, sprite, ..*settings };
+        let mut settings = Settings { lighting, sprite, ..*settings };
         let is_auto = settings.accumulate.lighting_resolution == LightingResolution::Auto;
         let lighting_choice = is_auto.then(|| LightingChoice::new(ramp_steps, &settings, scale));
         if let Some(choice) = lighting_choice {

@@ -152,7 +152,12 @@ impl SmokeShadow {
 
     /// Number of blocks of the volume.
     pub fn blocks(&self) -> u32 {
-        self.light_blocks * (1 + u32::from(self.has_visibility)) + u32::from(self.has_openness)
+        self.light_blocks + self.map_blocks() + u32::from(self.has_openness)
+    }
+
+    /// Number of blocks of lights whose visibility past the scene is looked up.
+    pub fn map_blocks(&self) -> u32 {
+        if self.has_visibility { self.light_blocks } else { 0 }
     }
 
     /// Number of blocks with lights that are there: a march towards no light is left out.

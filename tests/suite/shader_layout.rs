@@ -23,7 +23,9 @@ fn composed(file: &str) -> naga::Module {
 
 #[test]
 fn every_shader_file_validates_without_optional_capabilities() {
-    for (file, text) in shader::sources() {
+    // Completed by the passes that import it, one with a buffer and one with a texture.
+    let is_complete = |file: &str| file != "lib/shadow_march.wgsl";
+    for (file, text) in shader::sources().iter().filter(|(file, _)| is_complete(file)) {
         parse(file, &shader::compose(text).unwrap());
     }
 }

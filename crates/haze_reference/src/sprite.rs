@@ -3,7 +3,6 @@
 use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::visible_system::VisibleSystem;
-use haze::formula::density_grid::mean_optical_depth;
 use haze::formula::depth_moments::depth_moments;
 use haze::formula::fire::heat_at;
 use haze::formula::lighting::painted_share;
@@ -22,10 +21,9 @@ use haze::formula::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere,
     spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
 };
-use haze::formula::uniforms::SystemUniform;
 use haze::frame::Particle;
 use haze::settings::{BlendOrder, Technique};
-use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid};
+use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid, density_radius, sprite_optical_depth};
 
 /// Sprite in view space.
 pub struct SpriteSetup {
@@ -350,16 +348,4 @@ impl VisibleSystem<'_> {
             thickness: total,
         }
     }
-}
-
-/// Half the side of the square that the density of a particle's sprite fills, in cells.
-pub fn density_radius(system: &SystemUniform, particle: &Particle) -> f32 {
-    particle.radius * system.size * system.density_reach * system.cells_per_metre
-}
-
-/// Mean optical depth over that square, as it casts shadow.
-pub fn sprite_optical_depth(system: &SystemUniform, particle: &Particle) -> f32 {
-    let amount = particle.shown_amount() * system.opacity;
-    let depth = mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
-    system.shadow_density * depth / (system.density_reach * system.density_reach)
 }

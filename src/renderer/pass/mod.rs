@@ -14,6 +14,7 @@ pub(crate) mod light_target;
 pub(crate) mod measure;
 pub(crate) mod screen_shadow;
 pub(crate) mod shadow_march;
+pub(crate) mod shadow_slices;
 pub(crate) mod shadow_visibility;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;

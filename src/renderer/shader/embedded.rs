@@ -28,7 +28,9 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "measure.wgsl",
     "screen_shadow.wgsl",
     "shadow_march.wgsl",
+    "shadow_march_slice.wgsl",
     "shadow_visibility.wgsl",
+    "shadow_visibility_slice.wgsl",
     "sort.wgsl",
     "specular_scatter.wgsl",
     "tile_accumulate.wgsl",
@@ -71,6 +73,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/shadow.wgsl",
     "lib/shadow_map.wgsl",
     "lib/shadow_map_lookup.wgsl",
+    "lib/shadow_march.wgsl",
     "lib/shadow_volume.wgsl",
     "lib/six_way.wgsl",
     "lib/smoke_extent.wgsl",
@@ -86,6 +89,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/tonemap.wgsl",
     "lib/upsample.wgsl",
     "lib/view.wgsl",
+    "lib/volume_slice.wgsl",
 ];
 
 #[cfg(test)]

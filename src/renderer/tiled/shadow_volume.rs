@@ -50,7 +50,8 @@ struct VolumeBuffers {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameShadow<'a> {
     pub shadow: &'a SmokeShadow,
-    pub density: &'a wgpu::Buffer,
+    /// `None` on devices without compute shaders.
+    pub density: Option<&'a wgpu::Buffer>,
     pub optical_depths: &'a wgpu::TextureView,
 }
 
@@ -69,7 +70,7 @@ impl ShadowVolume {
         let Some(shadow) = shadow else { return };
         let fits = |held: &VolumeBuffers| {
             (held.resolution, held.blocks) == (shadow.resolution, shadow.blocks())
-                && held.maps.len() == map_blocks(shadow)
+                && held.maps.len() == shadow.map_blocks() as usize
         };
         if !self.buffers.as_ref().is_some_and(fits) {
             self.buffers = None;
@@ -85,7 +86,7 @@ impl ShadowVolume {
     /// Returns the grid with the frame's shadow.
     pub fn of_frame<'a>(&'a self, shadow: &'a SmokeShadow) -> Option<FrameShadow<'a>> {
         let VolumeBuffers { density, optical_depths, .. } = self.buffers.as_ref()?;
-        Some(FrameShadow { shadow, density, optical_depths })
+        Some(FrameShadow { shadow, density: Some(density), optical_depths })
     }
 
     /// Clears the density.
@@ -137,16 +138,11 @@ impl VolumeBuffers {
             wgpu::BindingResource::TextureView(&optical_depths),
         ];
         let march = bind(device, &tiled.layouts.shadow_march, resources);
-        let maps = (0..map_blocks(shadow))
+        let maps = (0..shadow.map_blocks())
             .map(|_| ShadowMapBindings::new(device, &tiled.layouts.shadow_visibility, Some(&optical_depths)))
             .collect();
         Self { resolution, blocks, uniform, density, optical_depths, march, maps }
     }
-}
-
-/// Number of blocks of lights whose shadow maps shade smoke.
-fn map_blocks(shadow: &SmokeShadow) -> usize {
-    if shadow.has_visibility { shadow.light_blocks as usize } else { 0 }
 }
 
 /// Creates a volume of `blocks` cubes along z.

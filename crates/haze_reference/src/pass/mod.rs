@@ -1,7 +1,6 @@
 //! Passes of the CPU renderer, each named like its shader.
 
 mod accumulate;
-pub mod density_splat;
 mod depth_downsample;
 mod depth_slopes;
 mod diffuse_bake;
