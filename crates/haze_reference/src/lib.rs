@@ -25,7 +25,7 @@ use haze::settings::DebugView;
 pub use accumulated::AccumulatedTextures;
 use accumulated::{AccumulatedTarget, LitTarget};
 pub use input::{FrameInput, ParticleSystem, ShadowMap};
-pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
+pub use probe::{FireProbe, GlowProbe, LightProbe, Probe, ProbeTextures, ShadowProbe, SystemProbe, probe};
 pub use scene_shadow::SceneShadow;
 use visible_system::{VisibleSystem, place_systems};
 

@@ -272,7 +272,9 @@ fn ramp_samples<'a>(
             (&material.coverage_ramp, bins.into_iter().collect(), one(at))
         }
         "heat_ramp" => (&material.heat_ramp, Vec::new(), Vec::new()),
-        "fire_ramp" => (&material.fire_ramp, Vec::new(), one(probe.map(|probe| probe.fire.x))),
+        "fire_ramp" => {
+            (&material.fire_ramp, Vec::new(), one(probe.and_then(|probe| probe.fire).map(|fire| fire.coordinate.x)))
+        }
         _ => (&material.age_ramp, Vec::new(), Vec::new()),
     }
 }

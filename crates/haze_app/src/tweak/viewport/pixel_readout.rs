@@ -2,7 +2,8 @@
 
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use haze_reference::{LightProbe, SystemProbe};
+use haze::formula::color::luminance;
+use haze_reference::{LightProbe, ShadowProbe, SystemProbe};
 
 use crate::tweak::session::Session;
 use crate::tweak::session::comparison::CompareWith;
@@ -99,18 +100,22 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
             ui.label(format!("Normal {x:.2} {y:.2} {z:.2}"));
         });
     });
-    egui::Grid::new(("lights", probe.system)).num_columns(6).spacing(gaps(ui)).show(ui, |ui| {
-        for title in ["", "N·L", "Ramp", "Light", "Diffuse", "Specular"] {
+    let has_shadow = probe.lights.iter().any(|light| light.shadow.is_some());
+    egui::Grid::new(("lights", probe.system)).num_columns(7).spacing(gaps(ui)).show(ui, |ui| {
+        let shadow = has_shadow.then_some("Shadow");
+        for title in ["", "N·L", "Ramp", "Light"].into_iter().chain(shadow).chain(["Diffuse", "Specular"]) {
             ui.weak(title);
         }
         ui.end_row();
-        probe.lights.iter().for_each(|light| light_row(ui, light, lights, is_small));
+        probe.lights.iter().for_each(|light| light_row(ui, light, lights, has_shadow, is_small));
     });
     egui::Grid::new(("sums", probe.system)).num_columns(3).spacing(gaps(ui)).show(ui, |ui| {
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
         let ambient = probe.ambient.map(|light| ("Of it ambient", String::new(), light));
-        let heat = format!("heat {:.2}", probe.fire.x);
-        let fire = (probe.fire_light != Vec3::ZERO).then_some(("Fire", heat, probe.fire_light));
+        let fire = probe.fire.map(|fire| {
+            let glam::Vec2 { x, y } = fire.coordinate;
+            ("Fire", format!("heat {x:.2}, amount {y:.2}"), fire.light)
+        });
         let sums = [
             ("Soft scatter", scatter, probe.soft_scatter),
             ("Specular", String::new(), probe.specular()),
@@ -126,13 +131,18 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
     });
 }
 
-fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
+fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], has_shadow: bool, is_small: bool) {
     // Their sums are shown as numbers in any case.
     let color = if is_small { hue_swatch } else { color };
     ui.label(names.get(light.light).map_or("Fire", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
     ui.label(format!("{:.3}", light.attenuation));
+    match light.shadow {
+        Some(shadow) => shadow_values(ui, &shadow),
+        None if has_shadow => drop(ui.weak("None")),
+        None => {}
+    }
     color(ui, light.diffuse);
     match light.glow {
         Some(glow) => color(ui, glow.specular),
@@ -141,6 +151,15 @@ fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) 
         }
     }
     ui.end_row();
+}
+
+/// Shows the share of a light that is left, and its place on the shadow ramp.
+fn shadow_values(ui: &mut Ui, shadow: &ShadowProbe) {
+    let glam::Vec2 { x, y } = shadow.coordinate;
+    ui.horizontal(|ui| {
+        ui.label(format!("{:.0} % left", 100.0 * luminance(shadow.transmittance)));
+        ui.weak(format!("{x:.2} {y:.2}"));
+    });
 }
 
 /// Returns the spacing of columns and rows.
