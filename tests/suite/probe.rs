@@ -1,8 +1,10 @@
 //! Checks that the pixel probe reports the values that the GPU drew.
 
-use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{UVec2, Vec2, Vec2Swizzles, Vec3, Vec4, Vec4Swizzles};
+use haze::Light;
 use haze::builtin;
 use haze::image::Image;
+use haze::ramp::Ramp;
 use haze::settings::*;
 use haze::wgpu;
 use haze_demo::capture::CapturedFrame;
@@ -54,8 +56,8 @@ fn difference(a: Vec3, b: Vec3) -> f32 {
 /// precision of 1/256 pixel decides what a pixel shows.
 const EDGES: f32 = 0.005;
 
-/// Asserts that `probed` of each probe equals the image at that pixel; skips probes for which it returns `None`.
-fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Image<Vec4>) {
+/// Numbers of pixels that were compared and that differ from the image, and their largest difference.
+fn compare(probed: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Image<Vec4>) -> (u32, u32, f32) {
     let (mut seen, mut wrong, mut most) = (0, 0, 0.0_f32);
     for (probe, at) in probes.iter().zip(pixels()) {
         let Some(probed) = probed(probe) else { continue };
@@ -63,6 +65,12 @@ fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, pro
         (seen, most) = (seen + 1, most.max(difference));
         wrong += u32::from(difference > STEPS);
     }
+    (seen, wrong, most)
+}
+
+/// Asserts that `probed` of each probe equals the image at that pixel; skips probes for which it returns `None`.
+fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Image<Vec4>) {
+    let (seen, wrong, most) = compare(probed, probes, drawn);
     println!("{what}: {wrong} of {seen} pixels differ, by up to {most:.1} steps");
     assert!(seen > 20, "{what}: only {seen} pixels with smoke");
     assert!(wrong as f32 <= EDGES * seen as f32, "{what}: {wrong} of {seen} pixels differ, by up to {most} steps");
@@ -127,6 +135,88 @@ fn probed_values_match_every_debug_view() {
             }
         }
     }
+}
+
+/// Ramp whose color is its coordinate, in red and green; blue is 1. With 128 texels, the error of a bilinear lookup with
+/// weights of 1/256 is below a step of a half float.
+fn coordinate_ramp() -> Ramp {
+    let size = UVec2::splat(128);
+    let at = |x, y| (Vec2::new(x as f32, y as f32) / (size - 1).as_vec2()).extend(1.0);
+    Ramp::from_linear(size, (0..size.y).flat_map(|y| (0..size.x).map(move |x| at(x, y))))
+}
+
+/// Asserts that a coordinate is the one by which the image looked a `coordinate_ramp` up, and that a flipped or swapped
+/// axis would be noticed. `probed`: the coordinate, and the light without the ramp.
+fn assert_coordinate_matches_image(
+    what: &str,
+    probed: impl Fn(&SystemProbe) -> Option<(Vec2, f32)>,
+    probes: &[Probe],
+    drawn: &Image<Vec4>,
+) {
+    type Change = fn(Vec2) -> Vec2;
+    let color = |probe: &Probe, change: Change| {
+        let system = probe.systems.first()?;
+        let (coordinate, light) = probed(system)?;
+        Some(change(coordinate).extend(1.0) * (light * system.coverage))
+    };
+    assert_matches_image(what, |probe| color(probe, |at| at), probes, drawn);
+    let mutants: [(&str, Change); 3] = [
+        ("flipped across", |at| Vec2::new(1.0 - at.x, at.y)),
+        ("flipped upwards", |at| Vec2::new(at.x, 1.0 - at.y)),
+        ("swapped", |at| at.yx()),
+    ];
+    for (mutant, change) in mutants {
+        let (seen, wrong, _) = compare(|probe| color(probe, change), probes, drawn);
+        assert!(wrong > seen / 2, "{what}, {mutant}: only {wrong} of {seen} pixels differ");
+    }
+}
+
+#[test]
+fn probed_coordinates_of_the_shadow_ramp_match_the_image() {
+    let mut shot = Shot::load("column", SIZE).unwrap();
+    let (settings, material) = (&mut shot.preset.systems[0].settings, &mut shot.materials[0]);
+    settings.ambient.intensity = 0.0;
+    (material.shadow_ramp, material.diffuse_ramp) = (coordinate_ramp(), Ramp::from_linear(UVec2::ONE, [Vec3::ONE]));
+    let lights = shot.preset.lights.clone();
+    let paths = if is_tiled_available() { &[RenderPath::Raster, RenderPath::Tiled][..] } else { &[] };
+    for (&path, (index, light)) in paths.iter().flat_map(|path| lights.iter().enumerate().map(move |of| (path, of))) {
+        // One light at a time, or the image would show a sum.
+        shot.preset.lights = vec![Light { color: Vec3::ONE, ..*light }];
+        shot.preset.systems[0].settings.path = path;
+        let Some((captured, pictures)) = render_and_capture(&shot, &[DebugView::Diffuse]) else { return };
+        let probes = captured.clone().with_shot(shot.clone()).probe(&pixels()).unwrap();
+        // Blue is 1 in both ramps.
+        let shadow = |probe: &SystemProbe| Some((probe.lights.first()?.shadow?.coordinate, probe.diffuse.z));
+        assert_coordinate_matches_image(&format!("{} {index}", path.name()), shadow, &probes, &pictures[0]);
+        for shadow in probes.iter().flat_map(|probe| &probe.systems).filter_map(|system| system.lights[0].shadow) {
+            let expected = shadow.coordinate.extend(1.0) * shadow.transmittance.z;
+            assert!(difference(shadow.transmittance, expected) < 1.0, "{shadow:?}");
+        }
+        let mut changed = shot.clone();
+        changed.preset.lights[0].smoke_shadow = false;
+        let probes = captured.with_shot(changed).probe(&pixels()).unwrap();
+        let mut lights = probes.iter().flat_map(|probe| &probe.systems).flat_map(|system| &system.lights);
+        assert!(lights.all(|light| light.shadow.is_none()), "a shadow of a light that shines through smoke");
+    }
+}
+
+#[test]
+fn probed_coordinates_of_the_fire_ramp_match_the_image() {
+    let mut shot = Shot::load("oil_fire", SIZE).unwrap();
+    let settings = &mut shot.preset.systems[0].settings;
+    // Only fire gives light.
+    (settings.diffuse.intensity, settings.soft_scatter.intensity, settings.shadow.strength) = (0.0, 0.0, 0.0);
+    settings.specular_scatter.intensity = 0.0;
+    settings.accumulate.lighting_resolution = LightingResolution::Full;
+    shot.materials[0].fire_ramp = coordinate_ramp();
+    let Some((captured, pictures)) = render_and_capture(&shot, &[DebugView::Combined]) else { return };
+    let probes = captured.with_shot(shot.clone()).probe(&pixels()).unwrap();
+    let fire = |probe: &SystemProbe| probe.fire.map(|fire| (fire.coordinate, fire.light.z));
+    assert_coordinate_matches_image("fire", fire, &probes, &pictures[0]);
+    shot.preset.systems[0].settings.fire.intensity = 0.0;
+    let Some((captured, _)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
+    let probes = captured.with_shot(shot).probe(&pixels()).unwrap();
+    assert!(probes.iter().flat_map(|probe| &probe.systems).all(|system| system.fire.is_none()));
 }
 
 #[test]

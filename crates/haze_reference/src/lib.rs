@@ -27,7 +27,7 @@ use haze::view_setup::ViewGeometry;
 pub use accumulated::AccumulatedTextures;
 use accumulated::{AccumulatedTarget, LitTarget};
 pub use input::{FrameInput, ParticleSystem, ShadowMap};
-pub use probe::{GlowProbe, LightProbe, Probe, ProbeTextures, SystemProbe, probe};
+pub use probe::{FireProbe, GlowProbe, LightProbe, Probe, ProbeTextures, ShadowProbe, SystemProbe, probe};
 pub use scene_shadow::SceneShadow;
 use screen_shadow::ScreenShadow;
 use visible_system::{VisibleSystem, place_systems};

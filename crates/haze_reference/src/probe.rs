@@ -7,12 +7,15 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use super::blend_unit::premultiplied_over;
 use super::input::FrameInput;
+use super::shade::Shade;
 use super::visible_system::{VisibleSystem, place_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::fire::fire_from_moments;
-use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
+use haze::formula::lighting::{coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight};
+use haze::formula::shadow::{of_slot, shadow_position};
 use haze::formula::six_way::SixWay;
+use haze::formula::uniforms::LightUniform;
 use haze::settings::{DebugView, SoftScatterMode};
 use haze::view_setup::{ViewGeometry, light_uniforms};
 
@@ -63,10 +66,8 @@ pub struct SystemProbe {
     pub soft_scatter_weight: Option<f32>,
     /// Soft scatter, times its intensity.
     pub soft_scatter: Vec3,
-    /// Mean heat of the smoke that burns, and its share of the smoke.
-    pub fire: Vec2,
-    /// Light that the smoke gives.
-    pub fire_light: Vec3,
+    /// Light that the smoke gives; `None` if nothing burns there.
+    pub fire: Option<FireProbe>,
     /// Premultiplied light and coverage, as blended.
     pub blended: Vec4,
 }
@@ -85,8 +86,30 @@ pub struct LightProbe {
     /// Light added through the diffuse ramp or six-way maps, times the intensity of diffuse light. Modes other than
     /// `ramp` sum lights up differently.
     pub diffuse: Vec3,
+    /// Smoke and scene between the light and the pixel; `None` if the light has no shadow.
+    pub shadow: Option<ShadowProbe>,
     /// Glow of the light; `None` if its quad does not reach the pixel, or the scene hides it.
     pub glow: Option<GlowProbe>,
+}
+
+/// Shadow of a light at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowProbe {
+    /// Lookup coordinate of the shadow ramp, 0 to 1: smoke before the light, and angle between light and viewer.
+    pub coordinate: Vec2,
+    /// Share of the light that comes past the scene and through the smoke.
+    pub transmittance: Vec3,
+}
+
+/// Light of burning smoke at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FireProbe {
+    /// Lookup coordinate of the fire ramp, 0 to 1: mean heat of what burns, and its amount times `boost`.
+    pub coordinate: Vec2,
+    /// Share of the visible smoke that burns, 0 to 1.
+    pub share: f32,
+    /// Light that it gives.
+    pub light: Vec3,
 }
 
 /// Glow of a light at a pixel.
@@ -202,6 +225,7 @@ impl<'a> ProbedSystem<'a> {
                 diffuse: smoke.diffuse_from_light(light, &surface, covered, position)
                     * visible.system.diffuse_intensity
                     * surface.tint,
+                shadow: visible.probe_shadow(light, sample.direction, position, &surface.shade),
                 glow: glow.map(|(coordinate, specular)| GlowProbe { coordinate, specular }),
             }
         };
@@ -220,9 +244,31 @@ impl<'a> ProbedSystem<'a> {
             soft_scatter_weight: is_curve
                 .then(|| soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth)),
             soft_scatter: visible.soft_scatter(amount) * surface.tint,
-            fire: fire_from_moments(surface.heat),
-            fire_light: smoke.fire_light(&surface, amount),
+            fire: visible.settings.burns().then(|| visible.probe_fire(surface.heat, amount)).flatten(),
             blended: blended.unwrap_or(Vec4::ZERO),
+        })
+    }
+}
+
+impl VisibleSystem<'_> {
+    /// Shadow of a light, as [`Self::shadow_on_light`] looks it up.
+    fn probe_shadow(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Option<ShadowProbe> {
+        let is_shadowed = self.system.shadow_strength > 0.0 && light.shadow_slot >= 0.5;
+        let to_viewer = direction_to_viewer(position, self.view.orthographic);
+        is_shadowed.then(|| ShadowProbe {
+            coordinate: shadow_position(of_slot(light.shadow_slot, shade.optical_depths), to_light, to_viewer),
+            transmittance: self.shadow_on_light(light, to_light, position, shade),
+        })
+    }
+
+    /// Light of burning smoke, as [`Self::emission`] looks it up. `moments`: means of heat and of its square.
+    fn probe_fire(&self, moments: Vec2, amount: f32) -> Option<FireProbe> {
+        let fire = fire_from_moments(moments);
+        let (heat, share) = (fire.x, fire.y);
+        (share > 0.0).then(|| FireProbe {
+            coordinate: Vec2::new(heat, coverage(amount * share, self.system.boost)),
+            share,
+            light: self.emission(fire, amount),
         })
     }
 }

@@ -30,6 +30,12 @@ pub type Mark = (f32, Color32);
 /// Histograms of the coordinates that the image samples along an axis of a ramp, and marks of single pixels.
 pub type AxisSamples = (Vec<Bins>, Vec<Mark>);
 
+/// True if a ramp has stops to edit.
+pub fn has_stops(session: &mut Session, ramp: NamedRamp<'_>) -> bool {
+    let folders = session.folders();
+    matches!(session.ramps.source(ramp.name, &folders), RampOrigin::Recipe(_))
+}
+
 /// Draws the editor of a ramp, and returns the coordinate under the pointer; the outer `None` means that the ramp has
 /// no stops. Histograms are shown for the axis of the edited gradient: rows run across, the gradient that multiplies
 /// them runs upwards.

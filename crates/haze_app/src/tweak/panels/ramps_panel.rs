@@ -3,6 +3,7 @@
 use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
 use glam::UVec2;
 use haze::MaterialAssets;
+use haze::formula::color::luminance;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::preset::Preset;
 use haze::ramp::Ramp;
@@ -12,14 +13,17 @@ use haze_reference::SystemProbe;
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
 use super::rows::picture_gallery::gallery;
 use crate::tweak::document::display_names::display_name;
+use crate::tweak::session::Session;
 use crate::tweak::session::inspection::PixelValues;
-use crate::tweak::session::ramp_survey::{Histogram, RampPlace, RampSurvey, SIDE};
-use crate::tweak::session::{Session, ramp_survey};
+use crate::tweak::session::light_view::name_in_image;
+use crate::tweak::session::ramp_survey::{Histogram, RampPlace, RampSurvey, SIDE, TwoAxisRamp};
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// Heights of a ramp and of a histogram, points.
 const RAMP_HEIGHT: f32 = 20.0;
 const HISTOGRAM_HEIGHT: f32 = 56.0;
+/// Largest width of a ramp with two axes, points.
+const PLANE_WIDTH: f32 = 220.0;
 
 /// Colors of the lights, reused cyclically; distinguishable also with color blindness.
 const LIGHT_COLORS: [Color32; 6] = [
@@ -31,8 +35,11 @@ const LIGHT_COLORS: [Color32; 6] = [
     Color32::from_rgb(120, 120, 240),
 ];
 
-/// Color over the specular ramp of the places that are sampled.
-const SAMPLED_COLOR: Color32 = Color32::from_rgb(120, 200, 240);
+/// Colors of the sampled places over dark and over light parts of a ramp with two axes.
+const SAMPLED_OVER_DARK: Color32 = Color32::from_rgb(120, 210, 255);
+const SAMPLED_OVER_LIGHT: Color32 = Color32::from_rgb(0, 50, 130);
+/// Linear luminance that separates them.
+const MIDDLE_GREY: f32 = 0.18;
 
 /// Draws the tab. Returns the place on a ramp under the pointer.
 pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPlace> {
@@ -41,11 +48,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     let is_first = |values: &&PixelValues| values.side == ComparedSide::First && session.inspect.place().is_some();
     let values = session.inspect.pixel_values.as_ref().filter(is_first);
     let probe = values.and_then(|values| values.probe.systems.iter().find(|probe| probe.system == index)).cloned();
-    let probe = probe.as_ref();
     let filter = system.settings.ramp_filter;
     let is_forward = system.settings.is_forward();
     let survey = session.inspect.survey.clone().filter(|_| !is_forward);
-    let survey = survey.as_deref();
+    let lookups = Lookups { system: index, survey: survey.as_deref(), probe: probe.as_ref(), is_forward };
     let mut ramp_place = None;
     ui.weak(
         "Hover a ramp to highlight the smoke that uses that color. Hover the smoke to mark its place on the ramps.",
@@ -68,28 +74,15 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         ramp_stops::offer_stops(ui, session, ramp);
         let spoken = display_name(field);
         let ink = ui.visuals().text_color();
-        if field == "specular_ramp" {
-            let density = survey.map(|survey| survey.by_glow(index));
-            ramp_place = ramp_place.or(plane(
-                ui,
-                (&spoken, GLOW_AXES),
-                (&material.specular_ramp, filter),
-                density.as_deref(),
-                probe,
-            ));
-            let [across, up] = axis_samples(density.as_deref(), probe, ink);
-            ramp_stops::editor(ui, session, ramp, &across, &up);
+        if let Some(two_axes) = two_axes(field, material) {
+            ramp_place = ramp_place.or(two_axis_ramp(ui, session, ramp, (&two_axes, filter), &lookups));
             continue;
         }
-        if field == "shadow_ramp" {
-            let axes = "Across: smoke in front of the light. Up: light from the viewer's side to light from behind.";
-            plane(ui, (&spoken, axes), (&material.shadow_ramp, filter), None, None);
-            ramp_stops::editor(ui, session, ramp, &AxisSamples::default(), &AxisSamples::default());
-            continue;
-        }
-        let lights = survey.filter(|_| is_diffuse(field)).map_or_else(Vec::new, |survey| survey.by_light(index));
-        let (picture, mut bins, marks) =
-            ramp_samples(field, material, probe, survey.map(|survey| (survey, index)), &lights, ink);
+        let lights = match lookups.survey.filter(|_| is_diffuse(field)) {
+            Some(survey) => survey.by_light(index),
+            None => Vec::new(),
+        };
+        let (picture, mut bins, marks) = ramp_samples(field, material, &lookups, &lights, ink);
         if bins.is_empty() && !is_not_counted(field) && !is_forward {
             // Reserves the space of the histogram, so that nothing moves under the pointer when it arrives.
             bins.push((ink, Vec::new()));
@@ -98,11 +91,16 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let edited = ramp_stops::editor(ui, session, ramp, &across, &AxisSamples::default());
         let at = edited.unwrap_or_else(|| {
             let at = strip(ui, &spoken, picture, filter, &across.1);
-            histogram(ui, field, &across.0);
+            let name = if is_diffuse(field) { "Histogram of N·L" } else { "Histogram of amounts" };
+            histogram(ui, (name, ui.available_width()), &across.0);
             at
         });
-        if field == "diffuse_ramp" && survey.is_some() {
-            legend(ui, &lights, &session.view.lights.shown_names(&session.document.preset.lights));
+        if field == "diffuse_ramp" && lookups.survey.is_some() {
+            if lights.is_empty() {
+                ui.weak("No light reaches the smoke in this image");
+            } else {
+                legend(ui, session, &lights);
+            }
         }
         ramp_place = ramp_place.or(at.and_then(|at| match field {
             "diffuse_ramp" | "backlight_ramp" => Some(RampPlace::Diffuse(at)),
@@ -115,8 +113,49 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     ramp_place
 }
 
-/// Axes of the specular ramp.
-const GLOW_AXES: &str = "Across: squared distance from the light. Up: amount.";
+/// Lookups of a system's ramps: by the image, and by the probed pixel.
+struct Lookups<'a> {
+    system: usize,
+    /// `None` until it is there, and on the forward path.
+    survey: Option<&'a RampSurvey>,
+    probe: Option<&'a SystemProbe>,
+    is_forward: bool,
+}
+
+/// Ramp with two axes, as the tab shows it.
+struct TwoAxes<'a> {
+    ramp: TwoAxisRamp,
+    image: &'a Ramp,
+    /// Explanation of the axes.
+    axes: &'static str,
+    /// Name of the histogram along the bottom axis.
+    histogram: &'static str,
+}
+
+/// Returns the ramp in a field, if it has two axes.
+fn two_axes<'a>(field: &str, material: &'a MaterialAssets) -> Option<TwoAxes<'a>> {
+    Some(match field {
+        "shadow_ramp" => TwoAxes {
+            ramp: TwoAxisRamp::Shadow,
+            image: &material.shadow_ramp,
+            axes: "Across: smoke in front of the light. Up: light from the viewer's side to light from behind.",
+            histogram: "Histogram of smoke in front of lights",
+        },
+        "specular_ramp" => TwoAxes {
+            ramp: TwoAxisRamp::Specular,
+            image: &material.specular_ramp,
+            axes: "Across: squared distance from the light. Up: amount.",
+            histogram: "Histogram of squared distances",
+        },
+        "fire_ramp" => TwoAxes {
+            ramp: TwoAxisRamp::Fire,
+            image: &material.fire_ramp,
+            axes: "Across: heat. Up: amount of the smoke that burns, times boost.",
+            histogram: "Histogram of heat",
+        },
+        _ => return None,
+    })
+}
 
 /// Ramp of a system, as the tab shows it.
 struct RampEntry {
@@ -238,55 +277,79 @@ fn is_diffuse(field: &str) -> bool {
     matches!(field, "diffuse_ramp" | "backlight_ramp")
 }
 
-/// True for ramps whose lookups are not counted.
+/// True for ramps whose lookups are not counted: each particle looks them up, not each pixel.
 fn is_not_counted(field: &str) -> bool {
-    matches!(field, "age_ramp" | "heat_ramp" | "fire_ramp")
+    matches!(field, "age_ramp" | "heat_ramp")
 }
 
 /// Returns a ramp with one axis, the histograms of the coordinates that the image samples, and the marks of the probed
-/// pixel. `survey` comes with the index of the system; `lights` are its histograms of the diffuse ramps.
+/// pixel. `lights`: histograms of the diffuse ramps.
 fn ramp_samples<'a>(
     field: &str,
     material: &'a MaterialAssets,
-    probe: Option<&SystemProbe>,
-    survey: Option<(&RampSurvey, usize)>,
+    lookups: &Lookups<'_>,
     lights: &[Histogram],
     ink: Color32,
 ) -> (&'a Ramp, Vec<Bins>, Vec<Mark>) {
+    let Lookups { system, survey, probe, .. } = *lookups;
     let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
     match field {
         "diffuse_ramp" | "backlight_ramp" => {
             let looking = probe.iter().flat_map(|probe| &probe.lights);
-            let marks = looking.map(|light| (light.coordinate, light_color(light.light))).collect();
-            let bins = lights.iter().map(|histogram| (light_color(histogram.light), histogram.bins.clone()));
+            let marks = looking.map(|light| (light.coordinate, mark_color(Some(light.light)))).collect();
+            let bins = lights.iter().map(|of| (bins_color(of.light, ink), of.bins.clone()));
             let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
             (ramp, bins.collect(), marks)
         }
         "soft_scatter_ramp" => {
-            let bins = survey.map(|(survey, system)| (ink, survey.by_amount(system)));
+            let bins = survey.map(|survey| (ink, survey.by_amount(system)));
             (&material.soft_scatter_ramp, bins.into_iter().collect(), one(probe.map(|probe| probe.amount)))
         }
         "coverage_ramp" => {
-            let bins = survey.map(|(survey, system)| (ink, survey.by_coverage(system)));
+            let bins = survey.map(|survey| (ink, survey.by_coverage(system)));
             let at = probe.map(|probe| probe.coverage_coordinate);
             (&material.coverage_ramp, bins.into_iter().collect(), one(at))
         }
         "heat_ramp" => (&material.heat_ramp, Vec::new(), Vec::new()),
-        "fire_ramp" => (&material.fire_ramp, Vec::new(), one(probe.map(|probe| probe.fire.x))),
         _ => (&material.age_ramp, Vec::new(), Vec::new()),
     }
 }
 
-/// Returns histograms and marks of the specular ramp along each axis.
-fn axis_samples(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [AxisSamples; 2] {
-    let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
-    let marks: Vec<_> = glows.map(|(light, glow)| (light_color(light), glow.coordinate)).collect();
-    // Empty histograms reserve the space.
-    let [across, up] = ramp_survey::along(density.unwrap_or_default());
-    [
-        (vec![(ink, across)], marks.iter().map(|(color, at)| (at.x, *color)).collect()),
-        (vec![(ink, up)], marks.iter().map(|(color, at)| (at.y, *color)).collect()),
-    ]
+/// Draws a ramp with two axes, then its editor, or, if it has no stops, the histograms along the bottom axis. Returns the
+/// place under the pointer.
+fn two_axis_ramp(
+    ui: &mut Ui,
+    session: &mut Session,
+    named: NamedRamp<'_>,
+    (two_axes, filter): (&TwoAxes<'_>, RampFilter),
+    lookups: &Lookups<'_>,
+) -> Option<RampPlace> {
+    let (ramp, ink) = (two_axes.ramp, ui.visuals().text_color());
+    let width = ui.available_width().min(PLANE_WIDTH);
+    let place = plane(ui, (&display_name(named.field), width), two_axes, filter, lookups);
+    let histograms = |axis| lookups.survey.map_or_else(Vec::new, |survey| survey.along(axis, ramp, lookups.system));
+    let marks: Vec<_> = lookups.probe.into_iter().flat_map(|probe| ramp.lookups(probe)).collect();
+    let samples = |axis: usize, histograms: &[Histogram]| {
+        let mut bins: Vec<_> = histograms.iter().map(|of| (bins_color(of.light, ink), of.bins.clone())).collect();
+        if bins.is_empty() && !lookups.is_forward {
+            // Reserves the space.
+            bins.push((ink, Vec::new()));
+        }
+        (bins, marks.iter().map(|(light, at)| (at[axis], mark_color(*light))).collect())
+    };
+    let of_lights = histograms(0);
+    let across: AxisSamples = samples(0, &of_lights);
+    if ramp_stops::has_stops(session, named) {
+        ui.weak(two_axes.axes);
+        ramp_stops::editor(ui, session, named, &across, &samples(1, &histograms(1)));
+    } else {
+        histogram(ui, (two_axes.histogram, width), &across.0);
+        ui.weak(two_axes.axes);
+    }
+    if ramp != TwoAxisRamp::Fire && !lookups.is_forward {
+        legend(ui, session, &of_lights);
+    }
+    place
 }
 
 /// Draws the title of a ramp and the choice of its image.
@@ -301,8 +364,14 @@ fn choose(ui: &mut Ui, session: &mut Session, (title, tooltip): (&str, &str), pa
     }
 }
 
-fn light_color(index: usize) -> Color32 {
-    LIGHT_COLORS[index % LIGHT_COLORS.len()]
+/// Color of the histogram of a light, or of fire.
+fn bins_color(light: Option<usize>, ink: Color32) -> Color32 {
+    light.map_or(ink, |index| LIGHT_COLORS[index % LIGHT_COLORS.len()])
+}
+
+/// Color of the mark of a light, or of fire.
+fn mark_color(light: Option<usize>) -> Color32 {
+    bins_color(light, Color32::WHITE)
 }
 
 /// Allocates space for an image with a name. Returns the pointer position in it, in shares of its sides.
@@ -341,53 +410,51 @@ fn picture(ui: &Ui, rect: Rect, cells: UVec2, color: impl Fn(glam::Vec2) -> glam
 }
 
 /// Draws histograms on top of each other.
-fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
+fn histogram(ui: &mut Ui, (name, width): (&str, f32), histograms: &[Bins]) {
     if histograms.is_empty() {
         return;
     }
-    let name = if field == "diffuse_ramp" { "Histogram of N·L" } else { "Histogram of amounts" };
-    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM_HEIGHT), name);
+    let (rect, _) = space(ui, Vec2::new(width, HISTOGRAM_HEIGHT), name);
     ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
     histograms.iter().for_each(|(color, bins)| egui_gradient::histogram(ui, rect, bins, *color));
 }
 
 /// Draws the names of lights in the colors of their histograms.
-fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
+fn legend(ui: &mut Ui, session: &Session, histograms: &[Histogram]) {
+    let names = session.view.lights.shown_names(&session.document.preset.lights);
     ui.horizontal_wrapped(|ui| {
-        for histogram in histograms {
-            let name = names.get(histogram.light).map_or("Light", String::as_str);
-            ui.colored_label(light_color(histogram.light), name);
-        }
-        if histograms.is_empty() {
-            ui.weak("No light reaches the smoke in this image");
+        for light in histograms.iter().filter_map(|histogram| histogram.light) {
+            ui.colored_label(mark_color(Some(light)), name_in_image(&names, light));
         }
     });
 }
 
-/// Draws the specular ramp with rising amounts upwards, and the sampled places over it.
+/// Draws a ramp with two axes, the second upwards, and the sampled places over it.
 fn plane(
     ui: &mut Ui,
-    (name, axes): (&str, &str),
-    (ramp, filter): (&Ramp, RampFilter),
-    density: Option<&[f32]>,
-    probe: Option<&SystemProbe>,
+    (name, width): (&str, f32),
+    two_axes: &TwoAxes<'_>,
+    filter: RampFilter,
+    lookups: &Lookups<'_>,
 ) -> Option<RampPlace> {
-    let side = ui.available_width().min(220.0);
-    let (rect, at) = space(ui, Vec2::new(side, 0.6 * side), name);
-    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(ramp, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
+    let TwoAxes { ramp, image, .. } = *two_axes;
+    let (rect, at) = space(ui, Vec2::new(width, 0.6 * width), name);
+    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(image, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
     let mut mesh = Mesh::default();
     let cell = rect.size() / SIDE as f32;
-    for (index, density) in density.unwrap_or_default().iter().enumerate().filter(|(_, density)| **density > 0.0) {
-        let (x, y) = ((index % SIDE) as f32, (SIDE - 1 - index / SIDE) as f32);
-        let square = Rect::from_min_size(rect.min + Vec2::new(x, y) * cell, cell);
-        mesh.add_colored_rect(square, SAMPLED_COLOR.gamma_multiply(0.7 * density.sqrt()));
+    let density = lookups.survey.map_or_else(Vec::new, |survey| survey.over_both_axes(ramp, lookups.system));
+    for (index, density) in density.iter().enumerate().filter(|(_, density)| **density > 0.0) {
+        let (column, row) = ((index % SIDE) as f32, (index / SIDE) as f32);
+        let below = sample_ramp_2d(image, filter, (glam::Vec2::new(column, row) + 0.5) / SIDE as f32);
+        let color = if luminance(below) < MIDDLE_GREY { SAMPLED_OVER_DARK } else { SAMPLED_OVER_LIGHT };
+        let corner = rect.min + Vec2::new(column, (SIDE - 1) as f32 - row) * cell;
+        // Even the rarest places stay visible.
+        mesh.add_colored_rect(Rect::from_min_size(corner, cell), color.gamma_multiply(0.15 + 0.7 * density.sqrt()));
     }
     ui.painter().add(mesh);
-    for glow in probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?))) {
-        let (light, at) = (glow.0, glow.1.coordinate);
+    for (light, at) in lookups.probe.into_iter().flat_map(|probe| ramp.lookups(probe)) {
         let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
-        ui.painter().circle(place, 4.0, light_color(light), Stroke::new(1.5, Color32::BLACK));
+        ui.painter().circle(place, 4.0, mark_color(light), Stroke::new(1.5, Color32::BLACK));
     }
-    ui.weak(axes);
-    at.map(|at| RampPlace::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))
+    at.map(|at| RampPlace::TwoAxes(ramp, glam::Vec2::new(at.x, 1.0 - at.y)))
 }

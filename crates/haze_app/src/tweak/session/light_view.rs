@@ -186,6 +186,11 @@ impl LightView {
     }
 }
 
+/// Returns the name of a light of the image. `names`: those of the preset's lights, after which come the lights of fires.
+pub fn name_in_image(names: &[String], index: usize) -> &str {
+    names.get(index).map_or("Fire", String::as_str)
+}
+
 #[cfg(test)]
 mod tests {
     use haze::LightKind;

@@ -2,11 +2,13 @@
 
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use haze_reference::{LightProbe, SystemProbe};
+use haze::formula::color::luminance;
+use haze_reference::{LightProbe, ShadowProbe, SystemProbe};
 
 use crate::tweak::session::Session;
 use crate::tweak::session::comparison::CompareWith;
 use crate::tweak::session::inspection::{PixelValues, srgb_code};
+use crate::tweak::session::light_view::name_in_image;
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// Distance from the corner, points.
@@ -14,6 +16,8 @@ const MARGIN: f32 = 8.0;
 
 /// A smaller viewport uses small text, points.
 const LARGE: Vec2 = Vec2::new(480.0, 400.0);
+/// A narrower viewport shows the colors of lights without numbers, points. The second is for lights with shadow.
+const WIDE: [f32; 2] = [540.0, 720.0];
 
 /// Draws the values while the inspector is on, on the side away from the pointer.
 pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
@@ -32,21 +36,25 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
         (viewport.left_top() + Vec2::splat(MARGIN), egui::Align2::LEFT_TOP)
     };
     let area = egui::Area::new(egui::Id::unique("inspector")).fixed_pos(corner).pivot(pivot).interactable(false);
-    let is_small = viewport.width() < LARGE.x || viewport.height() < LARGE.y;
+    let size = viewport.size();
     area.constrain_to(viewport).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            if is_small {
+            if is_small(size) {
                 ui.style_mut().override_font_id = Some(egui::FontId::proportional(11.0));
                 ui.spacing_mut().item_spacing = Vec2::new(4.0, 1.0);
                 ui.spacing_mut().interact_size = Vec2::new(26.0, 14.0);
             }
             match values {
-                Some(values) => numbers(ui, values, session, is_small),
+                Some(values) => numbers(ui, values, session, size),
                 None => drop(ui.weak("The CPU image cannot be inspected")),
             }
         });
     });
+}
+
+fn is_small(viewport: Vec2) -> bool {
+    viewport.x < LARGE.x || viewport.y < LARGE.y
 }
 
 /// Marks the pixel with a cross.
@@ -59,7 +67,7 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
     }
 }
 
-fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool) {
+fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, size: Vec2) {
     let PixelValues { pixel, side, names, probe, exposure } = values;
     let keep = if session.inspect.pinned.is_some() { "Pinned" } else { "Click to pin" };
     ui.horizontal(|ui| {
@@ -76,7 +84,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
     for system in probe.systems.iter().rev() {
         ui.separator();
         ui.label(RichText::new(names.get(system.system).map_or("Smoke", String::as_str)).strong());
-        system_values(ui, system, &lights, is_small);
+        system_values(ui, system, &lights, size);
     }
     if probe.systems.is_empty() {
         ui.weak("No smoke here");
@@ -90,7 +98,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
     }
 }
 
-fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool) {
+fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], size: Vec2) {
     ui.horizontal(|ui| {
         ball(ui, probe.normal);
         ui.vertical(|ui| {
@@ -99,18 +107,28 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
             ui.label(format!("Normal {x:.2} {y:.2} {z:.2}"));
         });
     });
-    egui::Grid::new(("lights", probe.system)).num_columns(6).spacing(gaps(ui)).show(ui, |ui| {
-        for title in ["", "N·L", "Ramp", "Light", "Diffuse", "Specular"] {
+    let has_shadow = probe.lights.iter().any(|light| light.shadow.is_some());
+    let is_small = is_small(size);
+    let columns = LightColumns {
+        has_shadow,
+        has_place: !is_small,
+        has_numbers: !is_small && size.x >= WIDE[usize::from(has_shadow)],
+    };
+    egui::Grid::new(("lights", probe.system)).num_columns(7).spacing(gaps(ui)).show(ui, |ui| {
+        let shadow = has_shadow.then_some("Shadow");
+        for title in ["", "N·L", "Ramp", "Light"].into_iter().chain(shadow).chain(["Diffuse", "Specular"]) {
             ui.weak(title);
         }
         ui.end_row();
-        probe.lights.iter().for_each(|light| light_row(ui, light, lights, is_small));
+        probe.lights.iter().for_each(|light| light_row(ui, light, lights, columns));
     });
     egui::Grid::new(("sums", probe.system)).num_columns(3).spacing(gaps(ui)).show(ui, |ui| {
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
         let ambient = probe.ambient.map(|light| ("Of it ambient", String::new(), light));
-        let heat = format!("heat {:.2}", probe.fire.x);
-        let fire = (probe.fire_light != Vec3::ZERO).then_some(("Fire", heat, probe.fire_light));
+        let fire = probe.fire.map(|fire| {
+            let glam::Vec2 { x, y } = fire.coordinate;
+            ("Fire", format!("heat {x:.2}, amount {y:.2}"), fire.light)
+        });
         let sums = [
             ("Soft scatter", scatter, probe.soft_scatter),
             ("Specular", String::new(), probe.specular()),
@@ -126,13 +144,27 @@ fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: 
     });
 }
 
-fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
-    // Their sums are shown as numbers in any case.
-    let color = if is_small { hue_swatch } else { color };
-    ui.label(names.get(light.light).map_or("Fire", String::as_str));
+/// Columns of the table of lights.
+#[derive(Clone, Copy)]
+struct LightColumns {
+    has_shadow: bool,
+    /// Place on the shadow ramp.
+    has_place: bool,
+    /// Colors as numbers. Their sums are shown as numbers in any case.
+    has_numbers: bool,
+}
+
+fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], columns: LightColumns) {
+    let color = if columns.has_numbers { color } else { hue_swatch };
+    ui.label(name_in_image(names, light.light));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
     ui.label(format!("{:.3}", light.attenuation));
+    match light.shadow {
+        Some(shadow) => shadow_values(ui, &shadow, columns.has_place),
+        None if columns.has_shadow => drop(ui.weak("None")),
+        None => {}
+    }
     color(ui, light.diffuse);
     match light.glow {
         Some(glow) => color(ui, glow.specular),
@@ -141,6 +173,17 @@ fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) 
         }
     }
     ui.end_row();
+}
+
+/// Shows the share of a light that is left, and its place on the shadow ramp.
+fn shadow_values(ui: &mut Ui, shadow: &ShadowProbe, has_place: bool) {
+    ui.horizontal(|ui| {
+        ui.label(format!("{:.0} % left", 100.0 * luminance(shadow.transmittance)));
+        if has_place {
+            let glam::Vec2 { x, y } = shadow.coordinate;
+            ui.weak(format!("at {x:.2} {y:.2}"));
+        }
+    });
 }
 
 /// Returns the spacing of columns and rows.

@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn a_ramp_can_also_be_chosen_on_the_ramps_tab() {
-        let mut harness = window("column", Vec2::new(1000.0, 1100.0), Theme::Dark);
+        let mut harness = window("column", Vec2::new(1000.0, 1400.0), Theme::Dark);
         harness.get_by_label("Ramps").click();
         harness.run_steps(3);
         let nodes = harness.get_all_by_label("Coverage, by amount × boost");

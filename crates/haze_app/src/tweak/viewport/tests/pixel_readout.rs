@@ -5,6 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::tweak::session::comparison::CompareWith;
+use crate::tweak::session::ramp_survey::{self, TwoAxisRamp};
 use crate::tweak::window::Window;
 use crate::tweak::window::testing::{brightness, picture, window};
 
@@ -32,6 +33,13 @@ fn shows(harness: &Harness<'_, Window>, text: &str) -> bool {
     harness.query_all_by_label_contains(text).next().is_some()
 }
 
+/// Writes an image of the window to the folder that HAZE_LOOK names, for visual inspection.
+fn look(harness: &mut Harness<'_, Window>, name: &str) {
+    if let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) {
+        picture(harness).save(folder.join(format!("{name}.png"))).unwrap();
+    }
+}
+
 #[test]
 fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
     let mut harness = window("column", SIZE, Theme::Dark);
@@ -40,7 +48,7 @@ fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
     harness.hover_at(place);
     wait_for(&mut harness, |harness| shows(harness, "Coverage"));
     assert!(shows(&harness, "Point 1") && shows(&harness, "Soft scatter") && shows(&harness, "Displayed, sRGB"));
-    assert!(shows(&harness, "Click to pin"));
+    assert!(shows(&harness, "Click to pin") && shows(&harness, " % left"));
     harness.drag_at(place);
     harness.step();
     harness.drop_at(place);
@@ -72,30 +80,33 @@ fn the_inspector_reads_the_compared_image_under_the_pointer() {
 }
 
 #[test]
-fn all_values_fit_on_the_image_of_the_smallest_window() {
-    let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
-    // A tab that shows no colors as numbers.
-    harness.get_by_label("Cost").click();
-    harness.key_press(Key::I);
-    let viewport = harness.get_by_label("viewport").rect();
-    for side in [-10.0, 10.0] {
-        let place = smoke(&harness) + Vec2::new(side, 0.0);
-        harness.hover_at(place);
-        wait_for(&mut harness, |harness| shows(harness, "Coverage"));
-        harness.run_steps(3);
-        let is_color = |node: &egui_kittest::Node<'_>| {
-            let text = node.accesskit_node().value().unwrap_or_default();
-            text.split(' ').filter(|number| number.parse::<f32>().is_ok()).count() == 3
-        };
-        let of_text = |text| harness.query_all_by_label_contains(text);
-        let said: Vec<_> = harness.query_all_by_label_contains(".").filter(is_color).collect();
-        assert!(said.len() >= 6, "{}", said.len());
-        for node in said.into_iter().chain(of_text("Pixel")).chain(of_text("Displayed, sRGB")) {
-            let (rect, label) = (node.rect(), node.accesskit_node().value());
-            assert!(viewport.contains_rect(rect), "{label:?} at {rect} of {viewport}");
-        }
-        if let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) {
-            picture(&mut harness).save(folder.join(format!("inspector_{side}.png"))).unwrap();
+fn all_values_fit_on_the_image() {
+    // The smallest window; one that shows the colors of lights without numbers; one that shows them with numbers.
+    for size in [Vec2::new(640.0, 400.0), SIZE, Vec2::new(1100.0, 640.0)] {
+        let mut harness = window("column", size, Theme::Dark);
+        // A tab that shows no colors as numbers.
+        harness.get_by_label("Cost").click();
+        harness.key_press(Key::I);
+        let viewport = harness.get_by_label("viewport").rect();
+        for side in [-10.0, 10.0] {
+            let place = smoke(&harness) + Vec2::new(side, 0.0);
+            harness.hover_at(place);
+            wait_for(&mut harness, |harness| shows(harness, "Coverage"));
+            harness.run_steps(3);
+            let is_color = |node: &egui_kittest::Node<'_>| {
+                let text = node.accesskit_node().value().unwrap_or_default();
+                text.split(' ').filter(|number| number.parse::<f32>().is_ok()).count() == 3
+            };
+            let of_text = |text| harness.query_all_by_label_contains(text);
+            let said: Vec<_> = harness.query_all_by_label_contains(".").filter(is_color).collect();
+            assert!(said.len() >= 6, "{}", said.len());
+            for node in
+                said.into_iter().chain(["Pixel", "Displayed, sRGB", "% left", "None"].into_iter().flat_map(of_text))
+            {
+                let (rect, label) = (node.rect(), node.accesskit_node().value());
+                assert!(viewport.contains_rect(rect), "{label:?} at {rect} of {viewport}");
+            }
+            look(&mut harness, &format!("inspector_{}_{side}", size.x));
         }
     }
 }
@@ -116,6 +127,40 @@ fn pointing_at_a_ramp_highlights_the_smoke_that_samples_it() {
     harness.hover_at(egui::pos2(5.0, 5.0));
     harness.run_steps(3);
     assert!((brightness(&picture(&mut harness), viewport) - before).abs() < 0.1);
+}
+
+#[test]
+fn pointing_at_a_ramp_with_two_axes_highlights_the_smoke_that_samples_it() {
+    for (preset, name, ramp) in
+        [("column", "Shadow ramp", TwoAxisRamp::Shadow), ("oil_fire", "Fire ramp", TwoAxisRamp::Fire)]
+    {
+        let mut harness = window(preset, SIZE, Theme::Dark);
+        harness.get_by_label("Ramps").click();
+        wait_for(&mut harness, |harness| harness.state().session.inspect.survey.is_some());
+        harness.get_by_label(name).scroll_to_me();
+        harness.run_steps(20);
+        let viewport = harness.get_by_label("viewport").rect();
+        let before = brightness(&picture(&mut harness), viewport);
+        let Some(survey) = harness.state().session.inspect.survey.clone() else { panic!("no survey of {preset}") };
+        let density = survey.over_both_axes(ramp, 0);
+        let most = (0..density.len()).max_by(|a, b| density[*a].total_cmp(&density[*b])).unwrap();
+        let place = Vec2::new((most % ramp_survey::SIDE) as f32, (most / ramp_survey::SIDE) as f32) + Vec2::splat(0.5);
+        let place = place / ramp_survey::SIDE as f32;
+        let rect = harness.get_by_label(name).rect();
+        harness.hover_at(egui::pos2(rect.left() + place.x * rect.width(), rect.bottom() - place.y * rect.height()));
+        harness.run_steps(3);
+        let image = picture(&mut harness);
+        let lit = brightness(&image, viewport);
+        assert!(lit > before + 0.2, "{preset}: {before} {lit}");
+        look(&mut harness, &format!("ramp_{preset}"));
+        // Values of the pixel under the pointer, and its marks on the ramps.
+        harness.key_press(Key::I);
+        let place = smoke(&harness);
+        harness.hover_at(place);
+        wait_for(&mut harness, |harness| shows(harness, "Click to pin"));
+        assert_eq!([shows(&harness, " % left"), shows(&harness, "heat 0.")], [true, ramp == TwoAxisRamp::Fire]);
+        look(&mut harness, &format!("inspector_{preset}"));
+    }
 }
 
 #[test]
