@@ -23,6 +23,10 @@ pub struct Descriptor<'a> {
     pub depth_format: Option<wgpu::TextureFormat>,
     /// Samples per pixel of the pass: 1, or a count that the device supports for these formats.
     pub sample_count: u32,
+    /// Format of the first color attachment of the pass in which
+    /// [`render_scene_shadow`](crate::Renderer::render_scene_shadow) darkens the scene, if it is another pass than that of
+    /// the smoke: one with this attachment alone, and the same depth and samples. `None`: the same pass.
+    pub scene_color_format: Option<wgpu::TextureFormat>,
     /// Filters ramps and sprites in the shader in f32 instead of by the sampler: slower, but equal to the CPU reference
     /// on every driver. Intended for tests. Samplers quantize filter weights to 1/256; without exact filtering, thin
     /// smoke under light intensities of 1000 and more differs slightly from the reference in up to 0.3 % of the pixels.
@@ -36,6 +40,7 @@ impl Default for Descriptor<'_> {
             further_color_formats: &[],
             depth_format: Some(wgpu::TextureFormat::Depth32Float),
             sample_count: 1,
+            scene_color_format: None,
             exact_filtering: false,
         }
     }
@@ -58,6 +63,18 @@ impl Descriptor<'_> {
             return Err(FieldError::from_problem("further_color_formats", problem, expected));
         };
         pass.validate(device)?;
+        Ok(pass)
+    }
+
+    /// Returns the pass that darkens the scene. `host`: the other one.
+    ///
+    /// # Errors
+    /// Names the format that the device does not support.
+    pub(crate) fn scene_pass(&self, host: HostPass, device: &wgpu::Device) -> Result<HostPass, FieldError> {
+        let Some(format) = self.scene_color_format else { return Ok(host) };
+        let HostPass { depth_format, sample_count, .. } = host;
+        let pass = HostPass { depth_format, sample_count, ..HostPass::color_only(format) };
+        pass.validate(device).map_err(|error| FieldError { field: "scene_color_format".into(), ..error })?;
         Ok(pass)
     }
 }

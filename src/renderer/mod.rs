@@ -77,6 +77,8 @@ use validate_frame::{host_size, validate};
 pub struct Renderer {
     context: Context,
     host: HostPass,
+    /// Pass that darkens the scene.
+    scene_pass: HostPass,
     exact_filtering: bool,
     submission: SubmissionTracker,
     timing: Option<Timing>,
@@ -119,6 +121,7 @@ impl Renderer {
         let host = descriptor.host_pass(device)?;
         Ok(Self {
             host,
+            scene_pass: descriptor.scene_pass(host, device)?,
             exact_filtering: descriptor.exact_filtering,
             submission: SubmissionTracker::new(device),
             timing: None,
@@ -163,7 +166,7 @@ impl Renderer {
             AttachmentSet::validate(settings, path)?;
             // The material is not known yet: compiles for one frame and for several, for smooth ramps and hard ones.
             if settings.receives_shadow() {
-                shared.pipelines.screen_shadow.check(self.host)?;
+                shared.pipelines.screen_shadow.check(self.scene_pass)?;
             }
             for (frame_count, ramps) in
                 [(1.0, RampSteps::default()), (2.0, RampSteps::default()), (2.0, RampSteps::HARD)]
@@ -292,7 +295,7 @@ impl Renderer {
         grid.iter().for_each(|_| self.shadow_volume.clear(encoder));
         self.scene_shadow.write(shared, frame, grid);
         if self.screen_shadow.write(shared, frame, &view, shadow.as_ref().filter(|_| grid.is_some())) {
-            shared.pipelines.screen_shadow.check(self.host)?;
+            shared.pipelines.screen_shadow.check(self.scene_pass)?;
         }
         let (host_size, bindings) = (host_size(frame), &self.bindings);
         let context =
@@ -344,8 +347,8 @@ impl Renderer {
     }
 
     /// Darkens the host's picture by the shadow of the smoke, for hosts whose shaders do not call
-    /// [`shader::scene_shadow_wgsl`]: record it in the pass of [`render`](Self::render), after the opaque scene and before
-    /// the smoke. Needs [`FrameInput::scene_ambient`]. State of the pass as in `render`.
+    /// [`shader::scene_shadow_wgsl`]: record it in the pass of [`render`](Self::render), or in that of
+    /// [`Descriptor::scene_color_format`], after the opaque scene and before the smoke. Needs [`FrameInput::scene_ambient`]. State of the pass as in `render`.
     ///
     /// Each pixel is multiplied by the share of its light that is left, for a white matte surface whose normal comes from
     /// the scene depth, under the lights of the frame, in the shadow of [`FrameInput::shadow_maps`] of the three brightest.
@@ -354,7 +357,8 @@ impl Renderer {
         let Some(view) = self.view.as_ref().filter(|_| !self.has_cast) else { return };
         let Some(frame) = self.bindings.any() else { return };
         let shared = self.context.shared();
-        let Some(shadow) = self.screen_shadow.pass(shared, self.host, &frame.frame, self.scene_shadow.group()) else {
+        let Some(shadow) = self.screen_shadow.pass(shared, self.scene_pass, &frame.frame, self.scene_shadow.group())
+        else {
             return;
         };
         self.submission.track_pass(pass);

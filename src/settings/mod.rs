@@ -3,7 +3,6 @@
 //! The order of the variants is the order of the constants in the shaders, which `tests/suite/shader_layout.rs` checks.
 
 use crate::error::FieldError;
-use crate::formula::shadow::LIGHTS_PER_BLOCK;
 
 mod accumulate;
 mod assign;
@@ -194,11 +193,6 @@ impl Settings {
     /// True if the smoke is lit at its mean depth, in the shadow of the scene.
     pub fn lights_by_depth(&self) -> bool {
         self.shadow.by_depth && self.receives_shadow()
-    }
-
-    /// Number of blocks of lights whose shadow falls on the smoke.
-    pub fn shadow_blocks(&self) -> u32 {
-        if self.lights_by_depth() { self.shadow.lights.div_ceil(LIGHTS_PER_BLOCK as u32) } else { 1 }
     }
 
     /// True if light from sky and ground can fall on the smoke: it is looked up, or baked, by normal.

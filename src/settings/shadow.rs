@@ -1,12 +1,10 @@
 //! Shadow of smoke on smoke.
 
 use super::settings_macro::settings;
-use crate::formula::shadow::SHADOWED_LIGHTS;
 
 settings! {
     /// Shadow of smoke on smoke. All systems of a frame shade each other, under the lights that are brightest on them.
     /// A coarse grid around the smoke holds its density; the light that comes through it is looked up in the shadow ramp.
-    /// Devices without compute shaders draw no shadow.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Shadow {
         /// Mix of the shadow ramp and full light. 0: no shadow, and no cost. 1: the ramp as painted. With lighting by
@@ -20,7 +18,7 @@ settings! {
         /// Number of lights that smoke shades, the brightest first; the largest number among the systems of a frame counts.
         /// The fourth and further lights shade smoke only with `by_depth`: their shadow is looked up at the mean depth of
         /// the smoke at each pixel, that of the first three at each sprite.
-        lights: u32 = 3, integer(1..=SHADOWED_LIGHTS as u32, "");
+        lights: u32 = 3, integer(1..=15, "");
         /// Lights the smoke at its mean depth at each pixel, in place of one plane for all pixels, and in the shadow of the
         /// scene: beams stand in dust, a lamp inside the smoke lights what is near it. The scene's shadow comes from a host's
         /// shadow maps, `FrameInput::shadow_maps`. One more texture is accumulated.

@@ -6,6 +6,7 @@ use glam::UVec2;
 
 use super::lighting_choice::LightingChoice;
 use crate::assets::ramp_steps::RampSteps;
+use crate::formula::shadow::LIGHTS_PER_BLOCK;
 use crate::settings::{Lighting, LightingResolution, RenderPath, Settings};
 
 /// Capabilities of a device that settings depend on.
@@ -58,6 +59,11 @@ impl ResolvedSettings {
     /// Returns the same settings with the path that `auto` chose.
     pub fn with_path(self, path: RenderPath) -> Self {
         Self { settings: Settings { path, ..self.settings }, ..self }
+    }
+
+    /// Number of blocks of lights whose shadow falls on the smoke.
+    pub fn shadow_blocks(&self) -> u32 {
+        if self.lights_by_depth() { self.shadow.lights.div_ceil(LIGHTS_PER_BLOCK as u32) } else { 1 }
     }
 
     /// True if the smoke is lit once per texel, and a texel is larger than a pixel.

@@ -104,8 +104,7 @@ pub(crate) fn prepare_smoke(
     let span = recorder.time_span(encoder, "smoke");
     let frame_lights = sources.of_frame(&view, &systems);
     let shadow_maps: Vec<_> = frame_lights.shadows.iter().map(LightShadow::map).collect();
-    // The pass of a composited view is not Bevy's.
-    let shades_meshes = !kept.pass.composited && systems.iter().any(ViewSystem::shades_meshes);
+    let shades_meshes = systems.iter().any(ViewSystem::shades_meshes);
     let frame = FrameInput {
         scene_ambient: shades_meshes.then_some(ambient),
         lights: &frame_lights.lights,
@@ -162,6 +161,7 @@ fn pass_format(view: &CameraViewItem<'_, '_>) -> PassFormat {
         color: if direct { view.target.main_texture_format() } else { LIGHT_FORMAT },
         depth: view.depth.texture().format(),
         samples: view.msaa.samples(),
+        scene_color: view.target.main_texture_format(),
         composited: !direct,
     }
 }

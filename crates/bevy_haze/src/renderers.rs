@@ -41,6 +41,8 @@ pub(crate) struct PassFormat {
     pub color: TextureFormat,
     pub depth: TextureFormat,
     pub samples: u32,
+    /// Format of the view's color.
+    pub scene_color: TextureFormat,
     /// True if the pass is not Bevy's, but one whose light is composited.
     pub composited: bool,
 }
@@ -61,6 +63,7 @@ impl SmokeRenderers {
                 color_format: pass.color,
                 depth_format: Some(pass.depth),
                 sample_count: pass.samples,
+                scene_color_format: Some(pass.scene_color),
                 ..Descriptor::default()
             };
             let renderer = Renderer::new(&self.context, &descriptor)?;

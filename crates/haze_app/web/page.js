@@ -4,12 +4,14 @@ const BUNDLES = {};
 // WebGL reads zeros from a depth texture with the filter of a new texture, which blends mip levels, and wgpu leaves it so.
 // Where a sampler reads a texture, the sampler's filter counts.
 const webgl = globalThis.WebGL2RenderingContext?.prototype ?? {};
-const createStorage = webgl.texStorage2D;
-webgl.texStorage2D = function (target, ...rest) {
-    createStorage.call(this, target, ...rest);
-    this.texParameteri(target, this.TEXTURE_MIN_FILTER, this.NEAREST);
-    this.texParameteri(target, this.TEXTURE_MAG_FILTER, this.NEAREST);
-};
+for (const name of ["texStorage2D", "texStorage3D"]) {
+    const createStorage = webgl[name];
+    webgl[name] = function (target, ...rest) {
+        createStorage.call(this, target, ...rest);
+        this.texParameteri(target, this.TEXTURE_MIN_FILTER, this.NEAREST);
+        this.texParameteri(target, this.TEXTURE_MAG_FILTER, this.NEAREST);
+    };
+}
 
 // Files that were chosen for saving, by name; browsers without a dialog for that download instead.
 const saved = new Map();

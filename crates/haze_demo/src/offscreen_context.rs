@@ -47,11 +47,6 @@ impl OffscreenContext {
         self.copies_depth
     }
 
-    /// True if the device has compute shaders, which tiles and shadows need.
-    pub fn has_compute(&self) -> bool {
-        self.haze.has_tiles()
-    }
-
     /// Creates timestamp queries; `None` if the device does not support them.
     pub fn timing(&self) -> Option<Timing> {
         self.haze.create_timing()

@@ -12,8 +12,7 @@ use super::visible_system::{VisibleSystem, place_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::fire::fire_from_moments;
-use haze::formula::lighting::{coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight};
-use haze::formula::shadow::{of_slot, shadow_position};
+use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
 use haze::formula::six_way::SixWay;
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{DebugView, SoftScatterMode};
@@ -254,9 +253,8 @@ impl VisibleSystem<'_> {
     /// Shadow of a light, as [`Self::shadow_on_light`] looks it up.
     fn probe_shadow(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Option<ShadowProbe> {
         let is_shadowed = self.system.shadow_strength > 0.0 && light.shadow_slot >= 0.5;
-        let to_viewer = direction_to_viewer(position, self.view.orthographic);
         is_shadowed.then(|| ShadowProbe {
-            coordinate: shadow_position(of_slot(light.shadow_slot, shade.optical_depths), to_light, to_viewer),
+            coordinate: self.shadow_place(light, to_light, position, shade),
             transmittance: self.shadow_on_light(light, to_light, position, shade),
         })
     }
@@ -264,10 +262,9 @@ impl VisibleSystem<'_> {
     /// Light of burning smoke, as [`Self::emission`] looks it up. `moments`: means of heat and of its square.
     fn probe_fire(&self, moments: Vec2, amount: f32) -> Option<FireProbe> {
         let fire = fire_from_moments(moments);
-        let (heat, share) = (fire.x, fire.y);
-        (share > 0.0).then(|| FireProbe {
-            coordinate: Vec2::new(heat, coverage(amount * share, self.system.boost)),
-            share,
+        (fire.y > 0.0).then(|| FireProbe {
+            coordinate: self.fire_place(fire, amount),
+            share: fire.y,
             light: self.emission(fire, amount),
         })
     }

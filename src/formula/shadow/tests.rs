@@ -2,6 +2,7 @@ use glam::{UVec3, Vec3, Vec4, vec3};
 
 use super::*;
 use crate::formula::density_grid::{cell_optical_depth, density_steps, mean_optical_depth, optical_depth_of_steps};
+use crate::settings::Settings;
 
 /// A grid with one sprite in the middle, radius and depth.
 struct Puff {
@@ -116,4 +117,14 @@ fn the_steps_of_a_march_are_spread_evenly_over_the_disc_of_the_light() {
         let square = offsets.iter().map(|offset| offset.length_squared()).sum::<f32>() / count;
         assert!(mean.length() < 0.05 && (square - 0.5).abs() < 0.03, "{mean} {square}");
     }
+}
+
+#[test]
+fn as_many_lights_can_be_set_as_can_cast_shadow() {
+    let is_valid = |lights: usize| {
+        let mut settings = Settings::default();
+        settings.shadow.lights = lights as u32;
+        settings.validate(String::new).is_ok()
+    };
+    assert!(is_valid(SHADOWED_LIGHTS) && !is_valid(SHADOWED_LIGHTS + 1));
 }

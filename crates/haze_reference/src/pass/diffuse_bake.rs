@@ -134,10 +134,15 @@ impl VisibleSystem<'_> {
         if self.system.shadow_strength <= 0.0 || light.shadow_slot < 0.5 {
             return Vec3::ONE;
         }
-        let to_viewer = direction_to_viewer(position, self.view.orthographic);
-        let at = shadow_position(of_slot(light.shadow_slot, &shade.optical_depths), to_light, to_viewer);
+        let at = self.shadow_place(light, to_light, position, shade);
         let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
         Vec3::ONE.lerp(painted, self.system.shadow_strength) * of_slot(light.shadow_slot, &shade.visible)
+    }
+
+    /// Place on the shadow ramp of a light with shadow.
+    pub fn shadow_place(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec2 {
+        let to_viewer = direction_to_viewer(position, self.view.orthographic);
+        shadow_position(of_slot(light.shadow_slot, &shade.optical_depths), to_light, to_viewer)
     }
 
     /// Sum of all lights through six-way maps.
@@ -159,11 +164,16 @@ impl VisibleSystem<'_> {
         light.color * (response * sample.attenuation) * self.system.six_way_color * shadow
     }
 
+    /// Place on the fire ramp. `fire`: as from [`fire_from_moments`](haze::formula::fire::fire_from_moments).
+    pub fn fire_place(&self, fire: Vec2, amount: f32) -> Vec2 {
+        Vec2::new(fire.x, coverage(amount * fire.y, self.system.boost))
+    }
+
     /// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from
     /// [`fire_from_moments`](haze::formula::fire::fire_from_moments).
     pub fn emission(&self, fire: Vec2, amount: f32) -> Vec3 {
         let system = &self.system;
-        let at = Vec2::new(fire.x, coverage(amount * fire.y, system.boost));
+        let at = self.fire_place(fire, amount);
         sample_ramp_2d(&self.material.fire_ramp, self.settings.ramp_filter, at) * (system.fire_intensity * fire.y)
     }
 

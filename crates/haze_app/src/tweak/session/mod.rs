@@ -182,14 +182,8 @@ impl Session {
         AssetFolders::beside(self.document.path()).with_shared(self.assets.clone())
     }
 
-    /// Returns the reason why a field of a preset has no effect here: other values, or the graphics device.
+    /// Returns the reason why a field of a preset has no effect at the size of the view.
     pub fn no_effect_reason(&self, preset: &Preset, path: &str) -> Option<&'static str> {
-        let is_shadow = path.contains("].settings.shadow.")
-            || path.ends_with("].smoke_shadow")
-            || path.ends_with("].material.shadow_ramp");
-        if is_shadow && !self.view.has_compute {
-            return Some("the graphics device has no compute shaders");
-        }
         no_effect_reason(preset, path, self.view.size)
     }
 

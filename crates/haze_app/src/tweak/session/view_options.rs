@@ -14,8 +14,6 @@ pub struct ViewOptions {
     pub has_strip: bool,
     /// Size of the image in pixels.
     pub size: UVec2,
-    /// The graphics device has compute shaders, which cast the shadow of smoke.
-    pub has_compute: bool,
     /// Width of the image over its height.
     pub aspect: f32,
     /// The list of keys is open.
@@ -44,7 +42,6 @@ impl Default for ViewOptions {
     fn default() -> Self {
         Self {
             size: UVec2::new(1280, 720),
-            has_compute: true,
             debug_view: DebugView::Final,
             has_strip: true,
             aspect: 16.0 / 9.0,

@@ -59,7 +59,6 @@ impl Viewport {
             return;
         }
         session.view.size = size;
-        session.view.has_compute = renderer.has_compute();
         session.inspect.point(&response);
         session.view.aspect = size.x as f32 / size.y as f32;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));

@@ -173,11 +173,6 @@ impl ViewportRenderer {
         self.lock().context.can_capture()
     }
 
-    /// Returns true if the device has compute shaders.
-    pub fn has_compute(&self) -> bool {
-        self.lock().context.has_compute()
-    }
-
     /// Requests the texels of one of the images whenever it has changed.
     pub fn want_capture(&self, wants: Option<ComparedSide>) {
         self.lock().wants_capture = wants;
