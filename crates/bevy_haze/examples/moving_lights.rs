@@ -40,7 +40,9 @@ fn setup(
     let bulb = meshes.add(Sphere::new(0.06));
     for (color, height, start) in [(Color::srgb(1.0, 0.6, 0.3), 2.4, 2.5), (Color::srgb(0.35, 0.55, 1.0), 1.5, 5.6)] {
         let light = PointLight { color, intensity: 400_000.0, range: 20.0, shadow_maps_enabled: true, ..default() };
-        let material = materials.add(StandardMaterial { base_color: color, unlit: true, ..default() });
+        // Blended meshes are drawn after the shadow of the smoke, which would darken the bulbs.
+        let alpha_mode = AlphaMode::Blend;
+        let material = materials.add(StandardMaterial { base_color: color, unlit: true, alpha_mode, ..default() });
         let body = (Mesh3d(bulb.clone()), MeshMaterial3d(material), NotShadowCaster);
         commands.spawn((light, Transform::default(), Circling { height, start }, children![body]));
     }
