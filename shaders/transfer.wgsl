@@ -6,6 +6,7 @@
 // Space   Lighting in view space, on the plane through the middle of the smoke that faces the viewer.
 
 #import "lib/lit_smoke.wgsl"
+#import "lib/shadow_views.wgsl"
 #import "lib/bounding_box.wgsl"
 #import "lib/coverage.wgsl"
 #import "lib/color.wgsl"
@@ -22,6 +23,8 @@ const DEBUG_VIEW_NORMALS: u32 = 5u;
 const DEBUG_VIEW_AMOUNT: u32 = 6u;
 const DEBUG_VIEW_OVERDRAW: u32 = 7u;
 const DEBUG_VIEW_REDUCED_DEPTH: u32 = 8u;
+const DEBUG_VIEW_SHADOW: u32 = 9u;
+const DEBUG_VIEW_SHADOW_SLICE: u32 = 10u;
 override DEBUG_VIEW: u32 = DEBUG_VIEW_FINAL;
 
 @vertex
@@ -43,6 +46,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
         return vec4f(vec3f(grey), 1.0);
     }
+    if DEBUG_VIEW == DEBUG_VIEW_SHADOW_SLICE {
+        return slice_of_light(pixel);
+    }
     let accumulated = sample_target(accumulation, pixel);
     let amount = accumulated.a;
     if DEBUG_VIEW == DEBUG_VIEW_OVERDRAW {
@@ -58,6 +64,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let surface = shaded_surface(accumulated, sample_attachments(pixel), pixel);
     if DEBUG_VIEW == DEBUG_VIEW_NORMALS {
         return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;
+    }
+    if DEBUG_VIEW == DEBUG_VIEW_SHADOW {
+        return vec4f(shares_of_lights(surface.shade.optical_depths[0], surface.shade.visible[0]), 1.0) * covered;
     }
 
     var light = vec3f(0.0);

@@ -21,8 +21,8 @@ pub struct ShadowProjection<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowMap<'a> {
     /// 2D texture of a depth format with `TEXTURE_BINDING` usage, single-sampled. A layer per matrix, from `first_layer` on.
-    /// On OpenGL, at least two layers: it takes a texture of one layer for one without layers. Drawn in this encoder before
-    /// the smoke is prepared, or in an earlier one.
+    /// On OpenGL, it has one layer more than a light needs, because wgpu takes a texture of one layer for one without layers,
+    /// and six for the faces of a cube. Drawn in this encoder before the smoke is prepared, or in an earlier one.
     pub depth: &'a wgpu::Texture,
     /// First layer of the light in `depth`.
     pub first_layer: u32,

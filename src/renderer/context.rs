@@ -7,7 +7,7 @@ use glam::{UVec2, Vec3};
 
 use super::auto::PathModel;
 use super::gpu::Gpu;
-use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
+use super::gpu::capabilities::{independent_blend_is_supported, read_only_depth_is_supported, six_way_is_supported};
 use super::gpu::host_pass::HostPass;
 use super::gpu::pipeline::PipelineStore;
 use super::gpu::timing::Timing;
@@ -126,7 +126,10 @@ impl Context {
             no_ramp: upload_ramp(&Gpu { device: &device, queue }, "haze no ramp", &white, &mut 0),
             no_shadow: volume(&device, 1, 1, wgpu::TextureUsages::empty()),
             read_only_depth: read_only_depth_is_supported(&device),
-            support: Support { six_way: six_way_is_supported(&device) },
+            support: Support {
+                six_way: six_way_is_supported(&device),
+                independent_blend: independent_blend_is_supported(&device),
+            },
             path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
             device,
             queue: queue.clone(),

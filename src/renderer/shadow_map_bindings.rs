@@ -1,6 +1,7 @@
 //! A host's shadow maps of a block of lights, as shaders read them.
 
 use super::gpu::Gpu;
+use super::gpu::capabilities::array_layers;
 use super::gpu::record::uniform_buffer;
 use super::layouts::bind_resources;
 use crate::formula::shadow::LIGHTS_PER_BLOCK;
@@ -25,8 +26,7 @@ impl ShadowMapBindings {
         let uniform = uniform_buffer(device, "haze shadow maps", size_of::<ShadowVisibilityUniform>() as u64);
         let no_map = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("haze no shadow map"),
-            // OpenGL takes a texture of one layer for one without layers.
-            size: wgpu::Extent3d { depth_or_array_layers: 2, ..wgpu::Extent3d::default() },
+            size: wgpu::Extent3d { depth_or_array_layers: array_layers(1), ..wgpu::Extent3d::default() },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,

@@ -119,8 +119,10 @@ fn validate_shadow_map(shared: &Shared, index: usize, map: &ShadowMap<'_>) -> Re
         return refuse(problem, "a layer per matrix, from first_layer on");
     }
     // The flag is off on OpenGL.
-    if layers < 2 && !shared.read_only_depth {
-        return refuse("has 1 layer".into(), "at least 2 layers on this backend (OpenGL)");
+    if (layers < 2 || layers % 6 == 0) && !shared.read_only_depth {
+        let expected = "another number than 1 and the multiples of 6 on this backend (OpenGL), which takes them for no array and \
+                        for cubes";
+        return refuse(format!("has {layers} layers"), expected);
     }
     Ok(())
 }

@@ -104,13 +104,21 @@ choice! {
         Overdraw = "overdraw",
         /// Depth that sprites are compared with: white at the near side of the box, black beyond the far side.
         ReducedDepth = "reduced_depth",
+        /// Shares of the first three lights with shadow that reach the smoke, in red, green and blue: what comes through other
+        /// smoke, 2^(-optical depth), and past the scene.
+        Shadow = "shadow",
+        /// The same in the grid of the shadow, on a plane through the middle of the smoke. Dark lines are borders of cells.
+        ShadowSlice = "shadow_slice",
     }
 }
 
 impl DebugView {
     /// True for debug views that show data instead of light, which are neither exposed nor tonemapped.
     pub fn is_data(self) -> bool {
-        matches!(self, Self::Normals | Self::Amount | Self::Overdraw | Self::ReducedDepth)
+        matches!(
+            self,
+            Self::Normals | Self::Amount | Self::Overdraw | Self::ReducedDepth | Self::Shadow | Self::ShadowSlice
+        )
     }
 
     /// True for debug views that show lit smoke, which forward sprites show too.

@@ -4,21 +4,25 @@ use std::ops::Deref;
 
 use glam::UVec2;
 
+use super::attachment_role::AttachmentSet;
 use super::lighting_choice::LightingChoice;
 use crate::assets::ramp_steps::RampSteps;
 use crate::formula::shadow::LIGHTS_PER_BLOCK;
-use crate::settings::{Lighting, LightingResolution, RenderPath, Settings};
+use crate::settings::{BlendOrder, Lighting, LightingResolution, RenderPath, Settings};
 
 /// Capabilities of a device that settings depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Support {
     /// True if it can light by six-way maps; otherwise normals replace them.
     pub six_way: bool,
+    /// True if it can blend the textures of a target in different ways; otherwise `sorted` replaces `weighted` where the target
+    /// has several.
+    pub independent_blend: bool,
 }
 
 impl Support {
     /// Everything, as the CPU renderer supports it.
-    pub const ALL: Self = Self { six_way: true };
+    pub const ALL: Self = Self { six_way: true, independent_blend: true };
 }
 
 /// Settings of a system for one frame, after every choice that depends on the view, the sprite or the device. Both
@@ -48,6 +52,10 @@ impl ResolvedSettings {
         sprite.size *= particle_scale;
         let scale = settings.accumulate.effective_scale(picture);
         let mut settings = Settings { lighting, sprite, ..*settings };
+        let has_several = AttachmentSet::of(&settings).iter().count() > 1;
+        if has_several && !support.independent_blend {
+            settings.accumulate.order = BlendOrder::Sorted;
+        }
         let is_auto = settings.accumulate.lighting_resolution == LightingResolution::Auto;
         let lighting_choice = is_auto.then(|| LightingChoice::new(ramp_steps, &settings, scale));
         if let Some(choice) = lighting_choice {
@@ -96,5 +104,17 @@ mod tests {
         assert!(lights_per_texel(0.1, 2) && lights_per_texel(0.1, 4) && !lights_per_texel(0.1, 8));
         assert!(!lights_per_texel(0.25, 2) && lights_per_texel(0.02, 16));
         assert!(!lights_per_texel(0.0, 1), "a texel is a pixel");
+    }
+
+    #[test]
+    fn several_textures_are_sorted_where_they_cannot_be_blended_apart() {
+        let order = |shadow: f32, independent_blend| {
+            let mut settings = Settings::default();
+            (settings.accumulate.order, settings.shadow.strength) = (BlendOrder::Weighted, shadow);
+            let support = Support { independent_blend, ..Support::ALL };
+            ResolvedSettings::new(&settings, 1.0, UVec2::splat(512), 1.0, &RampSteps::default(), support).order()
+        };
+        assert_eq!(order(0.0, false), BlendOrder::Weighted);
+        assert_eq!((order(1.0, false), order(1.0, true)), (BlendOrder::Sorted, BlendOrder::Weighted));
     }
 }

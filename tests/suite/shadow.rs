@@ -282,6 +282,22 @@ fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
     }
 }
 
+#[test]
+fn gpu_and_cpu_draw_the_same_views_of_shadow() {
+    for view in [DebugView::Shadow, DebugView::ShadowSlice] {
+        for path in available_paths().filter(|path| *path != RenderPath::Forward) {
+            let mut scene = under_a_roof();
+            (scene.debug_view, scene.settings.path) = (view, path);
+            let (seen, reference) = (drawn(&scene), scene.on_cpu());
+            let same = psnr(&seen, &reference);
+            scene.settings.shadow.strength = 0.0;
+            let effect = psnr(&drawn(&scene), &seen);
+            println!("{}, {}: {same:.1} dB, without shadow {effect:.1} dB", view.name(), path.name());
+            assert!(same >= MIN_PSNR && effect < 40.0, "{}: {same:.1} dB, {effect:.1} dB", view.name());
+        }
+    }
+}
+
 /// Lamps around the smoke, all of which smoke shades, and a sun. The first has the shadow map.
 fn under_many_lights() -> TestScene {
     let mut scene = under_a_roof();

@@ -111,6 +111,7 @@ impl Host {
             depth_format: scene.attach_depth.then_some(kind.depth_format),
             sample_count: kind.samples,
             exact_filtering: kind.exact_filtering,
+            scene_color_format: None,
         };
         let context = context.cloned().unwrap_or_else(|| Context::new(&gpu.device, &gpu.queue, None));
         let renderer = Renderer::new(&context, &descriptor)?;

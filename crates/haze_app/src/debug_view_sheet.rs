@@ -9,6 +9,8 @@ pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
     (DebugView::Normals, "Accumulated normals"),
     (DebugView::Amount, "Accumulated amount"),
     (DebugView::Overdraw, "Overdraw"),
+    (DebugView::Shadow, "Shadow"),
+    (DebugView::ShadowSlice, "Shadow, slice of the grid"),
     (DebugView::Diffuse, "Diffuse"),
     (DebugView::SoftScatter, "Soft scatter and ambient"),
     (DebugView::SpecularScatter, "Specular scatter"),

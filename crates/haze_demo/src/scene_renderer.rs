@@ -264,8 +264,8 @@ impl SceneRenderer {
         let boxes = buffer(bytemuck::cast_slice(&boxes));
         let lights = buffer(bytemuck::cast_slice(&[LightUniform::default(); MAX_LIGHTS]));
         let masks = default_view(&self.occluder_texture(&scene.occluders));
-        // OpenGL takes a texture of one layer for one without layers.
-        let layers = view.clip_from_world.len().max(2) as u32;
+        // OpenGL takes a texture of one layer for one without layers, and six for the faces of a cube.
+        let layers = view.clip_from_world.len() as u32 + 1;
         let map = self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("demo shadow map"),
             size: wgpu::Extent3d { width: view.size, height: view.size, depth_or_array_layers: layers },

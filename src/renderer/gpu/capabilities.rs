@@ -20,6 +20,11 @@ pub(crate) fn six_way_is_supported(device: &wgpu::Device) -> bool {
     limits.max_color_attachments >= 2 && limits.max_color_attachment_bytes_per_sample >= 16
 }
 
+/// Returns true if a device can blend the targets of one pass in different ways. WebGL 2 cannot.
+pub(crate) fn independent_blend_is_supported(device: &wgpu::Device) -> bool {
+    !cfg!(target_arch = "wasm32") || device.adapter_info().backend != wgpu::Backend::Gl
+}
+
 /// Returns true if a device has compute shaders and the limits that the tiled passes need: WebGPU's defaults suffice.
 /// False on OpenGL, where compiling these shaders can exceed the time that wgpu waits for the context, after which wgpu
 /// panics.

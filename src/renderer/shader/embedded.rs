@@ -74,6 +74,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/shadow_map.wgsl",
     "lib/shadow_map_lookup.wgsl",
     "lib/shadow_march.wgsl",
+    "lib/shadow_views.wgsl",
     "lib/shadow_volume.wgsl",
     "lib/six_way.wgsl",
     "lib/smoke_extent.wgsl",

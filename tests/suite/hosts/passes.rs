@@ -240,6 +240,8 @@ fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
         "further_color_formats[1]"
     );
     assert_eq!(refused(Descriptor { further_color_formats: &[None; 8], ..plain }), "further_color_formats");
+    let scene_color_format = Some(Format::Rgba8Uint);
+    assert_eq!(refused(Descriptor { scene_color_format, ..plain }), "scene_color_format");
     let error = new(&Descriptor { color_format: Format::Rgba8Uint, ..plain }).unwrap_err().to_string();
     assert!(error.contains("Rgba8Uint") && error.contains("Rgba16Float") && !error.contains('\n'), "{error}");
     // The host's error handler received no error.

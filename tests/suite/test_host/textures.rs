@@ -99,8 +99,8 @@ pub(super) fn depth_layers(gpu: &Headless, layers: &[Image<f32>]) -> wgpu::Textu
     let size = layers[0].size;
     let depth = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("host shadow map"),
-        // OpenGL takes a texture of one layer for one without layers.
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers.len().max(2) as u32 },
+        // OpenGL takes a texture of one layer for one without layers, and six for the faces of a cube.
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers.len() as u32 + 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,

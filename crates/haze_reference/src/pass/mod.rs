@@ -7,6 +7,7 @@ mod diffuse_bake;
 mod forward;
 mod light_target;
 pub mod shadow_march;
+mod shadow_views;
 pub mod shadow_visibility;
 mod specular_scatter;
 pub mod transfer;

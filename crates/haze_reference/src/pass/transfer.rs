@@ -98,6 +98,9 @@ impl AccumulatedTarget<'_> {
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
+        if debug_view == DebugView::ShadowSlice {
+            return Some(self.visible.slice_of_light(pixel));
+        }
         let accumulated = if self.is_lit { self.sample_lit(pixel) } else { self.sample_accumulated(pixel) };
         let amount = accumulated.w;
         match debug_view {
@@ -115,6 +118,10 @@ impl AccumulatedTarget<'_> {
         let surface = self.surface_at(accumulated, pixel);
         if debug_view == DebugView::Normals {
             return Some((surface.normal * 0.5 + 0.5).extend(1.0) * covered);
+        }
+        if debug_view == DebugView::Shadow {
+            let shares = self.visible.shares_of_lights(surface.shade.optical_depths[0], surface.shade.visible[0]);
+            return Some(shares.extend(1.0) * covered);
         }
         let mut light = Vec3::ZERO;
         if debug_view != DebugView::SoftScatter {
