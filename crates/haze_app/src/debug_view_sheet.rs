@@ -3,7 +3,7 @@
 use haze::settings::DebugView;
 use haze_demo::shot::Shot;
 
-/// Stages in the order of the frame, three per row.
+/// Stages in the order of the frame.
 pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
     (DebugView::ReducedDepth, "Reduced depth"),
     (DebugView::Normals, "Accumulated normals"),
@@ -19,7 +19,7 @@ pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
 ];
 
 /// Images per row of the sheet.
-pub const COLUMNS: u32 = 3;
+pub const COLUMNS: u32 = 4;
 
 /// Returns one shot per stage, with its label.
 pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
