@@ -50,13 +50,7 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     let covered = coverage(amount, system.boost);
     var shade = shade_of_sprites(in.depths_and_heat.xyz);
     if BY_DEPTH {
-        let ray = ray_through(position);
-        let moments = moments_of_sprite(in.centre_radius);
-        shade.optical_depths = optical_depths_on_ray(in.depths_and_heat.xyz, ray, moments);
-        shade.visible = scene_visibility(ray, moments);
-        if AMBIENT {
-            shade.openness = openness(ray, moments);
-        }
+        shade = shade_on_ray(in.depths_and_heat.xyz, ray_through(position), moments_of_sprite(in.centre_radius));
     }
     var light = vec3f(0.0);
     if SIX_WAY {

@@ -4,6 +4,7 @@
 #import "lib/ramp.wgsl"
 #import "lib/six_way.wgsl"
 #import "lib/shadow.wgsl"
+#import "lib/shadow_volume.wgsl"
 #import "lib/ambient.wgsl"
 
 const SOFT_SCATTER_MODE_SMOOTHSTEP: u32 = 0u;
@@ -19,25 +20,71 @@ override AMBIENT: bool = false;
 
 // Smoke and scene between a point of the smoke and the light that falls on it.
 struct Shade {
-    // Of other smoke, towards the lights with shadow.
-    optical_depths: array<vec3f, LIGHT_BLOCKS>,
+    // Of other smoke, towards the lights of the first block.
+    optical_depths: vec3f,
     // Share of each of these lights that comes past the scene.
-    visible: array<vec3f, LIGHT_BLOCKS>,
+    visible: vec3f,
     // To sky and ground.
     openness: vec2f,
+    // Ray and moments of depth, for the lights of further blocks.
+    ray: vec2f,
+    moments: vec2f,
+    // See own_at_mean_depth().
+    own: f32,
+}
+
+// Smoke and scene before the lights of one block.
+struct BlockShade {
+    block: f32,
+    optical_depths: vec3f,
+    visible: vec3f,
 }
 
 // Other smoke before sprites. `optical_depths`: towards the lights of the first block.
 fn shade_of_sprites(optical_depths: vec3f) -> Shade {
     var shade: Shade;
-    shade.optical_depths[0] = optical_depths;
-    shade.visible = fully_visible();
+    shade.optical_depths = optical_depths;
+    shade.visible = vec3f(1.0);
     shade.openness = vec2f(1.0);
     return shade;
 }
 
+// The same, past the scene, open to the sky, and before further lights. `ray`: of the smoke; `moments`: of its depth.
+fn shade_on_ray(optical_depths: vec3f, ray: vec2f, moments: vec2f) -> Shade {
+    var shade = shade_of_sprites(optical_depths);
+    shade.visible = scene_visibility(0.0, ray, moments);
+    if AMBIENT {
+        shade.openness = openness(ray, moments);
+    }
+    if SHADOW_BLOCKS > 1u {
+        shade.ray = ray;
+        shade.moments = moments;
+        shade.own = own_at_mean_depth(sample_volume(0.0, mean_place(ray, moments)), optical_depths);
+    }
+    return shade;
+}
+
+// Shade of the lights of the first block.
+fn first_block(shade: Shade) -> BlockShade {
+    return BlockShade(0.0, shade.optical_depths, shade.visible);
+}
+
+// Shade of the block of a light. `last`: that of the light before; lights of a block follow each other.
+fn shade_of_block(slot: f32, shade: Shade, last: BlockShade) -> BlockShade {
+    let block = block_of_slot(slot);
+    if SHADOW_BLOCKS == 1u || slot < 0.5 || block == last.block {
+        return last;
+    }
+    if block == 0.0 {
+        return first_block(shade);
+    }
+    let in_grid = sample_volume(block, mean_place(shade.ray, shade.moments));
+    let visible = scene_visibility(block, shade.ray, shade.moments);
+    return BlockShade(block, foreign_optical_depths(in_grid, shade.own), visible);
+}
+
 // Share of a light that comes past the scene and through the smoke before it.
-fn shadow_on_light(slot: f32, shade: Shade, to_light: vec3f, to_viewer: vec3f) -> vec3f {
+fn shadow_on_light(slot: f32, shade: BlockShade, to_light: vec3f, to_viewer: vec3f) -> vec3f {
     if !SHADOW || slot < 0.5 {
         return vec3f(1.0);
     }
@@ -89,7 +136,9 @@ fn ambient_from_six_way(six_way: SixWay, openness: vec2f) -> vec3f {
 fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f, shade: Shade) -> vec3f {
     let to_viewer = direction_to_viewer(position, view.orthographic);
     var sum = vec3f(0.0);
+    var of_block = first_block(shade);
     for (var i = 0u; i < system.light_count; i++) {
+        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);
         let light = sample_light(lights[i], position);
         let at = vec2f(diffuse_coordinate(normal, light.direction), covered);
         var falloff = sample_ramp_2d(diffuse_ramp, linear_sampler, at);
@@ -97,7 +146,7 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f, shade: Shad
             let against = sample_ramp_2d(backlight_ramp, linear_sampler, at);
             falloff = mix(falloff, against, backlight_weight(light.direction, to_viewer));
         }
-        let shadow = shadow_on_light(lights[i].shadow_slot, shade, light.direction, to_viewer);
+        let shadow = shadow_on_light(lights[i].shadow_slot, of_block, light.direction, to_viewer);
         sum += falloff * lights[i].color * light.attenuation * shadow;
     }
     if AMBIENT {
@@ -110,10 +159,12 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f, shade: Shad
 fn diffuse_from_six_way(six_way: SixWay, position: vec3f, shade: Shade) -> vec3f {
     let to_viewer = direction_to_viewer(position, view.orthographic);
     var sum = vec3f(0.0);
+    var of_block = first_block(shade);
     for (var i = 0u; i < system.light_count; i++) {
+        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);
         let light = sample_light(lights[i], position);
         let response = six_way_response(six_way.positive, six_way.negative, light.direction, system.six_way_anisotropy);
-        let shadow = shadow_on_light(lights[i].shadow_slot, shade, light.direction, to_viewer);
+        let shadow = shadow_on_light(lights[i].shadow_slot, of_block, light.direction, to_viewer);
         sum += lights[i].color * (response * light.attenuation) * shadow;
     }
     if AMBIENT {

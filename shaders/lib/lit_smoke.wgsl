@@ -76,7 +76,7 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
     surface.tint = vec3f(1.0);
     if OPTICAL_DEPTHS_SLOT != 0u {
         let depths = attachments.optical_depths;
-        surface.shade.optical_depths[0] = depths.rgb / max(depths.a, 1.0e-6);
+        surface.shade.optical_depths = depths.rgb / max(depths.a, 1.0e-6);
     }
     if DEPTH_SLOT != 0u {
         surface.depth = attachments.depth.rg / max(attachments.depth.a, 1.0e-6);
@@ -108,13 +108,7 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
 fn shaded_surface(accumulated: vec4f, attachments: Attachments, pixel: vec2f) -> Surface {
     var surface = surface_from_accumulation(accumulated, attachments);
     if DEPTH_SLOT != 0u {
-        let ray = ray_of_pixel(pixel);
-        let accumulated_depths = surface.shade.optical_depths[0];
-        surface.shade.optical_depths = optical_depths_on_ray(accumulated_depths, ray, surface.depth);
-        surface.shade.visible = scene_visibility(ray, surface.depth);
-        if AMBIENT {
-            surface.shade.openness = openness(ray, surface.depth);
-        }
+        surface.shade = shade_on_ray(surface.shade.optical_depths, ray_of_pixel(pixel), surface.depth);
     }
     return surface;
 }

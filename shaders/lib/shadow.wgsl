@@ -61,12 +61,10 @@ fn foreign_optical_depths(in_grid: vec3f, own: f32) -> vec3f {
     return max(in_grid - own, vec3f(0.0));
 }
 
-// Optical depths through other sprites towards further lights, looked up at the mean depth of the smoke. What the smoke there
-// adds itself is the mean excess of the depths in the grid towards the first block of lights, `first_in_grid`, over those
-// that the sprites accumulated, `first_foreign`.
-fn further_optical_depths(in_grid: vec3f, first_in_grid: vec3f, first_foreign: vec3f) -> vec3f {
-    let own = dot(max(first_in_grid - first_foreign, vec3f(0.0)), vec3f(1.0 / 3.0));
-    return foreign_optical_depths(in_grid, own);
+// Part of the optical depths at the mean depth of the smoke that the smoke there adds itself: the mean excess of those in the
+// grid, towards the first block of lights, over those that the sprites accumulated.
+fn own_at_mean_depth(in_grid: vec3f, accumulated: vec3f) -> f32 {
+    return dot(max(in_grid - accumulated, vec3f(0.0)), vec3f(1.0 / 3.0));
 }
 
 // Lookup position in the shadow ramp. Across: 0 in full light, 1 behind endless smoke. Up: 0 for a light on the viewer's
@@ -75,21 +73,14 @@ fn shadow_position(optical_depth: f32, to_light: vec3f, to_viewer: vec3f) -> vec
     return vec2f(saturate(1.0 - exp2(-optical_depth)), saturate(0.5 - 0.5 * dot(to_light, to_viewer)));
 }
 
-// Value of a light with shadow: a channel of the blocks `values` by the light's slot, from 1 on; 0 without a slot.
-fn of_slot(slot: f32, values: array<vec3f, LIGHT_BLOCKS>) -> f32 {
-    var block = values[0];
-    var channel = slot;
-    if SHADOW_BLOCKS > 1u {
-        var blocks = values;
-        let index = min(u32(max(slot - 1.0, 0.0)) / LIGHTS_PER_BLOCK, LIGHT_BLOCKS - 1u);
-        block = blocks[index];
-        channel -= f32(index * LIGHTS_PER_BLOCK);
-    }
-    let chosen = max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - channel), vec3f(0.0));
-    return dot(block, chosen);
+// Block of a light with shadow, by its slot, from 1 on; 0 without a slot.
+fn block_of_slot(slot: f32) -> f32 {
+    return floor(max(slot - 1.0, 0.0) / f32(LIGHTS_PER_BLOCK));
 }
 
-// Lights that nothing hides.
-fn fully_visible() -> array<vec3f, LIGHT_BLOCKS> {
-    return array<vec3f, LIGHT_BLOCKS>(vec3f(1.0), vec3f(1.0), vec3f(1.0), vec3f(1.0), vec3f(1.0));
+// Value of a light with shadow: a channel of `values`, those of its block, by its slot; 0 without a slot.
+fn of_slot(slot: f32, values: vec3f) -> f32 {
+    let channel = slot - block_of_slot(slot) * f32(LIGHTS_PER_BLOCK);
+    let chosen = max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - channel), vec3f(0.0));
+    return dot(values, chosen);
 }

@@ -24,29 +24,18 @@ fn mean_along_ray(block: f32, ray: vec2f, moments: vec2f) -> vec3f {
     return sum / f32(DEPTH_SAMPLES);
 }
 
-// Optical depths of the smoke on a ray, through other smoke. `accumulated`: those that its sprites found towards the lights of
-// the first block.
-fn optical_depths_on_ray(accumulated: vec3f, ray: vec2f, moments: vec2f) -> array<vec3f, LIGHT_BLOCKS> {
-    var depths: array<vec3f, LIGHT_BLOCKS>;
-    depths[0] = accumulated;
-    if SHADOW_BLOCKS > 1u {
-        let first = mean_along_ray(0.0, ray, moments);
-        for (var block = 1u; block < SHADOW_BLOCKS; block++) {
-            depths[block] = further_optical_depths(mean_along_ray(f32(block), ray, moments), first, accumulated);
-        }
+// Share of each light of a block that reaches the smoke on a ray past the scene.
+fn scene_visibility(block: f32, ray: vec2f, moments: vec2f) -> vec3f {
+    if system.visibility_block < 0.5 {
+        return vec3f(1.0);
     }
-    return depths;
+    return mean_along_ray(system.visibility_block + block, ray, moments);
 }
 
-// Share of each light with shadow that reaches the smoke on a ray past the scene.
-fn scene_visibility(ray: vec2f, moments: vec2f) -> array<vec3f, LIGHT_BLOCKS> {
-    var visible = fully_visible();
-    if system.visibility_block > 0.5 {
-        for (var block = 0u; block < SHADOW_BLOCKS; block++) {
-            visible[block] = mean_along_ray(system.visibility_block + f32(block), ray, moments);
-        }
-    }
-    return visible;
+// Place of the smoke on a ray, at its mean depth, in cells.
+fn mean_place(ray: vec2f, moments: vec2f) -> vec3f {
+    let depth = mix(system.smoke_near, system.smoke_far, saturate(moments.x));
+    return (system.grid_from_view * vec4f(view_position(ray, depth, view.orthographic), 1.0)).xyz;
 }
 
 // Openness of the smoke on a ray to the sky and to the ground.

@@ -61,12 +61,10 @@ pub fn foreign_optical_depths(in_grid: Vec3, own: f32) -> Vec3 {
     (in_grid - own).max(Vec3::ZERO)
 }
 
-/// Optical depths through other sprites towards further lights, looked up at the mean depth of the smoke. What the smoke there
-/// adds itself is the mean excess of the depths in the grid towards the first block of lights, `first_in_grid`, over those
-/// that the sprites accumulated, `first_foreign`.
-pub fn further_optical_depths(in_grid: Vec3, first_in_grid: Vec3, first_foreign: Vec3) -> Vec3 {
-    let own = (first_in_grid - first_foreign).max(Vec3::ZERO).dot(Vec3::splat(1.0 / 3.0));
-    foreign_optical_depths(in_grid, own)
+/// Part of the optical depths at the mean depth of the smoke that the smoke there adds itself: the mean excess of those in
+/// the grid, towards the first block of lights, over those that the sprites accumulated.
+pub fn own_at_mean_depth(in_grid: Vec3, accumulated: Vec3) -> f32 {
+    (in_grid - accumulated).max(Vec3::ZERO).dot(Vec3::splat(1.0 / 3.0))
 }
 
 /// Lookup position in the shadow ramp. Across: 0 in full light, 1 behind endless smoke. Up: 0 for a light on the viewer's
@@ -75,11 +73,16 @@ pub fn shadow_position(optical_depth: f32, to_light: Vec3, to_viewer: Vec3) -> V
     Vec2::new(saturate(1.0 - (-optical_depth).exp2()), saturate(0.5 - 0.5 * to_light.dot(to_viewer)))
 }
 
-/// Value of a light with shadow: a channel of the blocks `values` by the light's slot, from 1 on; 0 without a slot.
-pub fn of_slot(slot: f32, values: &[Vec3; LIGHT_BLOCKS]) -> f32 {
-    let index = slot as usize;
-    let block = values.get(index.wrapping_sub(1) / LIGHTS_PER_BLOCK);
-    block.map_or(0.0, |block| block[(index - 1) % LIGHTS_PER_BLOCK])
+/// Block of a light with shadow, by its slot, from 1 on; 0 without a slot.
+pub fn block_of_slot(slot: f32) -> f32 {
+    ((slot - 1.0).max(0.0) / LIGHTS_PER_BLOCK as f32).floor()
+}
+
+/// Value of a light with shadow: a channel of `values`, those of its block, by its slot; 0 without a slot.
+pub fn of_slot(slot: f32, values: Vec3) -> f32 {
+    let channel = slot - block_of_slot(slot) * LIGHTS_PER_BLOCK as f32;
+    let chosen = (Vec3::ONE - (Vec3::new(1.0, 2.0, 3.0) - channel).abs()).max(Vec3::ZERO);
+    values.dot(chosen)
 }
 
 #[cfg(test)]

@@ -169,9 +169,11 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
 const PARTICLES: &str = "particles_##.csv";
 
 /// Fields whose alternatives give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 8] = [
+const SAME: [&str; 9] = [
     // Names the light for people and tools.
     "lights[0].role",
+    // These pictures have one light.
+    "systems[0].settings.shadow.lights",
     // Shades the scene, which these pictures do not have.
     "systems[0].settings.shadow.scene",
     // A light that the host adds to its own.
@@ -188,11 +190,13 @@ const SAME: [&str; 8] = [
 
 /// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
-const NOT_ALWAYS: [&str; 24] = [
+const NOT_ALWAYS: [&str; 25] = [
     "lights[0].role",
     // Particles may be white, and those of files may rest.
     "systems[0].settings.sprite.tint",
     "systems[0].settings.sprite.stretch",
+    // There may be fewer lights.
+    "systems[0].settings.shadow.lights",
     // As in `SAME`.
     "systems[0].settings.shadow.scene",
     "systems[0].settings.fire.light",

@@ -8,7 +8,7 @@ use haze::builtin;
 use haze::image::Image;
 use haze::settings::*;
 
-use crate::gpu::{gpu, is_tiled_available};
+use crate::gpu::gpu;
 use crate::psnr::{MIN_PSNR, MIN_PSNR_WITH_STEPS, psnr};
 use crate::test_scene::{DepthKind, TestScene};
 
@@ -143,12 +143,12 @@ fn stages() -> Vec<TestScene> {
     let tested: fn(&mut Settings) = |s| (s.accumulate.scale, s.accumulate.encoding) = (1, NormalEncoding::Biased);
     let weighted: fn(&mut Settings) = |s| s.accumulate.order = BlendOrder::Weighted;
     let six_way: fn(&mut Settings) = |s| s.lighting = Lighting::SixWay;
-    let shaded: fn(&mut Settings) = |s| s.shadow.strength = 0.7;
+    let shaded: fn(&mut Settings) = |s| (s.shadow.strength, s.shadow.lights) = (0.7, 1);
     let under_a_sky: fn(&mut Settings) =
         |s| (s.shadow.strength, s.shadow.by_depth, s.ambient.intensity) = (0.7, true, 1.0);
     let burning: fn(&mut Settings) = |s| (s.fire.intensity, s.ambient.intensity) = (2.0, 1.0);
     let stretched: fn(&mut Settings) = |s| (s.sprite.stretch, s.sprite.stretch_limit) = (2.0, 1.6);
-    let mut stages = vec![
+    vec![
         scene(Technique::Soft, RenderPath::Raster, burning),
         scene(Technique::Soft, RenderPath::Raster, nothing),
         scene(Technique::Soft, RenderPath::Raster, weighted),
@@ -160,12 +160,9 @@ fn stages() -> Vec<TestScene> {
         scene(Technique::SphericalBillboard, RenderPath::Raster, nothing),
         scene(Technique::Density, RenderPath::Raster, nothing),
         scene(Technique::VolumetricSoft, RenderPath::Raster, nothing),
-    ];
-    if is_tiled_available() {
-        stages.push(scene(Technique::Soft, RenderPath::Raster, shaded));
-        stages.push(scene(Technique::Soft, RenderPath::Raster, under_a_sky));
-    }
-    stages
+        scene(Technique::Soft, RenderPath::Raster, shaded),
+        scene(Technique::Soft, RenderPath::Raster, under_a_sky),
+    ]
 }
 
 /// Values that give the same image wherever both can be drawn, with the reason.
@@ -204,11 +201,6 @@ fn every_setting_changes_the_image_and_both_renderers_agree() {
             has_more = mover.has_more;
             name = mover.moved.clone();
             let Some(name) = &mover.moved else { break };
-            // Shadow needs compute shaders.
-            if name.starts_with("shadow.") && !is_tiled_available() {
-                has_effect = true;
-                break;
-            }
             // Some values are invalid together with others.
             if scene.settings.validate(String::new).is_err() {
                 continue;

@@ -239,7 +239,7 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "BACKLIGHT = u32(x(0)); \
                    SHADOW = x(8) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   var shade = shade_of_sprites(vec3f(0.3, 0.8, x(8))); shade.visible[0] = vec3f(1.0, 0.5, 0.9); \
+                   var shade = shade_of_sprites(vec3f(0.3, 0.8, x(8))); shade.visible = vec3f(1.0, 0.5, 0.9); \
                    y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), shade));",
             reference: |x| {
                 let settings = changed(|s| s.diffuse.backlight = Backlight::ALL[x[0] as usize]);
@@ -262,8 +262,8 @@ fn diffuse() -> Vec<Formula> {
                     "diffuse_coordinate(normal, light.direction), 0.5",
                 ),
                 (
-                    "for (var i = 0u; i < system.light_count; i++) {\n        let light = sample_light(lights[i], position);\n        let at",
-                    "for (var i = 0u; i < 1u; i++) {\n        let light = sample_light(lights[i], position);\n        let at",
+                    "for (var i = 0u; i < system.light_count; i++) {\n        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);\n        let light = sample_light(lights[i], position);\n        let at",
+                    "for (var i = 0u; i < 1u; i++) {\n        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);\n        let light = sample_light(lights[i], position);\n        let at",
                 ),
             ],
         },
@@ -273,7 +273,7 @@ fn diffuse() -> Vec<Formula> {
             wgsl: "let s = SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
                    system.six_way_color = vec3f(0.9, 0.7, 0.5); \
                    SHADOW = x(0) > 0.5; system.shadow_strength = select(0.0, 0.8, SHADOW); \
-                   var shade = shade_of_sprites(vec3f(0.3, 0.8, x(1))); shade.visible[0] = vec3f(1.0, 0.5, 0.9); \
+                   var shade = shade_of_sprites(vec3f(0.3, 0.8, x(1))); shade.visible = vec3f(1.0, 0.5, 0.9); \
                    y3(0, diffuse_from_six_way(s, vec3f(x(6), x(7), x(8)), shade));",
             reference: |x| {
                 let mut visible = shaded_system(&DEFAULTS, x[0] > 0.5);
@@ -298,8 +298,8 @@ fn diffuse() -> Vec<Formula> {
             file: "lib/diffuse.wgsl",
             wgsl: "SHADOW = true; system.shadow_strength = 0.8; let position = vec3f(x(7), x(8), x(9)); \
                    let to_viewer = direction_to_viewer(position, view.orthographic); \
-                   var shade = shade_of_sprites(vec3f(x(1), x(2), x(3))); shade.visible[0] = vec3f(0.9, 0.5, 0.7); \
-                   y3(0, shadow_on_light(x(0), shade, vec3f(x(4), x(5), x(6)), to_viewer));",
+                   var shade = shade_of_sprites(vec3f(x(1), x(2), x(3))); shade.visible = vec3f(0.9, 0.5, 0.7); \
+                   y3(0, shadow_on_light(x(0), first_block(shade), vec3f(x(4), x(5), x(6)), to_viewer));",
             reference: |x| {
                 let visible = shaded_system(&DEFAULTS, true);
                 let light = LightUniform { shadow_slot: x[0], ..visible.lights[0] };
@@ -418,7 +418,7 @@ fn surfaces() -> Vec<Formula> {
                    NORMAL_ENCODING = select(NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_BIASED, x(9) < 0.3); \
                    let s = surface_from_accumulation(vec4f(x(1), x(2), x(3), x(4)), \
                    Attachments(vec4f(x(5), x(6), x(7), x(8)), x(5), vec4f(x(1), x(2), x(3), x(4)), vec4f(x(5), x(6), x(7), x(8)), vec4f(x(2), x(4), x(6), x(8)), vec4f(0.0))); \
-                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.shade.optical_depths[0]); y(12, s.depth.x); y(13, s.depth.y); y(14, s.heat.x); y(15, s.heat.y);",
+                   y3(0, s.normal); y3(3, s.six_way.positive); y3(6, s.six_way.negative); y3(9, s.shade.optical_depths); y(12, s.depth.x); y(13, s.depth.y); y(14, s.heat.x); y(15, s.heat.y);",
             reference: |x| {
                 let settings = changed(|s| {
                     s.accumulate.decode = NormalDecode::ALL[x[0] as usize];

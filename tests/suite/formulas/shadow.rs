@@ -138,18 +138,23 @@ fn lookups() -> Vec<Formula> {
         Formula {
             name: "of_slot",
             file: "lib/shadow.wgsl",
-            wgsl: "SHADOW_BLOCKS = 5u; let v = vec3f(x(1), x(2), x(3)); \
-                   y(0, of_slot(x(0), array<vec3f, 5>(v, v * 2.0, v * 3.0, v * 4.0, v * 5.0)));",
-            reference: |x| {
-                vec![shadow::of_slot(x[0], &std::array::from_fn(|block| v3(&x[1..]) * (block as f32 + 1.0)))]
-            },
+            wgsl: "y(0, of_slot(x(0), vec3f(x(1), x(2), x(3))));",
+            reference: |x| vec![shadow::of_slot(x[0], v3(&x[1..]))],
             cases: with_choices(16, &[(0.1, 3.0), (0.1, 3.0), (0.1, 3.0)]),
             tolerance: ARITHMETIC,
             mutants: &[
                 ("vec3f(1.0, 2.0, 3.0)", "vec3f(3.0, 2.0, 1.0)"),
-                ("channel -= f32(index * LIGHTS_PER_BLOCK)", "channel -= f32(index)"),
-                ("max(slot - 1.0, 0.0)", "slot"),
+                ("slot - block_of_slot(slot) * f32(LIGHTS_PER_BLOCK)", "slot"),
             ],
+        },
+        Formula {
+            name: "block_of_slot",
+            file: "lib/shadow.wgsl",
+            wgsl: "y(0, block_of_slot(x(0)));",
+            reference: |x| vec![shadow::block_of_slot(x[0])],
+            cases: with_choices(16, &[]),
+            tolerance: ARITHMETIC,
+            mutants: &[("max(slot - 1.0, 0.0)", "slot"), ("floor(max(slot", "(max(slot")],
         },
         Formula {
             name: "light_disc_offset",
@@ -162,16 +167,13 @@ fn lookups() -> Vec<Formula> {
             mutants: &[("sqrt(place.x)", "place.x"), ("0.7548777, 0.5698403", "0.5698403, 0.7548777")],
         },
         Formula {
-            name: "further_optical_depths",
+            name: "own_at_mean_depth",
             file: "lib/shadow.wgsl",
-            wgsl: "y3(0, further_optical_depths(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), vec3f(x(6), x(7), x(8))));",
-            reference: |x| shadow::further_optical_depths(v3(x), v3(&x[3..]), v3(&x[6..])).to_array().to_vec(),
-            cases: random(60, &[(0.0, 4.0); 9]),
+            wgsl: "y(0, own_at_mean_depth(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))));",
+            reference: |x| vec![shadow::own_at_mean_depth(v3(x), v3(&x[3..]))],
+            cases: random(60, &[(0.0, 4.0); 6]),
             tolerance: ARITHMETIC,
-            mutants: &[
-                ("dot(max(first_in_grid - first_foreign, vec3f(0.0)), vec3f(1.0 / 3.0))", "0.0"),
-                ("max(first_in_grid - first_foreign, vec3f(0.0))", "first_in_grid - first_foreign"),
-            ],
+            mutants: &[("max(in_grid - accumulated, vec3f(0.0))", "in_grid - accumulated"), ("1.0 / 3.0", "1.0")],
         },
     ]
 }

@@ -16,39 +16,43 @@ use haze::formula::lighting::{
     backlight_weight, coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
 };
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
-use haze::formula::shadow::{LIGHT_BLOCKS, further_optical_depths, of_slot, shadow_position};
+use haze::formula::saturate;
+use haze::formula::shadow::{
+    LIGHT_BLOCKS, block_of_slot, foreign_optical_depths, of_slot, own_at_mean_depth, shadow_position,
+};
 use haze::formula::six_way::{SixWay, six_way_response};
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
 
 impl VisibleSystem<'_> {
-    /// Optical depths of the smoke at a pixel, through other smoke. `accumulated`: those that its sprites found towards the lights
-    /// of the first block. `moments`: those of its depth.
-    pub fn optical_depths_on_ray(&self, accumulated: Vec3, pixel: Vec2, moments: Vec2) -> [Vec3; LIGHT_BLOCKS] {
-        let in_grid = |block| self.mean_along_ray(pixel, moments, |volume, place| volume.sample(block, place));
-        let mut depths = [Vec3::ZERO; LIGHT_BLOCKS];
-        depths[0] = accumulated;
+    /// Smoke and scene before a pixel of the smoke. `accumulated`: optical depths that its sprites found towards the lights of
+    /// the first block. `moments`: those of its depth.
+    pub fn shade_on_ray(&self, accumulated: Vec3, pixel: Vec2, moments: Vec2) -> Shade {
+        let mut shade = Shade::of_sprites(accumulated);
+        shade.openness = self.openness(pixel, moments);
         let blocks = self.settings.shadow_blocks() as usize;
-        if blocks > 1 {
-            let first = in_grid(0);
-            for (block, depths) in depths.iter_mut().enumerate().take(blocks).skip(1) {
-                *depths = further_optical_depths(in_grid(block), first, accumulated);
-            }
-        }
-        depths
-    }
-
-    /// Share of each light with shadow that reaches the smoke at a pixel past the scene.
-    pub fn scene_visibility(&self, pixel: Vec2, moments: Vec2) -> [Vec3; LIGHT_BLOCKS] {
-        let mut visible = [Vec3::ONE; LIGHT_BLOCKS];
-        for (block, visible) in visible.iter_mut().enumerate().take(self.settings.shadow_blocks() as usize) {
+        for (block, visible) in shade.visible.iter_mut().enumerate().take(blocks) {
             *visible = self.mean_along_ray(pixel, moments, |volume, place| volume.sample_visible(block, place));
         }
-        visible
+        if let Some(volume) = self.optical_depths.as_ref().filter(|_| blocks > 1) {
+            let place = self.mean_place(pixel, moments);
+            let own = own_at_mean_depth(volume.sample(0, place), accumulated);
+            for (block, depths) in shade.optical_depths.iter_mut().enumerate().take(blocks).skip(1) {
+                *depths = foreign_optical_depths(volume.sample(block, place), own);
+            }
+        }
+        shade
+    }
+
+    /// Place of the smoke at a pixel, at its mean depth, in cells.
+    fn mean_place(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
+        let system = &self.system;
+        let depth = system.smoke_near + (system.smoke_far - system.smoke_near) * saturate(moments.x);
+        system.grid_from_view.transform_point3(self.view_position(pixel, depth))
     }
 
     /// Openness of the smoke at a pixel to sky and ground.
-    pub fn openness(&self, pixel: Vec2, moments: Vec2) -> Vec2 {
+    fn openness(&self, pixel: Vec2, moments: Vec2) -> Vec2 {
         self.mean_along_ray(pixel, moments, OpticalDepths::sample_openness).truncate()
     }
 
@@ -136,13 +140,14 @@ impl VisibleSystem<'_> {
         }
         let at = self.shadow_place(light, to_light, position, shade);
         let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
-        Vec3::ONE.lerp(painted, self.system.shadow_strength) * of_slot(light.shadow_slot, &shade.visible)
+        Vec3::ONE.lerp(painted, self.system.shadow_strength)
+            * of_slot(light.shadow_slot, shade.visible[block_of(light)])
     }
 
     /// Place on the shadow ramp of a light with shadow.
     pub fn shadow_place(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec2 {
         let to_viewer = direction_to_viewer(position, self.view.orthographic);
-        shadow_position(of_slot(light.shadow_slot, &shade.optical_depths), to_light, to_viewer)
+        shadow_position(of_slot(light.shadow_slot, shade.optical_depths[block_of(light)]), to_light, to_viewer)
     }
 
     /// Sum of all lights through six-way maps.
@@ -209,4 +214,9 @@ impl VisibleSystem<'_> {
         };
         (0..layers as i32).map(face).collect()
     }
+}
+
+/// Index of the block of a light with shadow.
+fn block_of(light: &LightUniform) -> usize {
+    (block_of_slot(light.shadow_slot) as usize).min(LIGHT_BLOCKS - 1)
 }

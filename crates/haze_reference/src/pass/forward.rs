@@ -32,9 +32,7 @@ impl VisibleSystem<'_> {
                 if self.settings.lights_by_depth() {
                     let moments = self.moments_of_sprite(sprite.view_depth, sprite.radius);
                     let pixel = at.as_vec2() + 0.5;
-                    shade.optical_depths = self.optical_depths_on_ray(sprite.optical_depths, pixel, moments);
-                    shade.visible = self.scene_visibility(pixel, moments);
-                    shade.openness = self.openness(pixel, moments);
+                    shade = self.shade_on_ray(sprite.optical_depths, pixel, moments);
                 }
                 let diffuse = match self.settings.is_six_way() {
                     true => self.diffuse_from_six_way(&fragment.six_way, position, &shade),

@@ -154,10 +154,7 @@ impl AccumulatedTarget<'_> {
     pub fn shaded_surface(&self, attachments: &Attachments, pixel: Vec2) -> Surface {
         let mut surface = self.surface(attachments);
         if AttachmentRole::Depth.is_used(&self.visible.settings) {
-            let accumulated = surface.shade.optical_depths[0];
-            surface.shade.optical_depths = self.visible.optical_depths_on_ray(accumulated, pixel, surface.depth);
-            surface.shade.visible = self.visible.scene_visibility(pixel, surface.depth);
-            surface.shade.openness = self.visible.openness(pixel, surface.depth);
+            surface.shade = self.visible.shade_on_ray(surface.shade.optical_depths[0], pixel, surface.depth);
         }
         surface
     }

@@ -269,6 +269,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         |s, _| s.settings.shadow.strength <= 0.0,
         &[
             "settings.shadow.density",
+            "settings.shadow.lights",
             "settings.shadow.resolution",
             "settings.shadow.by_depth",
             "settings.shadow.scene",
