@@ -17,6 +17,8 @@ const ARROW: f32 = 14.0;
 /// Draws the views side by side. A click shows a view in the viewport, a second click shows the final image again.
 /// `aspect` is the width of the viewport over its height.
 pub fn debug_view_strip(ui: &mut Ui, session: &mut Session, renderer: &ViewportRenderer, aspect: f32) {
+    // The panel keeps its height while the images are lower, because the shape of the viewport is not known yet.
+    ui.set_min_height(ui.available_height());
     let count = STAGES.len() as f32;
     let width = (ui.available_width() - (count - 1.0) * ARROW) / count;
     let height = (ui.available_height() - NAME).min(width / aspect);

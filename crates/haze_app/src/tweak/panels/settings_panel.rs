@@ -240,7 +240,7 @@ mod tests {
         assert!(["Path", "Blend mode", "Smoke buffer"].into_iter().all(|name| place(name) > before));
         for name in super::SMOKE_TAB_GROUPS {
             // The strip below the image has labels of its own.
-            let is_row = |node: &Node<'_>| node.rect().left() > 900.0;
+            let is_row = |node: &Node<'_>| node.rect().left() > 900.0 && node.rect().bottom() < 660.0;
             let rows = harness.query_all_by_label(&display_name(name)).filter(is_row).count();
             assert_eq!(rows, 0, "{name}");
         }
