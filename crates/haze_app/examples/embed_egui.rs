@@ -79,21 +79,16 @@ impl App {
         let Some(Targets { color, depth, id, .. }) = &self.targets else { return Ok(egui::TextureId::default()) };
         let time = self.start.elapsed().as_secs_f32();
         Emitter::default().evaluate(time, &mut self.particles);
-        let around = |angle: f32, distance: f32, height: f32| {
-            vec3(distance * angle.sin(), height, distance * angle.cos())
-        };
+        let around =
+            |angle: f32, distance: f32, height: f32| vec3(distance * angle.sin(), height, distance * angle.cos());
         let view = View::new(
             rh::view::look_at_mat4(around(self.angle, 6.5, 1.8), vec3(0.0, 1.8, 0.0), Vec3::Y),
             rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 100.0),
             size,
         );
         let Lamp { angle, intensity } = self.lamp;
-        let lamp = Light {
-            position: around(angle, 4.0, 3.0),
-            color: vec3(1.0, 0.7, 0.4),
-            intensity,
-            ..Light::default()
-        };
+        let lamp =
+            Light { position: around(angle, 4.0, 3.0), color: vec3(1.0, 0.7, 0.4), intensity, ..Light::default() };
         let frame = FrameInput {
             lights: &[lamp],
             systems: &[ParticleSystem::new(0, Particles::Slice(&self.particles), &self.settings, &self.material)],
@@ -182,8 +177,7 @@ fn begin<'a>(
     depth: &wgpu::TextureView,
     clear: Option<wgpu::Color>,
 ) -> wgpu::RenderPass<'a> {
-    let depth_ops =
-        clear.map(|_| wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store });
+    let depth_ops = clear.map(|_| wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store });
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("view"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

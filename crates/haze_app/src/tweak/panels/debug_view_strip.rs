@@ -14,14 +14,24 @@ const NAME: f32 = 16.0;
 /// Least width of an arrow, points.
 const ARROW: f32 = 14.0;
 
+/// Returns the width of a view in a strip of this width.
+fn view_width(strip: f32) -> f32 {
+    let count = STAGES.len() as f32;
+    (strip - (count - 1.0) * ARROW) / count
+}
+
+/// Returns the largest height that a strip of this width fills, with views of 4:3.
+pub fn filled_height(strip: f32) -> f32 {
+    NAME + 0.75 * view_width(strip)
+}
+
 /// Draws the views side by side. A click shows a view in the viewport, a second click shows the final image again.
 /// `aspect` is the width of the viewport over its height.
 pub fn debug_view_strip(ui: &mut Ui, session: &mut Session, renderer: &ViewportRenderer, aspect: f32) {
     // The panel keeps its height while the images are lower, because the shape of the viewport is not known yet.
     ui.set_min_height(ui.available_height());
     let count = STAGES.len() as f32;
-    let width = (ui.available_width() - (count - 1.0) * ARROW) / count;
-    let height = (ui.available_height() - NAME).min(width / aspect);
+    let height = (ui.available_height() - NAME).min(view_width(ui.available_width()) / aspect);
     let size = Vec2::new((height * aspect).floor(), height.floor());
     let pixels = size * ui.pixels_per_point();
     let pixels = UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32);

@@ -27,7 +27,7 @@ use crate::tweak::files::preset_thumbnails::PresetThumbnails;
 use crate::tweak::files::shared_look;
 use crate::tweak::files::window_screenshot::Screenshot;
 use crate::tweak::panels;
-use crate::tweak::panels::debug_view_strip::{debug_view_strip, next_debug_view};
+use crate::tweak::panels::debug_view_strip::{debug_view_strip, filled_height, next_debug_view};
 use crate::tweak::platform::{IS_PAGE, clock, file_io};
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{ACTIONS, Action};
@@ -217,7 +217,7 @@ impl Window {
         if self.session.view.has_strip && !panels::narrow::is_narrow(ui.ctx()) {
             let aspect = self.session.view.aspect;
             let room = ui.available_height();
-            let usual = (0.12 * room).max(80.0);
+            let usual = (0.12 * room).max(80.0).min(filled_height(ui.available_width()));
             let height = self.strip_size.begin(ui.ctx(), self.layout.strip_height, room, usual);
             let most = (0.25 * room).clamp(56.0, 320.0);
             let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=most);
