@@ -10,7 +10,7 @@ pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
     (DebugView::Amount, "Accumulated amount"),
     (DebugView::Overdraw, "Overdraw"),
     (DebugView::Shadow, "Shadow"),
-    (DebugView::ShadowSlice, "Shadow, slice of the grid"),
+    (DebugView::ShadowSlice, "Slice of shadow"),
     (DebugView::Diffuse, "Diffuse"),
     (DebugView::SoftScatter, "Soft scatter and ambient"),
     (DebugView::SpecularScatter, "Specular scatter"),
