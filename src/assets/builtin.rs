@@ -148,7 +148,8 @@ pub const PRESETS: &[Builtin] = presets!([
     "oil_fire",
     "fireball",
     "steam_vent",
-    "spell"
+    "spell",
+    "wildfire_sky"
 ]);
 
 /// Returns the built-in images for a role; empty for details and six-way maps.

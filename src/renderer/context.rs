@@ -50,6 +50,8 @@ pub(crate) struct Shared {
     pub pipelines: Pipelines,
     /// [`read_only_depth_is_supported`], queried once, because every query copies the adapter's information.
     pub read_only_depth: bool,
+    /// Largest extent of a 3D texture, texels.
+    pub max_volume_depth: u32,
     /// Capabilities that settings depend on.
     pub support: Support,
     path_model: Mutex<PathModel>,
@@ -126,6 +128,7 @@ impl Context {
             no_ramp: upload_ramp(&Gpu { device: &device, queue }, "haze no ramp", &white, &mut 0),
             no_shadow: volume(&device, 1, 1, wgpu::TextureUsages::empty()),
             read_only_depth: read_only_depth_is_supported(&device),
+            max_volume_depth: device.limits().max_texture_dimension_3d,
             support: Support {
                 six_way: six_way_is_supported(&device),
                 independent_blend: independent_blend_is_supported(&device),

@@ -283,7 +283,13 @@ impl Renderer {
             Some(state.measure_box(shared, &view, system))
         });
         let mapped = frame.shadow_maps.iter().map(|map| map.projection.light);
-        let shadow = SmokeShadow::new((&view, frame.up.normalize_or(glam::Vec3::Y)), frame.lights, mapped, measured);
+        let shadow = SmokeShadow::new(
+            (&view, frame.up.normalize_or(glam::Vec3::Y)),
+            shared.max_volume_depth,
+            frame.lights,
+            mapped,
+            measured,
+        );
         self.shadowed_lights = shadow.map_or([None; SHADOWED_LIGHTS], |shadow| shadow.lights);
         // Places and clears the density grid around all systems, if any system receives shadow.
         match &shared.pipelines.tiled {
@@ -348,7 +354,8 @@ impl Renderer {
 
     /// Darkens the host's picture by the shadow of the smoke, for hosts whose shaders do not call
     /// [`shader::scene_shadow_wgsl`]: record it in the pass of [`render`](Self::render), or in that of
-    /// [`Descriptor::scene_color_format`], after the opaque scene and before the smoke. Needs [`FrameInput::scene_ambient`]. State of the pass as in `render`.
+    /// [`Descriptor::scene_color_format`], after the opaque scene and before the smoke. Needs
+    /// [`FrameInput::scene_ambient`]. State of the pass as in `render`.
     ///
     /// Each pixel is multiplied by the share of its light that is left, for a white matte surface whose normal comes from
     /// the scene depth, under the lights of the frame, in the shadow of [`FrameInput::shadow_maps`] of the three brightest.

@@ -84,10 +84,11 @@ pub struct SmokeShadow {
 }
 
 impl SmokeShadow {
-    /// `systems`: box and settings of each system. `mapped`: indices of the lights that have shadow maps. Returns `None` if no
+    /// `max_volume_depth`: of a 3D texture, texels. `systems`: box and settings of each system. `mapped`: indices of the lights that have shadow maps. Returns `None` if no
     /// system receives shadow, or there is no smoke. `up`: world space, unit length.
     pub fn new(
         (view, up): (&ViewGeometry, Vec3),
+        max_volume_depth: u32,
         lights: &[Light],
         mut mapped: impl Iterator<Item = usize>,
         systems: impl Iterator<Item = (Bounds, ResolvedSettings)>,
@@ -109,8 +110,12 @@ impl SmokeShadow {
             }
         }
         let resolution = resolution.filter(|_| !around.is_empty())?;
-        let grid = SmokeGrid::new(&around, resolution);
         let chosen = brightest_lights(lights, &around, count as usize);
+        let has_visibility = by_depth && mapped.any(|light| chosen.contains(&Some(light)));
+        let light_blocks = count.div_ceil(LIGHTS_PER_BLOCK as u32);
+        // WebGL 2 guarantees 256 texels along each axis.
+        let resolution = resolution.min(max_volume_depth / block_count(light_blocks, has_visibility, has_openness));
+        let grid = SmokeGrid::new(&around, resolution);
         let placed = chosen.map(|index| match index.and_then(|index| lights.get(index)) {
             // A light in the middle of nothing: no smoke is before it.
             None => Vec4::ZERO,
@@ -126,12 +131,11 @@ impl SmokeShadow {
                 radii[slot / LIGHTS_PER_BLOCK][slot % LIGHTS_PER_BLOCK] = light.radius * grid.cells_per_metre();
             }
         }
-        let has_visibility = by_depth && mapped.any(|light| chosen.contains(&Some(light)));
         let mut shadow = Self {
             grid,
             grid_from_view: grid.grid_from_view(view),
             resolution,
-            light_blocks: count.div_ceil(LIGHTS_PER_BLOCK as u32),
+            light_blocks,
             lights: chosen,
             march: ShadowMarchUniform {
                 lights: placed,
@@ -152,7 +156,7 @@ impl SmokeShadow {
 
     /// Number of blocks of the volume.
     pub fn blocks(&self) -> u32 {
-        self.light_blocks + self.map_blocks() + u32::from(self.has_openness)
+        block_count(self.light_blocks, self.has_visibility, self.has_openness)
     }
 
     /// Number of blocks of lights whose visibility past the scene is looked up.
@@ -230,6 +234,11 @@ impl SmokeShadow {
         let mut read = self.lights.iter().take(blocks as usize * LIGHTS_PER_BLOCK);
         read.position(|&chosen| chosen == Some(light)).map_or(0.0, |slot| slot as f32 + 1.0)
     }
+}
+
+/// Number of blocks of a volume with so many blocks of optical depths.
+fn block_count(light_blocks: u32, has_visibility: bool, has_openness: bool) -> u32 {
+    light_blocks * (1 + u32::from(has_visibility)) + u32::from(has_openness)
 }
 
 /// Returns directions halfway between the pole of the upper hemisphere and its rim, where half of the light from an even sky

@@ -126,7 +126,8 @@ fn prints_cost_of_fire() {
     }
 }
 
-/// Prints the figures of docs/shadow.md: whole frames of 4,096 sprites under three lights, and the passes of shadow.
+/// Prints whole frames of 4,096 sprites, and the passes of shadow. Unlike `haze bench shadow`, it has no shadow maps where it
+/// counts lights.
 #[test]
 #[ignore = "prints figures for the docs"]
 fn prints_cost_of_shadow() {
@@ -170,6 +171,18 @@ fn prints_cost_of_shadow() {
         let times = medians(gpu, &[stages[2].clone(), by_depth.clone()], ALL_PASSES);
         let maps = medians(gpu, &[by_depth], &["shadow_visibility"]);
         println!("by depth: {:.3} ms, {:.3} ms; shadow_visibility {:.3} ms", times[0], times[1], maps[0]);
+        for count in [3, 4, 15] {
+            let mut plain = scene.clone();
+            plain.lights.extend((3..count).map(|i: u32| {
+                let (sine, cosine) = (i as f32 * 2.4).sin_cos();
+                Light { position: vec3(4.0 * cosine, 1.5 * sine, -6.0 + 3.0 * sine), ..Light::default() }
+            }));
+            let mut shaded = plain.clone();
+            let shadow = &mut shaded.settings.shadow;
+            (shadow.strength, shadow.lights, shadow.by_depth) = (1.0, count, count > 3);
+            let times = medians(gpu, &[plain, shaded], ALL_PASSES);
+            println!("{count} lights: {:.3} ms, with shadow {:.3} ms", times[0], times[1]);
+        }
         for (index, stage) in stages[1..].iter().enumerate() {
             println!(
                 "{} cells: {:.3} ms, {:.2}; density_splat {:.3} ms, shadow_march {:.3} ms",
@@ -191,6 +204,8 @@ const ALL_PASSES: &[&str] = &[
     "shadow_march",
     "shadow_visibility",
     "accumulate",
+    "light_target",
+    "depth_slopes",
     "tile_project",
     "tile_gather",
     "tile_bin",

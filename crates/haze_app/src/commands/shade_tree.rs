@@ -9,7 +9,7 @@ use crate::image_export::{ExportProgress, render_sheet};
 use crate::options::ShotArguments;
 
 #[derive(Args)]
-#[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is a third as wide and as high")))]
+#[command(mut_arg("size", |size| size.help("Size in pixels of a sheet of 4x4 images, without margins")))]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,

@@ -9,10 +9,10 @@ use super::{folder, haze, refusal, render, size_of, stderr};
 #[test]
 fn shade_tree_sheet_shows_every_stage() {
     let folder = folder();
-    let output = haze(folder.path(), &["shade-tree", "--size", "192x108", "--backend", "cpu", "-o", "sheet.png"]);
+    let output = haze(folder.path(), &["shade-tree", "--size", "256x144", "--backend", "cpu", "-o", "sheet.png"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let sheet = haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
-    // Every stage is on the sheet as `haze render --view` renders it, in three rows of three.
+    // Every stage is on the sheet as `haze render --view` renders it, in three rows of four.
     let mut corners = BTreeSet::new();
     for stage in DebugView::ALL {
         let output = render(folder.path(), &["--view", stage.name()]);
@@ -27,7 +27,7 @@ fn shade_tree_sheet_shows_every_stage() {
     let distinct = |list: Vec<u32>| list.into_iter().collect::<BTreeSet<_>>().len();
     let columns = distinct(corners.iter().map(|corner| corner.0).collect());
     let rows = distinct(corners.iter().map(|corner| corner.1).collect());
-    assert_eq!((corners.len(), columns, rows), (9, 3, 3));
+    assert_eq!((corners.len(), columns, rows), (11, 4, 3));
 }
 
 #[test]
