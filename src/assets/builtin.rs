@@ -148,8 +148,7 @@ pub const PRESETS: &[Builtin] = presets!([
     "oil_fire",
     "fireball",
     "steam_vent",
-    "spell",
-    "wildfire_sky"
+    "spell"
 ]);
 
 /// Returns the built-in images for a role; empty for details and six-way maps.
