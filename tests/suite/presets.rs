@@ -269,7 +269,9 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         shot.debug_view = stage;
         add("depth_source host", stage.name(), shot);
     }
-    for &stage in DebugView::ALL {
+    // Without compute shaders, the presets of this file are drawn without shadow: its slice is empty.
+    let is_drawn = |stage: &&DebugView| **stage != DebugView::ShadowSlice || is_tiled_available();
+    for &stage in DebugView::ALL.iter().filter(is_drawn) {
         let mut shot = with(|_| {});
         shot.debug_view = stage;
         add("shade tree", stage.name(), shot);
