@@ -118,8 +118,7 @@ fn lit_position(surface: Surface, pixel: vec2f) -> vec3f {
     if DEPTH_SLOT == 0u {
         return shading_position(pixel);
     }
-    let depth = mix(system.smoke_near, system.smoke_far, saturate(surface.depth.x));
-    return view_position(ray_of_pixel(pixel), depth, view.orthographic);
+    return mean_position(ray_of_pixel(pixel), surface.depth);
 }
 
 fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {

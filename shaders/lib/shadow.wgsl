@@ -78,9 +78,12 @@ fn block_of_slot(slot: f32) -> f32 {
     return floor(max(slot - 1.0, 0.0) / f32(LIGHTS_PER_BLOCK));
 }
 
+// 1 in the channel of a slot of the first block, from 1 on; 0 in the others.
+fn channel_of_slot(slot: f32) -> vec3f {
+    return max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - slot), vec3f(0.0));
+}
+
 // Value of a light with shadow: a channel of `values`, those of its block, by its slot; 0 without a slot.
 fn of_slot(slot: f32, values: vec3f) -> f32 {
-    let channel = slot - block_of_slot(slot) * f32(LIGHTS_PER_BLOCK);
-    let chosen = max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - channel), vec3f(0.0));
-    return dot(values, chosen);
+    return dot(values, channel_of_slot(slot - block_of_slot(slot) * f32(LIGHTS_PER_BLOCK)));
 }

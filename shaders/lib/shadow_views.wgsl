@@ -9,7 +9,7 @@ const CELL_BORDER: f32 = 0.7;
 fn channels_with_light() -> vec3f {
     var found = vec3f(0.0);
     for (var i = 0u; i < system.light_count; i++) {
-        found += max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - lights[i].shadow_slot), vec3f(0.0));
+        found += channel_of_slot(lights[i].shadow_slot);
     }
     return min(found, vec3f(1.0));
 }

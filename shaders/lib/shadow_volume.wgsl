@@ -32,10 +32,15 @@ fn scene_visibility(block: f32, ray: vec2f, moments: vec2f) -> vec3f {
     return mean_along_ray(system.visibility_block + block, ray, moments);
 }
 
-// Place of the smoke on a ray, at its mean depth, in cells.
-fn mean_place(ray: vec2f, moments: vec2f) -> vec3f {
+// Point of the smoke on a ray at its mean depth, view space.
+fn mean_position(ray: vec2f, moments: vec2f) -> vec3f {
     let depth = mix(system.smoke_near, system.smoke_far, saturate(moments.x));
-    return (system.grid_from_view * vec4f(view_position(ray, depth, view.orthographic), 1.0)).xyz;
+    return view_position(ray, depth, view.orthographic);
+}
+
+// The same in cells.
+fn mean_place(ray: vec2f, moments: vec2f) -> vec3f {
+    return (system.grid_from_view * vec4f(mean_position(ray, moments), 1.0)).xyz;
 }
 
 // Openness of the smoke on a ray to the sky and to the ground.

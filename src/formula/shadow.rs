@@ -78,11 +78,14 @@ pub fn block_of_slot(slot: f32) -> f32 {
     ((slot - 1.0).max(0.0) / LIGHTS_PER_BLOCK as f32).floor()
 }
 
+/// 1 in the channel of a slot of the first block, from 1 on; 0 in the others.
+pub fn channel_of_slot(slot: f32) -> Vec3 {
+    (Vec3::ONE - (Vec3::new(1.0, 2.0, 3.0) - slot).abs()).max(Vec3::ZERO)
+}
+
 /// Value of a light with shadow: a channel of `values`, those of its block, by its slot; 0 without a slot.
 pub fn of_slot(slot: f32, values: Vec3) -> f32 {
-    let channel = slot - block_of_slot(slot) * LIGHTS_PER_BLOCK as f32;
-    let chosen = (Vec3::ONE - (Vec3::new(1.0, 2.0, 3.0) - channel).abs()).max(Vec3::ZERO);
-    values.dot(chosen)
+    values.dot(channel_of_slot(slot - block_of_slot(slot) * LIGHTS_PER_BLOCK as f32))
 }
 
 #[cfg(test)]

@@ -164,10 +164,10 @@ impl Renderer {
             let path = || format!("settings[{index}]");
             settings.validate(path)?;
             AttachmentSet::validate(settings, path)?;
-            // The material is not known yet: compiles for one frame and for several, for smooth ramps and hard ones.
             if settings.receives_shadow() {
                 shared.pipelines.screen_shadow.check(self.scene_pass)?;
             }
+            // The material is not known yet: compiles for one frame and for several, for smooth ramps and hard ones.
             for (frame_count, ramps) in
                 [(1.0, RampSteps::default()), (2.0, RampSteps::default()), (2.0, RampSteps::HARD)]
             {
@@ -252,6 +252,7 @@ impl Renderer {
     /// Prepares all systems, and records the passes that do not read the scene's depth.
     fn prepare_systems(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
         self.order.clear();
+        self.view = None;
         self.validate_submitted()?;
         let context = self.context.clone();
         let shared = context.shared();

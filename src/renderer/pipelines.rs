@@ -13,7 +13,8 @@ use super::pass::forward::{self, ForwardKey};
 use super::pass::light_target::{self, LightingKey};
 use super::pass::screen_shadow;
 use super::pass::shadow_march::MarchTo;
-use super::pass::shadow_slices;
+use super::pass::shadow_march_slice;
+use super::pass::shadow_visibility_slice;
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
 use super::pass::transfer_lit::{self, TransferLitKey};
@@ -57,6 +58,7 @@ impl Pipelines {
         let lit = with(&layouts.lighting, &layouts.lit);
         let screen_shadow =
             [&layouts.shadow_maps, &layouts.frame, &layouts.screen_shadow, &layouts.scene_shadow].map(Some);
+        let (march_slice, visibility_slice) = ([Some(&layouts.shadow_march_slice)], [Some(&layouts.shadow_maps)]);
         Ok(Self {
             depth_downsample: pipeline_variants!(store, shader, depth_downsample, &frame_and_system),
             depth_resolve: pipeline_variants!(store, shader, depth_resolve, &[Some(&layouts.depth_resolve)]),
@@ -69,20 +71,8 @@ impl Pipelines {
             specular_scatter: pipeline_variants!(store, shader, specular_scatter, &lit),
             forward: pipeline_variants!(store, shader, forward, &material),
             screen_shadow: pipeline_variants!(store, shader, screen_shadow, &screen_shadow),
-            shadow_march_slice: PipelineVariants::new(
-                store,
-                "shadow_march_slice",
-                shader("shadow_march_slice")?,
-                shadow_slices::describe_march,
-                &[Some(&layouts.shadow_march_slice)],
-            ),
-            shadow_visibility_slice: PipelineVariants::new(
-                store,
-                "shadow_visibility_slice",
-                shader("shadow_visibility_slice")?,
-                shadow_slices::describe_visibility,
-                &[Some(&layouts.shadow_maps)],
-            ),
+            shadow_march_slice: pipeline_variants!(store, shader, shadow_march_slice, &march_slice),
+            shadow_visibility_slice: pipeline_variants!(store, shader, shadow_visibility_slice, &visibility_slice),
             store: store.clone(),
             tiled: match tiles_are_supported(&store.device) {
                 true => Some(TiledPipelines::new(store, layouts, &shader)?),

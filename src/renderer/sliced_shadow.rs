@@ -7,14 +7,13 @@ use super::context::Shared;
 use super::gpu::idle_counter::IdleCounter;
 use super::gpu::record::uniform_buffer;
 use super::layouts::bind_resources;
+use super::pass::VolumeSlices;
 use super::pass::shadow_march::MarchTo;
-use super::pass::shadow_slices::{ShadowSlices, Slices};
 use super::shadow_map_bindings::ShadowMapBindings;
 use super::tiled::{FrameShadow, volume};
-use crate::formula::density_grid::optical_depth_of_steps;
 use crate::formula::uniforms::{ShadowMarchUniform, SystemUniform};
 use crate::frame::{Particle, ShadowMap};
-use crate::view_setup::{SmokeShadow, density_splat};
+use crate::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 /// Bytes of a cell on the GPU: of its density, and of a texel of the volume.
 const DENSITY_BYTES: u64 = 4;
@@ -78,37 +77,32 @@ impl SlicedShadow {
         density_splat(system, particles, shadow.grid.size, &mut self.steps);
     }
 
-    /// Uploads the sums. Returns the passes that march through them.
-    pub fn march(&mut self, shared: &Shared, shadow: &SmokeShadow) -> Option<ShadowSlices<'_>> {
-        let held = self.buffers.as_ref()?;
-        let to_depth = |steps: &u64| optical_depth_of_steps(*steps as u32, (steps >> 32) as u32);
+    /// Uploads the sums. Returns the passes that march through them and look up the shadow maps.
+    pub fn march(&mut self, shared: &Shared, shadow: &SmokeShadow) -> Vec<VolumeSlices<'_>> {
+        let Some(held) = &self.buffers else { return Vec::new() };
         self.depths.clear();
-        self.depths.extend(self.steps.iter().map(to_depth));
+        self.depths.extend(cell_optical_depths(&self.steps));
         let size = shadow.grid.size;
         let extent = extent(size);
         let rows =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size.x), rows_per_image: Some(size.y) };
         shared.queue.write_texture(held.density.as_image_copy(), bytemuck::cast_slice(&self.depths), rows, extent);
         let pipelines = &shared.pipelines;
-        let slices_of = |block: u32| block * held.resolution..block * held.resolution + size.z;
-        let lights = (0..shadow.used_light_blocks()).map(|block| Slices {
-            pipeline: pipelines.shadow_march_slice.get(MarchTo::Lights),
-            inputs: held.march.clone(),
-            range: slices_of(block),
+        let of_block = |block: u32, name, pipeline, inputs: &wgpu::BindGroup| {
+            let first = block * held.resolution;
+            let slices = first..first + size.z;
+            VolumeSlices { name, pipeline, inputs: inputs.clone(), volume: &held.optical_depths, size, slices }
+        };
+        let march =
+            |block, to| of_block(block, "shadow_march_slice", pipelines.shadow_march_slice.get(to), &held.march);
+        let lights = (0..shadow.used_light_blocks()).map(|block| march(block, MarchTo::Lights));
+        let sky = shadow.has_openness.then(|| march(shadow.openness_block(), MarchTo::Sky));
+        let maps = (shadow.visibility_block()..).zip(held.maps.iter().take(shadow.used_light_blocks() as usize));
+        let visible = maps.map(|(block, maps)| {
+            let pipeline = pipelines.shadow_visibility_slice.get(());
+            of_block(block, "shadow_visibility_slice", pipeline, maps.group())
         });
-        let sky = shadow.has_openness.then(|| Slices {
-            pipeline: pipelines.shadow_march_slice.get(MarchTo::Sky),
-            inputs: held.march.clone(),
-            range: slices_of(shadow.openness_block()),
-        });
-        let maps = (0..).zip(held.maps.iter().take(shadow.used_light_blocks() as usize));
-        let visible = maps.map(|(block, maps)| Slices {
-            pipeline: pipelines.shadow_visibility_slice.get(()),
-            inputs: maps.group().clone(),
-            range: slices_of(shadow.visibility_block() + block),
-        });
-        let slices = lights.chain(sky).chain(visible).collect();
-        Some(ShadowSlices { slices, volume: &held.optical_depths, size })
+        lights.chain(sky).chain(visible).collect()
     }
 
     /// Returns the bytes of GPU memory held.

@@ -54,8 +54,8 @@ pub(crate) struct SystemState {
     frames_absent: IdleCounter,
     /// `None` if the system is out of sight.
     prepared: Option<PreparedSystem>,
-    /// Passes of a system out of sight that casts shadow.
-    hidden: Option<CasterPasses>,
+    /// A system out of sight that casts shadow.
+    hidden: Option<HiddenSystem>,
 }
 
 /// Bind group 1, and the volume that it binds.
@@ -89,6 +89,13 @@ struct PreparedSystem {
     passes: SystemPasses,
 }
 
+/// A system out of sight that casts shadow.
+#[derive(Debug)]
+struct HiddenSystem {
+    uniform: SystemUniform,
+    caster: CasterPasses,
+}
+
 /// Passes that prepare the particles and cast their shadow.
 #[derive(Debug)]
 struct CasterPasses {
@@ -96,7 +103,6 @@ struct CasterPasses {
     measure: Option<Measure>,
     particle_pass: Option<ParticlePass>,
     splat: Option<DensitySplat>,
-    uniform: SystemUniform,
 }
 
 impl SystemState {
@@ -130,7 +136,8 @@ impl SystemState {
     }
 
     fn caster(&self) -> Option<&CasterPasses> {
-        self.prepared.as_ref().map(|prepared| &prepared.caster).or(self.hidden.as_ref())
+        let in_sight = self.prepared.as_ref().map(|prepared| &prepared.caster);
+        in_sight.or(self.hidden.as_ref().map(|hidden| &hidden.caster))
     }
 
     /// Returns the copy of the number of a host's particles, if only the GPU knows it. It comes before all passes.
@@ -155,7 +162,9 @@ impl SystemState {
 
     /// Returns the particles that the CPU adds to the density grid of the frame, with the uniforms of the system.
     pub fn cast(&self) -> Option<(&SystemUniform, &[Particle])> {
-        Some((&self.caster()?.uniform, self.particles.uploaded()))
+        let in_sight = self.prepared.as_ref().map(|prepared| &prepared.setup.uniform);
+        let uniform = in_sight.or(self.hidden.as_ref().map(|hidden| &hidden.uniform))?;
+        Some((uniform, self.particles.uploaded()))
     }
 
     /// Returns this frame's choice of the path `auto`.
@@ -312,7 +321,8 @@ impl SystemState {
         };
         let Some(setup) = system_setup(view, context.host_size, &in_world) else {
             let uniform = caster_uniform(&in_world);
-            self.hidden = self.prepare_hidden(context, system, (&space, &settings, &uniform));
+            let caster = self.prepare_hidden(context, system, (&space, &settings, &uniform));
+            self.hidden = caster.map(|caster| HiddenSystem { uniform, caster });
             return None;
         };
         let trim = SpriteTrim::new(&settings, material);
@@ -357,7 +367,6 @@ impl SystemState {
                 measure,
                 particle_pass,
                 splat,
-                uniform: setup.uniform,
             },
             passes,
         })
@@ -383,7 +392,6 @@ impl SystemState {
             measure: None,
             particle_pass,
             splat,
-            uniform: *uniform,
         })
     }
 

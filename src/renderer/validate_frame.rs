@@ -4,6 +4,7 @@ use glam::UVec2;
 
 use super::auto::PathReason;
 use super::context::Shared;
+use super::gpu::capabilities::array_layers;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear_target;
 use super::targets::validate_attachments;
@@ -119,7 +120,7 @@ fn validate_shadow_map(shared: &Shared, index: usize, map: &ShadowMap<'_>) -> Re
         return refuse(problem, "a layer per matrix, from first_layer on");
     }
     // The flag is off on OpenGL.
-    if (layers < 2 || layers % 6 == 0) && !shared.read_only_depth {
+    if array_layers(layers) != layers && !shared.read_only_depth {
         let expected = "another number than 1 and the multiples of 6 on this backend (OpenGL), which takes them for no array and \
                         for cubes";
         return refuse(format!("has {layers} layers"), expected);

@@ -3,7 +3,9 @@
 
 use glam::{UVec3, Vec3};
 
-use crate::formula::density_grid::{bump_radius, cell_optical_depth, density_steps, mean_optical_depth};
+use crate::formula::density_grid::{
+    bump_radius, cell_optical_depth, density_steps, mean_optical_depth, optical_depth_of_steps,
+};
 use crate::formula::uniforms::SystemUniform;
 use crate::frame::Particle;
 
@@ -15,6 +17,11 @@ pub fn density_splat(system: &SystemUniform, particles: &[Particle], size: UVec3
         let (radius, depth) = (density_radius(system, particle), sprite_optical_depth(system, particle));
         add_sprite(size, density, centre, radius, depth);
     }
+}
+
+/// Returns the optical depths across the cells of such a grid.
+pub fn cell_optical_depths(density: &[u64]) -> impl Iterator<Item = f32> {
+    density.iter().map(|&steps| optical_depth_of_steps(steps as u32, (steps >> 32) as u32))
 }
 
 /// Half the side of the square that the density of a particle's sprite fills, in cells.

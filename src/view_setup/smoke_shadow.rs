@@ -84,8 +84,9 @@ pub struct SmokeShadow {
 }
 
 impl SmokeShadow {
-    /// `max_volume_depth`: of a 3D texture, texels. `systems`: box and settings of each system. `mapped`: indices of the lights that have shadow maps. Returns `None` if no
-    /// system receives shadow, or there is no smoke. `up`: world space, unit length.
+    /// `up`: world space, unit length. `max_volume_depth`: of a 3D texture, texels. `mapped`: indices of the lights that have
+    /// shadow maps. `systems`: box and settings of each system. Returns `None` if no system receives shadow, or there is no
+    /// smoke.
     pub fn new(
         (view, up): (&ViewGeometry, Vec3),
         max_volume_depth: u32,
@@ -272,4 +273,38 @@ fn brightest_lights(lights: &[Light], bounds: &Bounds, count: usize) -> [Option<
     let (first, further) = bright.split_at_mut(in_first_block);
     [first, further].into_iter().for_each(|lights| lights.sort_by_key(|(index, _)| *index));
     std::array::from_fn(|slot| bright.get(slot).map(|(index, _)| *index))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+    use glam::camera::rh;
+
+    use super::*;
+    use crate::assets::ramp_steps::RampSteps;
+    use crate::frame::View;
+    use crate::settings::Settings;
+    use crate::view_setup::Support;
+
+    #[test]
+    fn volumes_fit_the_deepest_texture_of_the_device() {
+        let clip_from_view = rh::proj::directx::perspective(0.8, 1.0, 0.1, 80.0);
+        let view = ViewGeometry::new(&View::new(Mat4::IDENTITY, clip_from_view, UVec2::ONE)).unwrap();
+        let mut settings = Settings::default();
+        (settings.shadow.strength, settings.shadow.by_depth, settings.shadow.resolution) = (1.0, true, 96);
+        settings.ambient.intensity = 1.0;
+        let lights = [Light::default(); SHADOWED_LIGHTS];
+        let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE };
+        for (lights_with_shadow, max_volume_depth, resolution) in
+            [(3, 2048, 96), (15, 2048, 96), (3, 256, 85), (15, 256, 23)]
+        {
+            settings.shadow.lights = lights_with_shadow;
+            let resolved = ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 1.0, &RampSteps::default(), Support::ALL);
+            let systems = [(bounds, resolved)].into_iter();
+            let shadow = SmokeShadow::new((&view, Vec3::Y), max_volume_depth, &lights, 0..1, systems).unwrap();
+            assert_eq!(shadow.resolution, resolution, "{lights_with_shadow} lights, {max_volume_depth} texels");
+            assert!(shadow.resolution * shadow.blocks() <= max_volume_depth);
+            assert!(shadow.grid.size.max_element() <= resolution);
+        }
+    }
 }

@@ -9,12 +9,10 @@ use haze::builtin;
 use haze::formula::color::srgb_from_linear;
 use haze::image::Image;
 use haze::image::{CompressionEffort, read_png, write_png};
-use haze::preset::{Preset, PresetSystem};
 use haze::settings::{DebugView, Technique};
 use haze_demo::shot::Shot;
 use image::{DynamicImage, Rgb, RgbImage};
 
-use crate::gpu::is_tiled_available;
 use crate::presets::{render_on_gpu, shot};
 
 pub const SIZE: UVec2 = UVec2::new(160, 90);
@@ -57,19 +55,10 @@ fn techniques_match_their_golden_images() {
     // depth_sprite_hard is left out: its hard edge depends on the texture filter's 8-bit weights, so single pixels
     // differ.
     for technique in [Technique::DepthSpriteSoft, Technique::SphericalBillboard, Technique::VolumetricSoft] {
-        if !draws_shadow_of("crates") {
-            return;
-        }
         let mut shot = shot("crates", SIZE);
         shot.preset.systems[0].settings.technique = technique;
         compare(&format!("crates_{}", technique.name()), &shot);
     }
-}
-
-/// True if the backend draws the shadow of a preset. The golden images have it.
-fn draws_shadow_of(preset: &str) -> bool {
-    let has_shadow = |system: &PresetSystem| system.settings.shadow.strength > 0.0;
-    is_tiled_available() || !Preset::load(preset).unwrap().systems.iter().any(has_shadow)
 }
 
 fn compare(name: &str, shot: &Shot) {
@@ -99,7 +88,7 @@ fn compare(name: &str, shot: &Shot) {
 
 #[test]
 fn presets_match_their_golden_images() {
-    for preset in builtin::PRESETS.iter().filter(|preset| draws_shadow_of(preset.name)) {
+    for preset in builtin::PRESETS {
         compare(preset.name, &shot(preset.name, SIZE));
     }
 }

@@ -11,7 +11,7 @@ use haze::settings::*;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
-use crate::gpu::{gpu, is_tiled_available};
+use crate::gpu::gpu;
 use crate::psnr::{MIN_PSNR, psnr_over};
 
 /// Loads a preset with the path `raster` in place of `auto`, whose choice depends on the machine. `tiled.rs` compares
@@ -22,15 +22,7 @@ pub fn shot(name: &str, size: UVec2) -> Shot {
         let path = &mut system.settings.path;
         *path = if *path == RenderPath::Auto { RenderPath::Raster } else { *path };
     }
-    remove_unsupported_shadow(&mut shot.preset);
     shot
-}
-
-/// Removes shadow if the backend cannot draw it.
-fn remove_unsupported_shadow(preset: &mut Preset) {
-    if !is_tiled_available() {
-        preset.systems.iter_mut().for_each(|system| system.settings.shadow.strength = 0.0);
-    }
 }
 
 /// The same shot without smoke.
@@ -106,7 +98,6 @@ fn gpu_and_cpu_agree_on_particles_from_files() {
     let cache = &mut preset.systems[0].cache;
     (cache.path, cache.up, cache.units) = ("smoke_####.ply".into(), UpAxis::Z, 0.01);
     cache.after = EndBehaviour::Loop;
-    remove_unsupported_shadow(&mut preset);
     let mut shot = Shot::new(preset, &folder.path().join("my.json"), UVec2::new(320, 180)).unwrap();
     let (psnr, seen) = agreement(&shot);
     println!("{psnr:.1} dB");
@@ -269,9 +260,7 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         shot.debug_view = stage;
         add("depth_source host", stage.name(), shot);
     }
-    // Without compute shaders, the presets of this file are drawn without shadow: its slice is empty.
-    let is_drawn = |stage: &&DebugView| **stage != DebugView::ShadowSlice || is_tiled_available();
-    for &stage in DebugView::ALL.iter().filter(is_drawn) {
+    for &stage in DebugView::ALL {
         let mut shot = with(|_| {});
         shot.debug_view = stage;
         add("shade tree", stage.name(), shot);

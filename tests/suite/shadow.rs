@@ -4,13 +4,13 @@ use glam::camera::rh;
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
 use haze::image::Image;
 use haze::settings::*;
-use haze::{AttachmentRole, Bounds, Light, LightKind, Particle};
+use haze::{AttachmentRole, Bounds, Light, LightKind, Particle, Particles};
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
 use crate::resource_counter;
 use crate::test_host::Host;
-use crate::test_scene::{BACKDROP, Change, DepthKind, TestScene, TestShadowMap};
+use crate::test_scene::{BACKDROP, Change, DepthKind, TestScene, TestShadowMap, assert_agreement_and_effect};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -78,13 +78,7 @@ fn gpu_and_cpu_draw_the_same_shadow() {
     for (name, change) in available(changes) {
         let mut scene = shaded();
         change(&mut scene);
-        let (seen, reference) = (drawn(&scene), scene.on_cpu());
-        let same = psnr(&seen, &reference);
-        scene.settings.shadow.strength = 0.0;
-        let effect = psnr(&drawn(&scene), &seen);
-        println!("{name}: {same:.1} dB, without shadow {effect:.1} dB");
-        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-        assert!(effect < 40.0, "{name}: without shadow {effect:.1} dB");
+        assert_agreement_and_effect(name, scene, |s| s.settings.shadow.strength = 0.0, 40.0);
     }
 }
 
@@ -271,14 +265,7 @@ fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
     for (name, change) in available(changes) {
         let mut scene = under_a_roof();
         change(&mut scene);
-        let (seen, reference) = (drawn(&scene), scene.on_cpu());
-        let same = psnr(&seen, &reference);
-        let mut open = scene.clone();
-        open.shadow_maps.clear();
-        let effect = psnr(&drawn(&open), &seen);
-        println!("{name}: {same:.1} dB, without map {effect:.1} dB");
-        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-        assert!(effect < 45.0, "{name}: without map {effect:.1} dB");
+        assert_agreement_and_effect(name, scene, |s| s.shadow_maps.clear(), 45.0);
     }
 }
 
@@ -288,12 +275,8 @@ fn gpu_and_cpu_draw_the_same_views_of_shadow() {
         for path in available_paths().filter(|path| *path != RenderPath::Forward) {
             let mut scene = under_a_roof();
             (scene.debug_view, scene.settings.path) = (view, path);
-            let (seen, reference) = (drawn(&scene), scene.on_cpu());
-            let same = psnr(&seen, &reference);
-            scene.settings.shadow.strength = 0.0;
-            let effect = psnr(&drawn(&scene), &seen);
-            println!("{}, {}: {same:.1} dB, without shadow {effect:.1} dB", view.name(), path.name());
-            assert!(same >= MIN_PSNR && effect < 40.0, "{}: {same:.1} dB, {effect:.1} dB", view.name());
+            let name = format!("{}, {}", view.name(), path.name());
+            assert_agreement_and_effect(&name, scene, |s| s.settings.shadow.strength = 0.0, 40.0);
         }
     }
 }
@@ -326,13 +309,7 @@ fn gpu_and_cpu_draw_the_same_shadow_of_many_lights() {
     for (name, change) in available(changes) {
         let mut scene = under_many_lights();
         change(&mut scene);
-        let (seen, reference) = (drawn(&scene), scene.on_cpu());
-        let same = psnr(&seen, &reference);
-        scene.settings.shadow.lights = 3;
-        let effect = psnr(&drawn(&scene), &seen);
-        println!("{name}: {same:.1} dB, with three lights {effect:.1} dB");
-        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-        assert!(effect < 40.0, "{name}: with three lights {effect:.1} dB");
+        assert_agreement_and_effect(name, scene, |s| s.settings.shadow.lights = 3, 40.0);
     }
 }
 
@@ -394,14 +371,22 @@ fn gpu_and_cpu_shade_the_scene_alike() {
     for (name, change) in available(changes) {
         let mut scene = over_a_lit_scene();
         change(&mut scene);
-        let (seen, reference) = (drawn(&scene), scene.on_cpu());
-        let same = psnr(&seen, &reference);
-        scene.scene_ambient = None;
-        let effect = psnr(&drawn(&scene), &seen);
-        println!("{name}: {same:.1} dB, scene not shaded {effect:.1} dB");
-        assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-        assert!(effect < 45.0, "{name}: scene not shaded {effect:.1} dB");
+        assert_agreement_and_effect(name, scene, |s| s.scene_ambient = None, 45.0);
     }
+}
+
+#[test]
+fn a_rejected_frame_does_not_shade_the_scene() {
+    let scene = over_a_lit_scene();
+    let mut host = Host::new(gpu(), &scene).unwrap();
+    host.draw(gpu(), &scene).unwrap();
+    assert!(host.picture(gpu()).unwrap().texels.iter().any(|texel| *texel != BACKDROP));
+    let rejected = TestScene { exposure: f32::NAN, ..scene };
+    let mut encoder = gpu().device.create_command_encoder(&Default::default());
+    host.prepare(&mut encoder, &rejected, Particles::Slice(&rejected.particles)).unwrap_err();
+    host.render(&mut encoder, &rejected);
+    gpu().submit(encoder).unwrap();
+    assert!(host.picture(gpu()).unwrap().texels.iter().all(|texel| *texel == BACKDROP));
 }
 
 #[test]
@@ -502,13 +487,7 @@ fn gpu_and_cpu_draw_the_same_ambient_light() {
             if !has_map {
                 scene.shadow_maps.clear();
             }
-            let seen = drawn(&scene);
-            let same = psnr(&seen, &scene.on_cpu());
-            scene.settings.ambient.intensity = 0.0;
-            let effect = psnr(&drawn(&scene), &seen);
-            println!("{name}: {same:.1} dB, without ambient light {effect:.1} dB");
-            assert!(same >= MIN_PSNR, "{name}: {same:.1} dB");
-            assert!(effect < 45.0, "{name}: without ambient light {effect:.1} dB");
+            assert_agreement_and_effect(name, scene, |s| s.settings.ambient.intensity = 0.0, 45.0);
         }
     }
 }

@@ -237,11 +237,7 @@ fn draw_light(kept: &ViewRenderer, encoder: &mut CommandEncoder, light: &LightTa
                 store: if resolve_target.is_some() { StoreOp::Discard } else { StoreOp::Store },
             },
         })],
-        depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
-            view: &depth.attachment.texture.default_view,
-            depth_ops: None,
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment: Some(read_only(depth)),
         ..Default::default()
     });
     kept.renderer.render(&mut pass);
@@ -257,14 +253,16 @@ fn shade_meshes(
     let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
         label: Some("smoke_shadow"),
         color_attachments: &[Some(target.get_color_attachment())],
-        depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
-            view: &depth.attachment.texture.default_view,
-            depth_ops: None,
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment: Some(read_only(depth)),
         ..Default::default()
     });
     kept.renderer.render_scene_shadow(&mut pass);
+}
+
+/// The view's depth, to test and to sample in one pass.
+fn read_only(depth: &ViewDepthStencilTexture) -> RenderPassDepthStencilAttachment<'_> {
+    let view = &depth.attachment.texture.default_view;
+    RenderPassDepthStencilAttachment { view, depth_ops: None, stencil_ops: None }
 }
 
 #[cfg(test)]

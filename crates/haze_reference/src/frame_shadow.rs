@@ -7,8 +7,7 @@ use super::optical_depths::OpticalDepths;
 use super::pass::shadow_march::{march_to_lights, march_to_sky};
 use super::pass::shadow_visibility::shadow_visibility;
 use super::visible_system::PlacedSystems;
-use haze::formula::density_grid::optical_depth_of_steps;
-use haze::view_setup::{SmokeShadow, density_splat};
+use haze::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 impl PlacedSystems<'_> {
     /// Computes all blocks of the volume.
@@ -35,7 +34,7 @@ impl PlacedSystems<'_> {
         let visible = self.visible.iter().map(|(_, visible)| (&visible.system, visible.particles.as_slice()));
         let hidden = self.hidden.iter().map(|(uniform, particles)| (uniform, *particles));
         visible.chain(hidden).for_each(|(system, particles)| density_splat(system, particles, size, &mut steps));
-        steps.iter().map(|&steps| optical_depth_of_steps(steps as u32, (steps >> 32) as u32)).collect()
+        cell_optical_depths(&steps).collect()
     }
 }
 

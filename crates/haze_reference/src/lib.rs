@@ -10,7 +10,6 @@ pub mod optical_depths;
 pub mod pass;
 mod probe;
 mod scene_shadow;
-mod screen_shadow;
 pub mod shade;
 pub mod sprite;
 pub mod visible_system;
@@ -27,9 +26,9 @@ use haze::view_setup::ViewGeometry;
 pub use accumulated::AccumulatedTextures;
 use accumulated::{AccumulatedTarget, LitTarget};
 pub use input::{FrameInput, ParticleSystem, ShadowMap};
+use pass::screen_shadow::ScreenShadow;
 pub use probe::{FireProbe, GlowProbe, LightProbe, Probe, ProbeTextures, ShadowProbe, SystemProbe, probe};
 pub use scene_shadow::SceneShadow;
-use screen_shadow::ScreenShadow;
 use visible_system::{VisibleSystem, place_systems};
 
 /// Frame whose shadow is computed, before its smoke is drawn.

@@ -14,8 +14,9 @@ pub(crate) mod light_target;
 pub(crate) mod measure;
 pub(crate) mod screen_shadow;
 pub(crate) mod shadow_march;
-pub(crate) mod shadow_slices;
+pub(crate) mod shadow_march_slice;
 pub(crate) mod shadow_visibility;
+pub(crate) mod shadow_visibility_slice;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;
 pub(crate) mod tile_accumulate;
@@ -26,10 +27,14 @@ pub(crate) mod tile_refine;
 pub(crate) mod transfer;
 pub(crate) mod transfer_lit;
 
-use glam::UVec2;
+use std::ops::Range;
 
+use glam::{UVec2, UVec3};
+
+use super::gpu::pipeline::{Constant, RenderPipelineDescription, color_target};
 use super::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor};
 use super::gpu::timing::Timing;
+use super::layouts::SHADOW_FORMAT;
 
 /// Bind groups 0 to 2 of a system's passes.
 #[derive(Clone, Debug)]
@@ -86,5 +91,45 @@ impl TexelPass {
         self.groups.bind_for_lighting(&mut pass);
         pass.set_bind_group(3, &self.inputs, &[]);
         pass.draw(0..3, 0..1);
+    }
+}
+
+/// A pass that computes slices of the volume of a frame's shadow: shadow_march_slice, shadow_visibility_slice.
+#[derive(Debug)]
+pub(crate) struct VolumeSlices<'a> {
+    pub name: &'static str,
+    pub pipeline: wgpu::RenderPipeline,
+    /// Group 0.
+    pub inputs: wgpu::BindGroup,
+    pub volume: &'a wgpu::TextureView,
+    /// Number of cells along each axis.
+    pub size: UVec3,
+    /// Indices along z.
+    pub slices: Range<u32>,
+}
+
+impl VolumeSlices<'_> {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        for slice in self.slices.clone() {
+            let target = color_attachment(self.volume)
+                .map(|target| wgpu::RenderPassColorAttachment { depth_slice: Some(slice), ..target });
+            let mut pass = begin_pass(encoder, self.name, &[target], None, None);
+            set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size.truncate());
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.inputs, &[]);
+            pass.draw(0..3, slice..slice + 1);
+        }
+    }
+}
+
+/// Returns the parts of a pipeline of `VolumeSlices`.
+fn volume_slice(constants: Vec<Constant>) -> RenderPipelineDescription {
+    RenderPipelineDescription {
+        buffers: &[],
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        sample_count: 1,
+        targets: vec![color_target(SHADOW_FORMAT, None)],
+        constants,
     }
 }

@@ -136,6 +136,18 @@ fn lookups() -> Vec<Formula> {
             mutants: &[("exp2(-optical_depth)", "exp2(optical_depth)"), ("0.5 - 0.5 * dot", "0.5 + 0.5 * dot")],
         },
         Formula {
+            name: "channel_of_slot",
+            file: "lib/shadow.wgsl",
+            wgsl: "y3(0, channel_of_slot(x(0)));",
+            reference: |x| shadow::channel_of_slot(x[0]).to_array().to_vec(),
+            cases: with_choices(16, &[]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("vec3f(1.0, 2.0, 3.0)", "vec3f(3.0, 2.0, 1.0)"),
+                ("max(1.0 - abs(vec3f(1.0, 2.0, 3.0) - slot), vec3f(0.0))", "1.0 - abs(vec3f(1.0, 2.0, 3.0) - slot)"),
+            ],
+        },
+        Formula {
             name: "of_slot",
             file: "lib/shadow.wgsl",
             wgsl: "y(0, of_slot(x(0), vec3f(x(1), x(2), x(3))));",

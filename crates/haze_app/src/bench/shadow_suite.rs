@@ -1,6 +1,7 @@
 //! Suite `shadow`: smoke that shades smoke, by number of lights, resolution of the grid, and path.
 
 use glam::{UVec2, Vec3};
+use haze::formula::shadow::SHADOWED_LIGHTS;
 use haze::settings::{RenderPath, Settings};
 use haze::{Error, Light, LightKind};
 use haze_demo::shot::Shot;
@@ -36,7 +37,7 @@ fn lights() -> Vec<Light> {
             Vec3::new(-3.05, 1.2, 0.5) + Vec3::new(angle.cos(), 0.4 * (angle * 0.7).sin(), angle.sin()) * 2.5;
         Light { position, intensity: 1.0, range: 50.0, specular_scatter: 0.0, ..Light::default() }
     };
-    std::iter::once(sun).chain((1..15).map(lamp)).collect()
+    std::iter::once(sun).chain((1..SHADOWED_LIGHTS as u32).map(lamp)).collect()
 }
 
 fn group(shot: &Shot, path: RenderPath, quick: bool) -> Group {

@@ -56,12 +56,14 @@ pub struct Case {
     pub work: (String, f64),
 }
 
+/// Returns a shot with the settings of all systems changed.
 pub fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
     let mut shot = shot.clone();
     shot.preset.systems.iter_mut().for_each(|system| change(&mut system.settings));
     shot
 }
 
+/// Returns a change of settings to a path and a buffer scale.
 pub fn at_scale(path: RenderPath, scale: u32) -> impl Fn(&mut Settings) {
     move |settings| (settings.path, settings.accumulate.scale) = (path, scale)
 }

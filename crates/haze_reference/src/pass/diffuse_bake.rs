@@ -44,11 +44,16 @@ impl VisibleSystem<'_> {
         shade
     }
 
-    /// Place of the smoke at a pixel, at its mean depth, in cells.
-    fn mean_place(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
+    /// Point of the smoke at a pixel at its mean depth, view space.
+    pub fn mean_position(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
         let system = &self.system;
         let depth = system.smoke_near + (system.smoke_far - system.smoke_near) * saturate(moments.x);
-        system.grid_from_view.transform_point3(self.view_position(pixel, depth))
+        self.view_position(pixel, depth)
+    }
+
+    /// The same in cells.
+    fn mean_place(&self, pixel: Vec2, moments: Vec2) -> Vec3 {
+        self.system.grid_from_view.transform_point3(self.mean_position(pixel, moments))
     }
 
     /// Openness of the smoke at a pixel to sky and ground.

@@ -6,6 +6,7 @@ mod depth_slopes;
 mod diffuse_bake;
 mod forward;
 mod light_target;
+pub mod screen_shadow;
 pub mod shadow_march;
 mod shadow_views;
 pub mod shadow_visibility;

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use crate::visible_system::VisibleSystem;
 use haze::formula::saturate;
+use haze::formula::shadow::channel_of_slot;
 use haze::formula::view::pixels_per_metre;
 use haze::view_setup::AttachmentRole;
 
@@ -13,8 +14,7 @@ const CELL_BORDER: f32 = 0.7;
 impl VisibleSystem<'_> {
     /// 1 for each channel whose light is there.
     fn channels_with_light(&self) -> Vec3 {
-        let of_slot = |slot: f32| (Vec3::ONE - (Vec3::new(1.0, 2.0, 3.0) - slot).abs()).max(Vec3::ZERO);
-        self.lights.iter().map(|light| of_slot(light.shadow_slot)).sum::<Vec3>().min(Vec3::ONE)
+        self.lights.iter().map(|light| channel_of_slot(light.shadow_slot)).sum::<Vec3>().min(Vec3::ONE)
     }
 
     /// Shares of the lights that come through smoke and past the scene. White without shadow.

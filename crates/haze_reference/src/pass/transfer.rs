@@ -161,12 +161,11 @@ impl AccumulatedTarget<'_> {
 
     /// Point of the smoke that is lit at a pixel, view space: at its mean depth, or on the plane of the system's centre.
     pub fn lit_position(&self, surface: &Surface, pixel: Vec2) -> Vec3 {
-        let (visible, system) = (self.visible, &self.visible.system);
-        let depth = match AttachmentRole::Depth.is_used(&visible.settings) {
-            true => system.smoke_near + (system.smoke_far - system.smoke_near) * saturate(surface.depth.x),
-            false => -system.centre.z,
-        };
-        visible.view_position(pixel, depth)
+        let visible = self.visible;
+        match AttachmentRole::Depth.is_used(&visible.settings) {
+            true => visible.mean_position(pixel, surface.depth),
+            false => visible.view_position(pixel, -visible.system.centre.z),
+        }
     }
 
     /// `surface_from_accumulation()` in lit_smoke.wgsl.

@@ -2,9 +2,9 @@
 
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use super::input::FrameInput;
-use super::pass::shadow_visibility::map_visibility;
-use super::scene_shadow::SceneShadow;
+use super::shadow_visibility::map_visibility;
+use crate::input::FrameInput;
+use crate::scene_shadow::SceneShadow;
 use haze::assets::image::Image;
 use haze::formula::depth::{SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
 use haze::formula::lighting::sample_light;
