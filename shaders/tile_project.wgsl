@@ -37,11 +37,11 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     let radius = placed.centre_radius.w;
     var sprite: TileSprite;
     sprite.centre_radius = placed.centre_radius;
-    let lod = placed.amount_lod_frame_age.y;
-    let frames = animation_frames(SPRITE_ANIMATION, placed.amount_lod_frame_age.z, system.frame_count);
-    sprite.amount = placed.amount_lod_frame_age.x;
+    let lod = placed.amount_lod_frame_erosion.y;
+    let frames = animation_frames(SPRITE_ANIMATION, placed.amount_lod_frame_erosion.z, system.frame_count);
+    sprite.amount = placed.amount_lod_frame_erosion.x;
     sprite.frames_lod = packed_frames(frames, lod);
-    sprite.blend = frames.blend;
+    sprite.blend_erosion = packed_blend(frames.blend, placed.amount_lod_frame_erosion.w);
     sprite.filled = filled_cells(frames, lod);
 
     var low: vec2f;

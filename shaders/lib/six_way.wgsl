@@ -38,6 +38,14 @@ struct SixWay {
     negative: vec3f,
 }
 
+// Response of a sprite whose surface is tilted to the right and up. It is brighter from the sides that it turns to.
+fn tilted_six_way(light: SixWay, tilt: vec2f) -> SixWay {
+    return SixWay(
+        light.positive * max(1.0 + vec3f(tilt, 0.0), vec3f(0.0)),
+        light.negative * max(1.0 - vec3f(tilt, 0.0), vec3f(0.0)),
+    );
+}
+
 // Rotates the response of a sprite with the sprite. `rotation` is (cos, sin), counter-clockwise. Each side becomes the
 // six_way_response() of the unrotated sprite to light from that side.
 fn rotate_six_way(positive: vec3f, negative: vec3f, rotation: vec2f) -> SixWay {

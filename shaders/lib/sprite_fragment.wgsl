@@ -14,6 +14,8 @@ override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
 override LINEAR_DEPTH: bool = false;
 // True: the hardware has already rejected fragments behind the scene.
 override DEPTH_TESTED: bool = false;
+// True: the target has the resolution of the view.
+override FULL_RESOLUTION: bool = false;
 
 struct SpriteFragment {
     // View space, about unit length.
@@ -87,14 +89,14 @@ fn host_view_depth(texel: f32) -> f32 {
 
 // Frames that a rasterized fragment shows.
 fn fragment_frames(in: SpriteVertex) -> FlipbookFrames {
-    return animation_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
+    return animation_frames(SPRITE_ANIMATION, in.amount_lod_frame_erosion.z, system.frame_count);
 }
 
 fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {
     if is_sphere() {
         return sphere_fragment(in, frames, scene);
     }
-    var amount = in.amount_lod_frame_age.x;
+    var amount = in.amount_lod_frame_erosion.x;
     let view_depth = -in.centre_radius.z;
     let radius = in.centre_radius.w;
 
@@ -102,7 +104,7 @@ fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> S
     var motion = vec2f(0.0);
     let is_depth_sprite = TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_HARD || TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_SOFT;
     if is_depth_sprite || MOTION {
-        let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);
+        let lod = max(in.amount_lod_frame_erosion.y - system.detail_lod, 0.0);
         let texel = sample_detail(detail, linear_sampler, in.uv, frames, lod);
         motion = texel.yz * system.motion;
         if is_depth_sprite {
@@ -138,14 +140,47 @@ fn fade_before(scene: f32, view_depth: f32) -> f32 {
     return soft_fade(FADE_CURVE, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon);
 }
 
+// Grain at a position on a sprite: see sample_grain().
+fn grain_of(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames) -> vec3f {
+    let distance = mix(max(-in.centre_radius.z, view.near), 1.0, view.orthographic);
+    let scale = select(f32(system.scale), 1.0, FULL_RESOLUTION);
+    let fineness = system.grain_fineness * scale * distance / in.centre_radius.w;
+    let phase = (f32(frames.first) + frames.blend) / system.frame_count;
+    return sample_grain(noise, repeat_sampler, uv, phase, system.grain_tiles, fineness, GRAIN_OCTAVES);
+}
+
 // Values of the sprite's image at a position, rotated with the sprite.
 fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec2f) -> SpriteFragment {
-    let lod = in.amount_lod_frame_age.y;
+    var grain = vec3f(0.0);
+    if GRAIN_OCTAVES > 0u {
+        grain = grain_of(in, uv, frames);
+    }
+    let tilt = grain.xy * system.grain_bump;
+    var fragment = clean_texel(in, uv, frames, motion, tilt);
+    if GRAIN_OCTAVES > 0u {
+        fragment.amount = eroded(fragment.amount, grain.z, in.amount_lod_frame_erosion.w);
+        fragment.thickness = fragment.amount;
+    }
+    return fragment;
+}
+
+// The same without erosion. `tilt`: of the normals, by the grain.
+fn clean_texel(
+    in: SpriteVertex,
+    uv: vec2f,
+    frames: FlipbookFrames,
+    motion: vec2f,
+    tilt: vec2f,
+) -> SpriteFragment {
+    let lod = in.amount_lod_frame_erosion.y;
     if SIX_WAY {
         let count = i32(system.frame_count);
         let positive = sample_flipbook(sprite, linear_sampler, uv, offset_frames(frames, count), motion, lod);
         let negative = sample_flipbook(sprite, linear_sampler, uv, offset_frames(frames, 2 * count), motion, lod);
-        let light = SixWay(six_way_from_texel(positive.rgb), six_way_from_texel(negative.rgb));
+        var light = SixWay(six_way_from_texel(positive.rgb), six_way_from_texel(negative.rgb));
+        if GRAIN_OCTAVES > 0u {
+            light = tilted_six_way(light, tilt);
+        }
         let turned = rotate_six_way(light.positive, light.negative, in.rotation);
         return SpriteFragment(vec3f(0.0, 0.0, 1.0), turned, positive.a, positive.a, false);
     }
@@ -153,7 +188,11 @@ fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec
     if !DEBUG_SPRITE {
         texel = sample_sprite(sprite, linear_sampler, uv, frames, motion, lod);
     }
-    var normal = rotate_normal(texel.xyz, in.rotation);
+    var normal = texel.xyz;
+    if GRAIN_OCTAVES > 0u {
+        normal = tilted_normal(normal, tilt);
+    }
+    normal = rotate_normal(normal, in.rotation);
     if STRETCH {
         normal = stretched_normal(normal, in.stretch);
     }
@@ -173,7 +212,7 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
     if stretch <= 0.0 || dot(interval.axis, interval.axis) >= radius * radius {
         return HIDDEN;
     }
-    let amount = in.amount_lod_frame_age.x;
+    let amount = in.amount_lod_frame_erosion.x;
     if is_volumetric() {
         return volumetric_fragment(in, scene, origin, along, interval);
     }
@@ -181,7 +220,7 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
     let place = unrotate(interval.axis.xy, in.rotation) / radius;
     var motion = vec2f(0.0);
     if MOTION {
-        let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);
+        let lod = max(in.amount_lod_frame_erosion.y - system.detail_lod, 0.0);
         motion = sample_detail(detail, linear_sampler, sprite_uv(place), frames, lod).yz * system.motion;
     }
     var fragment = sprite_texel(in, sprite_uv(place), frames, motion);
@@ -205,7 +244,7 @@ fn volumetric_fragment(
         view.view_from_world[2].xyz,
     ));
     let step = (interval.leave - interval.enter) / f32(system.march_steps);
-    let opacity = system.volume_opacity * in.amount_lod_frame_age.x * step;
+    let opacity = system.volume_opacity * in.amount_lod_frame_erosion.x * step;
     var normal = vec3f(0.0);
     var transmittance = 1.0;
     for (var i = 0u; i < system.march_steps; i++) {

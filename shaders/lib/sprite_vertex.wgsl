@@ -4,6 +4,7 @@
 
 #import "lib/bindings.wgsl"
 #import "lib/density_grid.wgsl"
+#import "lib/grain.wgsl"
 #import "lib/particle.wgsl"
 #import "lib/ramp.wgsl"
 #import "lib/shadow.wgsl"
@@ -22,8 +23,8 @@ struct SpriteVertex {
     @location(0) uv: vec2f,
     // View space. Squares: the point on the sprite. Spheres: a point on the ray through the pixel, at view depth 1.
     @location(1) view_position: vec3f,
-    // Amount after near fade and opacity, mip level, frame, age.
-    @location(2) @interpolate(flat, either) amount_lod_frame_age: vec4f,
+    // Amount after near fade and opacity, mip level, frame, and erosion by the grain.
+    @location(2) @interpolate(flat, either) amount_lod_frame_erosion: vec4f,
     // View space.
     @location(3) @interpolate(flat, either) centre_radius: vec4f,
     // Cosine and sine of the rotation.
@@ -50,6 +51,8 @@ override FIRE: bool = false;
 override TINT: bool = false;
 // True if sprites are stretched along their motion.
 override STRETCH: bool = false;
+// Octaves of the noise of the grain; 0 for no grain.
+override GRAIN_OCTAVES: u32 = 0u;
 
 // True for techniques whose sprites are spheres.
 fn is_sphere() -> bool {
@@ -108,10 +111,15 @@ fn has_values() -> bool {
 struct ProjectedSprite {
     hidden: bool,
     centre_radius: vec4f,
-    amount_lod_frame_age: vec4f,
+    amount_lod_frame_erosion: vec4f,
     rotation: vec2f,
     stretch: vec2f,
     values: SpriteValues,
+}
+
+// Erosion of a particle's sprite at an age.
+fn erosion_of(age: f32) -> f32 {
+    return sprite_erosion(system.grain_erosion, system.grain_dissolve, age);
 }
 
 // Half the side of the square that the density of a particle's sprite fills, in cells.
@@ -122,7 +130,8 @@ fn density_radius(particle: Particle) -> f32 {
 // Mean optical depth over that square, as it casts shadow.
 fn sprite_optical_depth(particle: Particle) -> f32 {
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity;
-    let depth = mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
+    let kept = kept_share(system.peak_alpha, erosion_of(particle.rotation_amount_frame_age.w));
+    let depth = kept * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
     return system.shadow_density * depth / (system.density_reach * system.density_reach);
 }
 
@@ -199,7 +208,7 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
     return ProjectedSprite(
         !shown,
         vec4f(centre, radius),
-        vec4f(amount, lod, shown_frame, age),
+        vec4f(amount, lod, shown_frame, erosion_of(age)),
         vec2f(cos(angle), sin(angle)),
         stretch,
         SpriteValues(
@@ -247,7 +256,7 @@ fn sprite_vertex(
         return out;
     }
     out.centre_radius = sprite.centre_radius;
-    out.amount_lod_frame_age = sprite.amount_lod_frame_age;
+    out.amount_lod_frame_erosion = sprite.amount_lod_frame_erosion;
     out.rotation = sprite.rotation;
     out.weight = 1.0;
     out.depths_and_heat = sprite.values.depths_and_heat;
@@ -261,8 +270,8 @@ fn sprite_vertex(
         clip = vec4f(ndc, 0.0, 1.0);
         out.view_position = view_position(ndc * view.ray_scale + view.ray_offset, 1.0, view.orthographic);
     } else {
-        let frames = animation_frames(SPRITE_ANIMATION, out.amount_lod_frame_age.z, system.frame_count);
-        let place = trimmed_corner(corner, trimmed_extent(frames, out.amount_lod_frame_age.y));
+        let frames = animation_frames(SPRITE_ANIMATION, out.amount_lod_frame_erosion.z, system.frame_count);
+        let place = trimmed_corner(corner, trimmed_extent(frames, out.amount_lod_frame_erosion.y));
         var turned = vec2f(
             place.x * out.rotation.x - place.y * out.rotation.y,
             place.x * out.rotation.y + place.y * out.rotation.x,

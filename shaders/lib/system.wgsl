@@ -99,4 +99,10 @@ struct System {
     // Time for which the shutter is open, seconds, and the largest length, in lengths of the sprite at rest.
     stretch: f32,
     stretch_limit: f32,
+    grain_erosion: f32,
+    grain_dissolve: f32,
+    grain_bump: f32,
+    grain_tiles: f32,
+    // Texels of the noise per pixel, on a sprite whose radius is 1 at a view depth of 1.
+    grain_fineness: f32,
 }

@@ -20,10 +20,10 @@ struct TileSprite {
     centre_radius: vec4f,
     amount: f32,
     weight: f32,
-    // Both frames and the mip level, and the weight of the second frame. Computing them per texel took a sixteenth of
-    // the traversal.
+    // Both frames and the mip level. Computing them per texel took a sixteenth of the traversal.
     frames_lod: u32,
-    blend: f32,
+    // Weight of the second frame; with grain, pack2x16unorm() of that and the erosion.
+    blend_erosion: u32,
     rotation: vec2f,
     // Cells of the sprite image, 8 by 8, that are not fully transparent: one byte per row, from the top.
     filled: vec2u,
@@ -35,7 +35,21 @@ fn packed_frames(frames: FlipbookFrames, lod: f32) -> u32 {
 }
 
 fn frames_of(sprite: TileSprite) -> FlipbookFrames {
-    return FlipbookFrames(i32(sprite.frames_lod & 0xfffu), i32((sprite.frames_lod >> 12u) & 0xfffu), sprite.blend);
+    return FlipbookFrames(i32(sprite.frames_lod & 0xfffu), i32((sprite.frames_lod >> 12u) & 0xfffu), blend_and_erosion(sprite).x);
+}
+
+fn packed_blend(blend: f32, erosion: f32) -> u32 {
+    if GRAIN_OCTAVES == 0u {
+        return bitcast<u32>(blend);
+    }
+    return pack2x16unorm(vec2f(blend, erosion));
+}
+
+fn blend_and_erosion(sprite: TileSprite) -> vec2f {
+    if GRAIN_OCTAVES == 0u {
+        return vec2f(bitcast<f32>(sprite.blend_erosion), 0.0);
+    }
+    return unpack2x16unorm(sprite.blend_erosion);
 }
 
 fn lod_of(sprite: TileSprite) -> f32 {
@@ -122,7 +136,7 @@ fn fragment_of(sprite: TileSprite, texel: vec2f, ray: vec2f, uv: vec2f) -> Sprit
     var out: SpriteVertex;
     out.position = vec4f(texel, 0.0, 1.0);
     out.centre_radius = sprite.centre_radius;
-    out.amount_lod_frame_age = vec4f(sprite.amount, lod_of(sprite), 0.0, 0.0);
+    out.amount_lod_frame_erosion = vec4f(sprite.amount, lod_of(sprite), 0.0, blend_and_erosion(sprite).y);
     out.rotation = sprite.rotation;
     out.weight = sprite.weight;
     if is_sphere() {

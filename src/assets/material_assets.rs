@@ -97,6 +97,7 @@ impl MaterialAssets {
                 frame_count: detail.frame_count(),
                 lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
             }),
+            noise_size: self.noise.size() as f32,
             six_way: self.six_way.as_ref().map(|maps| (maps.size(), maps.frame_count())),
             density: SpriteDensity::new(&self.sprite),
             zonal: zonal(&self.diffuse_ramp),
@@ -125,6 +126,8 @@ pub struct MaterialInfo {
     pub frame_count: f32,
     /// The detail map, if there is one.
     pub detail: Option<DetailInfo>,
+    /// Texels of the noise along each side.
+    pub noise_size: f32,
     /// Frame size in texels and frame count of the six-way maps.
     pub six_way: Option<(u32, u32)>,
     /// Density of the sprite, for shadow.

@@ -11,6 +11,7 @@ pub mod diffuse_bake;
 pub mod emitter;
 pub mod fire;
 pub mod gradient_noise;
+pub mod grain;
 pub mod hash;
 pub mod lighting;
 pub mod noise_volume;

@@ -48,6 +48,15 @@ pub fn six_way_response(positive: Vec3, negative: Vec3, to_light: Vec3, anisotro
     six_way_axis_weights(to_light, anisotropy).dot(Vec3::select(to_light.cmpgt(Vec3::ZERO), positive, negative))
 }
 
+/// Response of a sprite whose surface is tilted to the right and up. It is brighter from the sides that it turns to.
+pub fn tilted_six_way(light: SixWay, tilt: Vec2) -> SixWay {
+    let tilt = tilt.extend(0.0);
+    SixWay {
+        positive: light.positive * (1.0 + tilt).max(Vec3::ZERO),
+        negative: light.negative * (1.0 - tilt).max(Vec3::ZERO),
+    }
+}
+
 /// Rotates the response of a sprite with the sprite. `rotation` is (cos, sin), counter-clockwise. Each side becomes the
 /// [`six_way_response`] of the unrotated sprite to light from that side.
 pub fn rotate_six_way(positive: Vec3, negative: Vec3, rotation: Vec2) -> SixWay {

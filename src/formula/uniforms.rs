@@ -129,6 +129,12 @@ uniform! {
         tint: f32,
         stretch: f32,
         stretch_limit: f32,
+        grain_erosion: f32,
+        grain_dissolve: f32,
+        grain_bump: f32,
+        grain_tiles: f32,
+        grain_fineness: f32,
+        padding: [f32; 3],
     }
 }
 

@@ -28,6 +28,7 @@ pub(crate) struct SpriteKey {
     fire: bool,
     tint: bool,
     stretch: bool,
+    grain_octaves: u32,
     ramp_filter: RampFilter,
 }
 
@@ -48,6 +49,7 @@ impl SpriteKey {
             fire: settings.burns(),
             tint: settings.is_tinted(),
             stretch: settings.is_stretched(),
+            grain_octaves: settings.grain_octaves(),
             ramp_filter: settings.ramp_filter,
         }
     }
@@ -84,6 +86,7 @@ impl SpriteKey {
             bool_constant("FIRE", self.fire),
             bool_constant("TINT", self.tint),
             bool_constant("STRETCH", self.stretch),
+            ("GRAIN_OCTAVES", f64::from(self.grain_octaves)),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
         ];
         shared.into_iter().chain(of_pass).collect()

@@ -34,7 +34,7 @@ pub use scale_budget::{Budget, ScaleBudget};
 pub(crate) use settings_macro::settings;
 pub use shadow::Shadow;
 pub use soft_fade::{FadeCurve, SoftFade};
-pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
+pub use technique::{Density, Grain, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
 pub use traversal::{FieldRef, FieldValue, PathStep, field_path, field_values, for_each_field};
 
 choice! {
@@ -152,6 +152,8 @@ settings! {
         ramp_filter: RampFilter = RampFilter::default(), choice;
         /// Size and animation of sprites.
         sprite: SpriteSettings = SpriteSettings::default(), group;
+        /// Noise that is finer than the texels of the sprite.
+        grain: Grain = Grain::default(), group;
         /// Accumulation of sprites into normal and amount.
         accumulate: Accumulate = Accumulate::default(), group;
         /// Fade of sprites near the scene and near the camera.
@@ -232,6 +234,14 @@ impl Settings {
     /// True if sprites are stretched along their motion.
     pub fn is_stretched(&self) -> bool {
         self.sprite.stretch > 0.0 && self.sprite.stretch_limit > 1.0 && !self.technique.is_sphere()
+    }
+
+    /// Octaves of the noise that gives sprites their grain; 0 without grain.
+    pub fn grain_octaves(&self) -> u32 {
+        let Grain { erosion, dissolve, bump, octaves, .. } = self.grain;
+        let is_shown = erosion > 0.0 || dissolve > 0.0 || bump > 0.0;
+        let has_image = !self.technique.is_volumetric() && !self.sprite.debug_sprite;
+        if is_shown && has_image { octaves } else { 0 }
     }
 
     /// `fire.crust`, or 0 with six-way maps, which have no normals.

@@ -113,6 +113,24 @@ impl SpriteSettings {
 }
 
 settings! {
+    /// Noise that is finer than the texels of the sprite: it tears outlines, and roughens the light.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Grain {
+        /// Noise that eats the thin parts of sprites: outlines break into wisps. 0: none. 1: only the thickest parts stay whole.
+        erosion: f32 = 0.0, number(0.0..=1.0, "");
+        /// The same, by the end of a particle's life, added to `erosion`: smoke tears apart as it fades.
+        dissolve: f32 = 0.0, number(0.0..=1.0, "");
+        /// Lumps on the sprite: the noise tilts its normals, or shifts the light of its six-way maps. 0: none.
+        bump: f32 = 0.0, number(0.0..=4.0, "");
+        /// Tiles of the noise across a sprite. Higher: finer. What is finer than the target's texels fades out.
+        tiles: f32 = 3.0, number(0.25..=32.0, "");
+        /// Octaves of the noise. Each has three times the frequency and half the weight of the one before, and costs a lookup. One is
+        /// enough at half scale.
+        octaves: u32 = 1, integer(1..=3, "");
+    }
+}
+
+settings! {
     /// Settings of the technique `spherical_billboard`.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SphericalBillboard {

@@ -6,6 +6,7 @@ use glam::{UVec3, Vec3};
 use crate::formula::density_grid::{
     bump_radius, cell_optical_depth, density_steps, mean_optical_depth, optical_depth_of_steps,
 };
+use crate::formula::grain::{kept_share, sprite_erosion};
 use crate::formula::uniforms::SystemUniform;
 use crate::frame::Particle;
 
@@ -24,6 +25,11 @@ pub fn cell_optical_depths(density: &[u64]) -> impl Iterator<Item = f32> {
     density.iter().map(|&steps| optical_depth_of_steps(steps as u32, (steps >> 32) as u32))
 }
 
+/// Erosion of a particle's sprite.
+pub fn erosion_of(system: &SystemUniform, particle: &Particle) -> f32 {
+    sprite_erosion(system.grain_erosion, system.grain_dissolve, particle.age)
+}
+
 /// Half the side of the square that the density of a particle's sprite fills, in cells.
 pub fn density_radius(system: &SystemUniform, particle: &Particle) -> f32 {
     particle.radius * system.size * system.density_reach * system.cells_per_metre
@@ -32,7 +38,8 @@ pub fn density_radius(system: &SystemUniform, particle: &Particle) -> f32 {
 /// Mean optical depth over that square, as it casts shadow.
 pub fn sprite_optical_depth(system: &SystemUniform, particle: &Particle) -> f32 {
     let amount = particle.shown_amount() * system.opacity;
-    let depth = mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
+    let kept = kept_share(system.peak_alpha, erosion_of(system, particle));
+    let depth = kept * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
     system.shadow_density * depth / (system.density_reach * system.density_reach)
 }
 

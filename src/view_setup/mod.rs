@@ -18,7 +18,7 @@ mod view_geometry;
 mod view_lights;
 
 pub use attachment_role::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
-pub use density_splat::{cell_optical_depths, density_radius, density_splat, sprite_optical_depth};
+pub use density_splat::{cell_optical_depths, density_radius, density_splat, erosion_of, sprite_optical_depth};
 pub use drawing_order::DrawingOrder;
 pub use lighting_choice::LightingChoice;
 pub use optical_depth::optical_depth;

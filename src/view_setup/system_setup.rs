@@ -15,6 +15,7 @@ use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::diffuse_bake::add_light;
 use crate::formula::lighting::{backlight_weight, direction_to_viewer, sample_light};
 use crate::formula::uniforms::{LightUniform, SystemUniform};
+use crate::formula::view::pixels_per_metre;
 use crate::frame::{Bounds, Particle};
 use crate::settings::{Backlight, BlendOrder, DepthSource, DiffuseMode, Settings};
 
@@ -123,6 +124,10 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         tint: settings.sprite.tint,
         stretch: if settings.is_stretched() { settings.sprite.stretch } else { 0.0 },
         stretch_limit: settings.sprite.stretch_limit,
+        grain_bump: settings.grain.bump,
+        grain_tiles: settings.grain.tiles,
+        grain_fineness: settings.grain.tiles * material.noise_size
+            / (2.0 * pixels_per_metre(view.size.y as f32, view.ray_scale.y, 1.0, 0.0)),
         detail_lod: material.detail.map_or(0.0, |detail| detail.lod),
         billboard_radius: settings.spherical_billboard.radius,
         billboard_density: settings.spherical_billboard.density,
@@ -160,6 +165,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
 /// Uniforms of a system that only casts shadow: what density_splat reads.
 pub fn caster_uniform(system: &SystemInput<'_>) -> SystemUniform {
     let SystemInput { space, settings, material, shadow, .. } = *system;
+    let has_grain = settings.grain_octaves() > 0;
     SystemUniform {
         view_from_particles: space.view_from_particles,
         opacity: settings.accumulate.opacity,
@@ -172,6 +178,8 @@ pub fn caster_uniform(system: &SystemInput<'_>) -> SystemUniform {
         grid_size: shadow.map_or(Vec3::ONE, |shadow| shadow.grid.size.as_vec3()),
         cells_per_metre: shadow.map_or(1.0, |shadow| shadow.grid.cells_per_metre()),
         shadow_density: settings.shadow.density,
+        grain_erosion: if has_grain { settings.grain.erosion } else { 0.0 },
+        grain_dissolve: if has_grain { settings.grain.dissolve } else { 0.0 },
         ..SystemUniform::default()
     }
 }

@@ -148,6 +148,8 @@ fn stages() -> Vec<TestScene> {
         |s| (s.shadow.strength, s.shadow.by_depth, s.ambient.intensity) = (0.7, true, 1.0);
     let burning: fn(&mut Settings) = |s| (s.fire.intensity, s.ambient.intensity) = (2.0, 1.0);
     let stretched: fn(&mut Settings) = |s| (s.sprite.stretch, s.sprite.stretch_limit) = (2.0, 1.6);
+    let grainy: fn(&mut Settings) =
+        |s| s.grain = Grain { erosion: 0.5, dissolve: 0.0, bump: 0.7, tiles: 0.25, octaves: 1 };
     vec![
         scene(Technique::Soft, RenderPath::Raster, burning),
         scene(Technique::Soft, RenderPath::Raster, nothing),
@@ -157,6 +159,7 @@ fn stages() -> Vec<TestScene> {
         scene(Technique::Soft, RenderPath::Raster, tested),
         scene(Technique::Soft, RenderPath::Raster, six_way),
         scene(Technique::Soft, RenderPath::Raster, stretched),
+        scene(Technique::Soft, RenderPath::Raster, grainy),
         scene(Technique::SphericalBillboard, RenderPath::Raster, nothing),
         scene(Technique::Density, RenderPath::Raster, nothing),
         scene(Technique::VolumetricSoft, RenderPath::Raster, nothing),

@@ -15,6 +15,7 @@ mod emitter;
 mod fire;
 mod fixture;
 mod gradient_noise;
+mod grain;
 mod hash;
 mod inputs;
 mod lighting;
@@ -75,6 +76,7 @@ fn formulas() -> Vec<Formula> {
         emitter::formulas(),
         fire::formulas(),
         gradient_noise::formulas(),
+        grain::formulas(),
         hash::formulas(),
         lighting::formulas(),
         lit_smoke::formulas(),
@@ -244,6 +246,10 @@ const INDIRECT: &[(&str, &str)] = &[
     ("has_values", "decides only whether a buffer is read; tests of the tiled path cover it"),
     ("tint_of", "calls sample_ramp; whole frames with colors cover it"),
     ("stretch_of", "calls sprite_stretch; project_sprite covers it"),
+    ("erosion_of", "calls sprite_erosion with the system's settings"),
+    ("grain_of", "calls sample_grain; sprite_texel covers it"),
+    ("clean_texel", "sprite_texel covers it"),
+    ("blend_and_erosion", "packed_blend covers it"),
     ("load_particle", "reads the particles of the pass"),
     ("values_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
     ("values_of", "reads a buffer; tests of the tiled path with shadow cover it"),

@@ -5,12 +5,13 @@ use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 use super::visible_system::VisibleSystem;
 use haze::formula::depth_moments::depth_moments;
 use haze::formula::fire::heat_at;
+use haze::formula::grain::{eroded, sample_grain, tilted_normal};
 use haze::formula::lighting::painted_share;
 use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use haze::formula::normal::rotate_normal;
 use haze::formula::order::{optical_depth_in_front, order_weight};
 use haze::formula::shadow::{foreign_optical_depths, own_optical_depth};
-use haze::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel};
+use haze::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel, tilted_six_way};
 use haze::formula::soft_fade::soft_fade;
 use haze::formula::sprite::{
     FlipbookFrames, checkerboard, offset_frames, sample_detail, sample_flipbook, sample_sprite, sprite_uv,
@@ -23,7 +24,7 @@ use haze::formula::technique::{
 };
 use haze::frame::Particle;
 use haze::settings::{BlendOrder, Technique};
-use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid, density_radius, sprite_optical_depth};
+use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid, density_radius, erosion_of, sprite_optical_depth};
 
 /// Sprite in view space.
 pub struct SpriteSetup {
@@ -47,6 +48,10 @@ pub struct SpriteSetup {
     pub reach: Vec4,
     /// Share of the particle's life that has passed.
     pub age: f32,
+    /// Erosion by the grain.
+    pub erosion: f32,
+    /// Texels of the grain's first octave per texel of the target.
+    pub fineness: f32,
     /// Optical depths of the smoke before the sprite, towards the lights with shadow.
     pub optical_depths: Vec3,
     /// Heat, 0 to 1.
@@ -128,6 +133,8 @@ impl VisibleSystem<'_> {
             frames,
             reach: projector.trimmed_extent(&sprite),
             age: particle.age,
+            erosion: erosion_of(&self.system, particle),
+            fineness: self.fineness_of(radius, view_depth, texels_per_pixel),
             optical_depths: self.optical_depths_of(particle, centre),
             heat: self.heat_of(particle),
             tint: self.tint_of(particle),
@@ -145,6 +152,12 @@ impl VisibleSystem<'_> {
         };
         let own = own_optical_depth(density_radius(system, particle), sprite_optical_depth(system, particle));
         foreign_optical_depths(depths.sample(0, system.grid_from_view.transform_point3(centre)), own)
+    }
+
+    /// Texels of the grain's first octave per texel of the target, on a sprite of this radius.
+    pub fn fineness_of(&self, radius: f32, view_depth: f32, texels_per_pixel: f32) -> f32 {
+        let distance = if self.view.orthographic > 0.5 { 1.0 } else { view_depth.max(self.view.near) };
+        self.system.grain_fineness * distance / (texels_per_pixel * radius)
     }
 
     /// Heat of a particle.
@@ -267,14 +280,34 @@ impl VisibleSystem<'_> {
         }
     }
 
+    /// Grain at a position on a sprite: see [`sample_grain`].
+    pub fn grain_of(&self, sprite: &SpriteSetup, uv: Vec2) -> Vec3 {
+        let (system, frames) = (&self.system, sprite.frames);
+        let phase = (frames.first as f32 + frames.blend) / system.frame_count;
+        let octaves = self.settings.grain_octaves();
+        sample_grain(&self.material.noise, uv, phase, system.grain_tiles, sprite.fineness, octaves)
+    }
+
     /// Values of the sprite's image at a position, rotated with the sprite.
     pub fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> SpriteFragment {
+        if self.settings.grain_octaves() == 0 {
+            return self.clean_texel(sprite, uv, motion, Vec2::ZERO);
+        }
+        let grain = self.grain_of(sprite, uv);
+        let texel = self.clean_texel(sprite, uv, motion, grain.xy() * self.system.grain_bump);
+        let amount = eroded(texel.amount, grain.z, sprite.erosion);
+        SpriteFragment { amount, thickness: amount, ..texel }
+    }
+
+    /// The same without erosion. `tilt`: of the normals, by the grain.
+    fn clean_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2, tilt: Vec2) -> SpriteFragment {
         let SpriteSetup { frames, lod, rotation, .. } = *sprite;
         if let Some(maps) = self.material.six_way.as_ref().filter(|_| self.settings.is_six_way()) {
             let negative = offset_frames(frames, self.system.frame_count as i32);
             let [positive, negative] = [frames, negative].map(|frames| sample_flipbook(maps, uv, frames, motion, lod));
             let [of_positive, of_negative] = [positive, negative].map(|texel| six_way_from_texel(texel.xyz()));
-            let six_way = rotate_six_way(of_positive, of_negative, rotation);
+            let tilted = tilted_six_way(SixWay { positive: of_positive, negative: of_negative }, tilt);
+            let six_way = rotate_six_way(tilted.positive, tilted.negative, rotation);
             return SpriteFragment { normal: Vec3::Z, six_way, amount: positive.w, thickness: positive.w };
         }
         let texel = if self.settings.sprite.debug_sprite {
@@ -283,7 +316,7 @@ impl VisibleSystem<'_> {
             sample_sprite(&self.material.sprite, uv, frames, motion, lod)
         };
         SpriteFragment {
-            normal: stretched_normal(rotate_normal(texel.xyz(), rotation), sprite.stretch),
+            normal: stretched_normal(rotate_normal(tilted_normal(texel.xyz(), tilt), rotation), sprite.stretch),
             six_way: SixWay::default(),
             amount: texel.w,
             thickness: texel.w,

@@ -51,6 +51,7 @@ pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
             enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
             enum_constant!("BACKLIGHT", key.backlight),
             bool_constant("AMBIENT", key.ambient),
+            bool_constant("FULL_RESOLUTION", true),
         ]),
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec2;
 use haze::formula::six_way;
 
 use super::Formula;
-use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v3};
+use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v2, v3};
 
 /// Ranges of the inputs: brightness under light from each of six sides, direction to the light, anisotropy.
 const SIX_WAY_AND_LIGHT: [(f32, f32); 10] = {
@@ -87,6 +87,26 @@ fn rotations() -> Vec<Formula> {
                 ("select(negative.xy, positive.xy, turned.x)", "positive.xy"),
                 ("select(positive.yx, negative.yx, turned.y)", "negative.yx"),
                 ("squares.y, positive.z)", "squares.y, negative.z)"),
+            ],
+        },
+        Formula {
+            name: "tilted_six_way",
+            file: "lib/six_way.wgsl",
+            wgsl: "let v = tilted_six_way(SixWay(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))), vec2f(x(6), x(7))); \
+                   y3(0, v.positive); y3(3, v.negative);",
+            reference: |x| {
+                let light = six_way::SixWay { positive: v3(x), negative: v3(&x[3..]) };
+                let tilted = six_way::tilted_six_way(light, v2(&x[6..]));
+                [tilted.positive.to_array(), tilted.negative.to_array()].concat()
+            },
+            cases: random(
+                60,
+                &[(0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (-2.0, 2.0), (-2.0, 2.0)],
+            ),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("1.0 + vec3f(tilt, 0.0)", "1.0 - vec3f(tilt, 0.0)"),
+                ("max(1.0 - vec3f(tilt, 0.0), vec3f(0.0))", "(1.0 - vec3f(tilt, 0.0))"),
             ],
         },
         Formula {

@@ -5,7 +5,7 @@ use haze::formula::depth::{view_depth_from_linear, view_depth_from_ndc_depth};
 use haze::formula::sprite::{animation_frames, flipbook_frames};
 use haze::formula::technique::RayInterval;
 use haze::formula::uniforms::SystemUniform;
-use haze::settings::{FadeCurve, Lighting, Settings, SpriteAnimation, Technique};
+use haze::settings::{FadeCurve, Grain, Lighting, Settings, SpriteAnimation, Technique};
 use haze_reference::sprite::{SpriteFragment, SpriteSetup};
 
 use super::Formula;
@@ -26,6 +26,8 @@ fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
         frames: flipbook_frames(0.7, 3.0),
         reach: glam::Vec4::ONE,
         age: 0.5,
+        erosion: 0.5,
+        fineness: 0.0,
         optical_depths: Vec3::ZERO,
         heat: 0.0,
         tint: Vec3::ONE,
@@ -40,7 +42,7 @@ macro_rules! with_sprite {
     ($wgsl:literal) => {
         concat!(
             "TECHNIQUE = u32(x(0)); var in: SpriteVertex; in.centre_radius = vec4f(x(1), x(2), x(3), x(4)); \
-             in.amount_lod_frame_age = vec4f(0.8, x(5), 0.7, 0.5); in.rotation = vec2f(0.6, 0.8); in.stretch = vec2f(0.5, -0.3); STRETCH = true; \
+             in.amount_lod_frame_erosion = vec4f(0.8, x(5), 0.7, 0.5); in.rotation = vec2f(0.6, 0.8); in.stretch = vec2f(0.5, -0.3); STRETCH = true; \
              let frames = flipbook_frames(0.7, 3.0); ",
             $wgsl
         )
@@ -101,7 +103,7 @@ fn depths() -> Vec<Formula> {
         Formula {
             name: "fragment_frames",
             file: "lib/sprite_fragment.wgsl",
-            wgsl: "SPRITE_ANIMATION = u32(x(0)); var in: SpriteVertex; in.amount_lod_frame_age.z = x(1); \
+            wgsl: "SPRITE_ANIMATION = u32(x(0)); var in: SpriteVertex; in.amount_lod_frame_erosion.z = x(1); \
                    let f = fragment_frames(in); y3(0, vec3f(f32(f.first), f32(f.second), f.blend));",
             reference: |x| {
                 let frames = animation_frames(SpriteAnimation::ALL[x[0] as usize], x[1], 3.0);
@@ -109,7 +111,7 @@ fn depths() -> Vec<Formula> {
             },
             cases: with_choices(count(SpriteAnimation::ALL), &[(0.0, 9.0)]),
             tolerance: ARITHMETIC,
-            mutants: &[("in.amount_lod_frame_age.z, system.frame_count);\n}", "0.0, system.frame_count);\n}")],
+            mutants: &[("in.amount_lod_frame_erosion.z, system.frame_count);\n}", "0.0, system.frame_count);\n}")],
         },
         Formula {
             name: "fade_before",
@@ -132,7 +134,8 @@ fn texels() -> Vec<Formula> {
         name: "sprite_texel",
         file: "lib/sprite_fragment.wgsl",
         wgsl: with_sprite!(
-            "DEBUG_SPRITE = x(0) == 1.0; SIX_WAY = x(0) == 2.0; \
+            "DEBUG_SPRITE = x(0) == 1.0; SIX_WAY = x(0) == 2.0 || x(0) == 4.0; \
+             GRAIN_OCTAVES = select(0u, 2u, x(0) > 2.0); system.grain_bump = 0.8; system.grain_tiles = 0.5; system.grain_fineness = 0.1; \
              if SIX_WAY { system.frame_count = 1.0; } \
              let f = sprite_texel(in, vec2f(x(6), x(7)), flipbook_frames(select(0.7, 0.0, SIX_WAY), \
              system.frame_count), vec2f(x(8), x(9))); y3(0, f.normal); y(3, f.amount); y(4, f.thickness); y3(5, f.six_way.positive); \
@@ -141,11 +144,17 @@ fn texels() -> Vec<Formula> {
         reference: |x| {
             let mut settings = Settings::default();
             settings.sprite.debug_sprite = x[0] == 1.0;
-            if x[0] == 2.0 {
+            if x[0] == 2.0 || x[0] == 4.0 {
                 settings.lighting = Lighting::SixWay;
             }
+            if x[0] > 2.0 {
+                settings.grain = Grain { erosion: 0.5, octaves: 2, ..Grain::default() };
+            }
             let mut visible = visible_system(&settings);
+            let system = &mut visible.system;
+            (system.grain_bump, system.grain_tiles, system.grain_fineness) = (0.8, 0.5, 0.1);
             let mut sprite = sprite(v3(&x[1..]), x[4], x[5]);
+            sprite.fineness = visible.fineness_of(sprite.radius, sprite.view_depth, 1.0);
             if settings.is_six_way() {
                 (visible.system.frame_count, sprite.frames) = (1.0, flipbook_frames(0.0, 1.0));
             }
@@ -154,7 +163,7 @@ fn texels() -> Vec<Formula> {
             [numbers(&fragment), six_way].concat()
         },
         cases: with_choices(
-            3,
+            5,
             &[
                 (-1.0, 1.0),
                 (-1.0, 1.0),
@@ -170,7 +179,14 @@ fn texels() -> Vec<Formula> {
         tolerance: 1e-5,
         mutants: &[
             ("offset_frames(frames, 2 * count)", "offset_frames(frames, count)"),
-            ("rotate_normal(texel.xyz, in.rotation)", "texel.xyz"),
+            ("rotate_normal(normal, in.rotation)", "normal"),
+            ("tilted_normal(normal, tilt)", "normal"),
+            ("tilted_six_way(light, tilt)", "light"),
+            ("1.0 - vec3f(tilt, 0.0)", "1.0 + vec3f(tilt, 0.0)"),
+            ("eroded(fragment.amount, grain.z, in.amount_lod_frame_erosion.w)", "fragment.amount"),
+            ("fragment.thickness = fragment.amount;", ""),
+            ("(f32(frames.first) + frames.blend) / system.frame_count", "f32(frames.first) / system.frame_count"),
+            ("* distance / in.centre_radius.w", "* in.centre_radius.w"),
             ("stretched_normal(normal, in.stretch)", "normal"),
             ("if !DEBUG_SPRITE {", "if true {"),
             ("uv, frames, motion, lod);\n    }\n    var normal", "uv, frames, -motion, lod);\n    }\n    var normal"),

@@ -176,8 +176,8 @@ fn projection() -> Vec<Formula> {
             file: "lib/sprite_vertex.wgsl",
             wgsl: with_particle!(
                 "let s = project_sprite(p, 0.5); if s.hidden { return; } y(0, 1.0); y4(1, s.centre_radius); \
-                 y2(5, s.amount_lod_frame_age.xy); \
-                 let f = flipbook_frames(s.amount_lod_frame_age.z, system.frame_count); \
+                 y2(5, s.amount_lod_frame_erosion.xy); \
+                 let f = flipbook_frames(s.amount_lod_frame_erosion.z, system.frame_count); \
                  y3(7, vec3f(f32(f.first), f32(f.second), f.blend)); y2(10, s.stretch);"
             ),
             reference: |x| {

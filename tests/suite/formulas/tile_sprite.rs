@@ -9,7 +9,7 @@ use haze::formula::{depth, sprite, tile_sprite};
 
 use super::Formula;
 use super::fixture::{DEFAULTS, DEPTHS, visible_system};
-use super::inputs::{ARITHMETIC, HALF, halves, random, v2, v4, word};
+use super::inputs::{ARITHMETIC, HALF, halves, random, v2, v4, with_choices, word};
 
 /// A sprite at a place in the target, rotated.
 fn uv_from_texels(x: &[f32]) -> Vec4 {
@@ -52,9 +52,23 @@ fn packing() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "packed_blend",
+            file: "lib/tile_sprite.wgsl",
+            wgsl: "GRAIN_OCTAVES = u32(x(0)); var s: TileSprite; s.blend_erosion = packed_blend(x(1), x(2)); \
+                   y2(0, blend_and_erosion(s));",
+            reference: |x| vec![x[1], if x[0] > 0.0 { x[2] } else { 0.0 }],
+            cases: with_choices(3, &[(0.0, 1.0), (0.0, 1.0)]),
+            // Half a step of 16 bits.
+            tolerance: 8e-6,
+            mutants: &[
+                ("vec2f(blend, erosion)", "vec2f(erosion, blend)"),
+                ("return unpack2x16unorm(sprite.blend_erosion)", "return unpack2x16snorm(sprite.blend_erosion)"),
+            ],
+        },
+        Formula {
             name: "frames_of",
             file: "lib/tile_sprite.wgsl",
-            wgsl: "var s: TileSprite; s.frames_lod = word(0); s.blend = x(2); let f = frames_of(s); \
+            wgsl: "var s: TileSprite; s.frames_lod = word(0); s.blend_erosion = bitcast<u32>(x(2)); let f = frames_of(s); \
                    y3(0, vec3f(f32(f.first), f32(f.second), f.blend));",
             reference: |x| {
                 let frames = tile_sprite::frames_of(word(x), x[2]);
@@ -62,7 +76,7 @@ fn packing() -> Vec<Formula> {
             },
             cases: random(60, &[HALF, HALF, (0.0, 1.0)]),
             tolerance: 0.0,
-            mutants: &[(">> 12u) & 0xfffu", ">> 12u) & 0xffu"), ("sprite.blend);", "0.0);")],
+            mutants: &[(">> 12u) & 0xfffu", ">> 12u) & 0xffu"), ("blend_and_erosion(sprite).x);", "0.0);")],
         },
         Formula {
             name: "lod_of",
@@ -225,7 +239,7 @@ fn sprites() -> Vec<Formula> {
                 "TECHNIQUE = select(TECHNIQUE_SOFT, TECHNIQUE_SPHERICAL_BILLBOARD, x(8) > 0.5); \
                  s.amount = 0.25; s.frames_lod = 0x3001002u; s.rotation = vec2f(0.6, 0.8); s.weight = 0.75; \
                  let f = fragment_of(s, vec2f(9.0, 7.0), vec2f(0.2, 0.4), vec2f(x(6), x(7))); y2(0, f.uv); \
-                 y3(2, f.view_position); y4(5, f.amount_lod_frame_age); y4(9, f.centre_radius); y2(13, f.rotation); \
+                 y3(2, f.view_position); y4(5, f.amount_lod_frame_erosion); y4(9, f.centre_radius); y2(13, f.rotation); \
                  y(15, f.weight); y4(16, f.position);"
             ),
             reference: |x| {

@@ -16,6 +16,7 @@ mod run;
 mod shadow_suite;
 mod soft_particles;
 mod sprite_shots;
+mod sprites_suite;
 mod suite;
 mod suites;
 mod terminal_table;

@@ -52,11 +52,12 @@ pub struct Arguments {
 const QUICK: u32 = 100;
 const THOROUGH: u32 = 360;
 /// Suites that render shots; the limits are measured before them.
-const SHOTS: [Suite; 9] = [
+const SHOTS: [Suite; 10] = [
     Suite::Scale,
     Suite::Overdraw,
     Suite::Lights,
     Suite::Shadow,
+    Suite::Sprites,
     Suite::Soft,
     Suite::Upsample,
     Suite::Presets,

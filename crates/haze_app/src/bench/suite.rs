@@ -15,6 +15,8 @@ pub enum Suite {
     Lights,
     /// Shadow of smoke on smoke: 3 to 15 lights, and resolutions of the grid.
     Shadow,
+    /// Values that sprites carry: tint, heat, stretch, grain.
+    Sprites,
     /// Every technique and every fade curve, against hard edges.
     Soft,
     /// Every depth downsample with every upsample filter.

@@ -10,6 +10,7 @@ use haze_demo::shot::Shot;
 
 use super::shadow_suite;
 use super::sprite_shots::{BEYOND_IMAGE, CrowdExtent, WITHIN_IMAGE, layers, small_sprites, sprite_count, with_alpha};
+use super::sprites_suite;
 pub use super::suite::{Case, Group, Suite};
 use super::suite::{at_scale, changed, full_resolution};
 
@@ -40,6 +41,7 @@ pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Erro
         Suite::Overdraw => overdraw(size, quick),
         Suite::Lights => lights(size, quick),
         Suite::Shadow => shadow_suite::groups(size, quick),
+        Suite::Sprites => sprites_suite::groups(size),
         Suite::Soft => soft(size, quick),
         Suite::Upsample => upsample(size, quick),
         Suite::Presets => presets(size, quick),

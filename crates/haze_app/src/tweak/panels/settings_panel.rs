@@ -175,6 +175,7 @@ fn smoke(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: 
     section(ui, context, &[at, ("material", None)], false, &mut system.material);
     let settings = &mut system.settings;
     let at = |name| [at, ("settings", None), (name, None)];
+    section(ui, context, &at("grain"), false, &mut settings.grain);
     section(ui, context, &at("diffuse"), false, &mut settings.diffuse);
     section(ui, context, &at("shadow"), false, &mut settings.shadow);
     section(ui, context, &at("ambient"), false, &mut settings.ambient);

@@ -198,8 +198,8 @@ fn place_of(preset: &Preset, groups: &[(&'static str, Option<usize>)]) -> String
 }
 
 /// Groups of a system's settings on the Smoke tab. The others are on the Advanced tab.
-pub const SMOKE_TAB_GROUPS: [&str; 7] =
-    ["diffuse", "shadow", "ambient", "fire", "soft_scatter", "specular_scatter", "soft_fade"];
+pub const SMOKE_TAB_GROUPS: [&str; 8] =
+    ["grain", "diffuse", "shadow", "ambient", "fire", "soft_scatter", "specular_scatter", "soft_fade"];
 
 /// Returns the tab of a setting.
 fn tab_of(path: &str) -> Tab {

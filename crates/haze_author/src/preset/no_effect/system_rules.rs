@@ -9,7 +9,9 @@ use super::condition::{
 use super::rule::{NoEffectRule, rule};
 use haze::assets::builtin;
 use haze::preset::PresetSystem;
-use haze::settings::{Backlight, BlendOrder, CoverageMode, RenderPath, SoftScatterMode, SpriteAnimation, Technique};
+use haze::settings::{
+    Backlight, BlendOrder, CoverageMode, Grain, RenderPath, SoftScatterMode, SpriteAnimation, Technique,
+};
 
 /// The first row that holds gives the reason.
 pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
@@ -63,7 +65,18 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "only with technique volumetric_hard or volumetric_soft",
         |s, _| !technique(s).is_volumetric(),
-        &["settings.volumetric", "material.noise"],
+        &["settings.volumetric"],
+    ),
+    rule(
+        "only with a volumetric technique, or grain",
+        |s, _| !technique(s).is_volumetric() && s.settings.grain_octaves() == 0,
+        &["material.noise"],
+    ),
+    rule("a checkerboard has no grain", |s, _| s.settings.sprite.debug_sprite, &["settings.grain"]),
+    rule(
+        "only with an erosion, a dissolve or a bump of the grain above 0",
+        |s, _| Grain { erosion: 0.0, dissolve: 0.0, bump: 0.0, ..s.settings.grain } == s.settings.grain,
+        &["settings.grain.tiles", "settings.grain.octaves"],
     ),
     rule(
         "volumetric techniques show noise in place of the sprite",
@@ -72,6 +85,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.sprite.animation",
             "settings.sprite.motion",
             "settings.sprite.debug_sprite",
+            "settings.grain",
             "settings.lighting",
             "settings.diffuse.six_way_color",
             "settings.diffuse.six_way_anisotropy",
