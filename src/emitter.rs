@@ -9,7 +9,7 @@ use glam::{Quat, Vec2, Vec3};
 use crate::error::FieldError;
 use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{EmitterSnapshot, Particle};
-use crate::settings::{choice, settings, validate};
+use crate::settings::{Curve, choice, settings, validate};
 
 /// Maximum number of particles of one emitter, and of all emitters of a preset together.
 pub const MAX_PARTICLES: u32 = 1 << 20;
@@ -80,6 +80,9 @@ settings! {
         /// Velocity of the air. Leans the smoke over.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
+        /// Multiplies the speed by age. Below 1: particles move as in slow motion along the same path. 0: they stand still.
+        #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
+        speed_curve: Curve = Curve::constant(1.0), curve(0.0..=10.0);
         "turbulence":
         /// Distance by which curl noise moves a particle off its path by the end of its life. Higher: tears the smoke
         /// apart.
@@ -95,6 +98,9 @@ settings! {
         radius_end: f32 = 1.2, number(0.0..=1.0e3, "m");
         /// Random variation of the radius, up and down, as a share of it. Higher: less uniform puffs.
         radius_spread: f32 = 0.25, number(0.0..=0.95, "");
+        /// Multiplies the radius by age. With `radius_start` and `radius_end` alike, it is the size over the life.
+        #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
+        size_curve: Curve = Curve::constant(1.0), curve(0.0..=10.0);
         "appearance":
         /// Fastest spin at birth, either way; drag slows it. Normals and light turn with the sprite.
         spin: f32 = 0.6, number(0.0..=100.0, "rad/s");
@@ -105,6 +111,10 @@ settings! {
         fade_in: f32 = 0.12, number(0.0..=1.0, "");
         /// Share of the life over which a particle fades out. At 0 sprites pop out; at 1 the top of the smoke is thin.
         fade_out: f32 = 0.5, number(0.0..=1.0, "");
+        /// Multiplies the amount by age. With `fade_in` and `fade_out` at 0, it is the amount over the life: smoke that thins
+        /// and thickens again.
+        #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
+        amount_curve: Curve = Curve::constant(1.0), curve(0.0..=10.0);
         /// Flipbook frames per second. Higher: puffs boil faster. 0: still.
         frame_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");
         /// Linear RGB color of the particles. Each has one at random between this and `other_tint`. Read if `sprite.tint` is
@@ -235,7 +245,10 @@ impl Emitter {
             per_pulse: births as u32,
             first_in_pulse: first_in_pulse as u32,
             period: period as f32,
-            padding: 0.0,
+            has_curves: u32::from([self.speed_curve, self.size_curve, self.amount_curve] != [Curve::constant(1.0); 3]),
+            speed_curve: self.speed_curve.packed(),
+            size_curve: self.size_curve.packed(),
+            amount_curve: self.amount_curve.packed(),
         };
         let step = (self.max_alive() / SAMPLE).ceil().max(1.0) as u32;
         let first_sample = (-first).rem_euclid(i64::from(step)) as u32;

@@ -1,5 +1,6 @@
 // Particles of an emitter, each a function of seed, birth index and time.
 
+#import "lib/curve.wgsl"
 #import "lib/gradient_noise.wgsl"
 
 // An emitter at a time. Mirrors EmitterUniform in src/formula/uniforms.rs; src/emitter.rs documents the settings.
@@ -52,7 +53,11 @@ struct Emitter {
     per_pulse: u32,
     first_in_pulse: u32,
     period: f32,
-    padding: f32,
+    // 0 if all curves are 1 at every age.
+    has_curves: u32,
+    speed_curve: Curve,
+    size_curve: Curve,
+    amount_curve: Curve,
 }
 
 const EMITTER_SHAPE_SPHERE: u32 = 0u;
@@ -202,7 +207,18 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let distance = length(offset);
     let outward = select(vec3f(0.0), offset / distance, distance > 0.0);
     let velocity = emitter.velocity + outward * emitter.burst + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, seconds);
+    // Values of the curves, and the time in which a particle flies as far at speed 1.
+    var speed = 1.0;
+    var size = 1.0;
+    var share = 1.0;
+    var flown = seconds;
+    if emitter.has_curves != 0u {
+        speed = curve_value(emitter.speed_curve, age);
+        size = curve_value(emitter.size_curve, age);
+        share = curve_value(emitter.amount_curve, age);
+        flown = lifetime * curve_integral(emitter.speed_curve, age);
+    }
+    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, flown);
     let base = moved.position;
 
     // Turbulence grows with age: smoke leaves the source smoothly and breaks up later.
@@ -218,15 +234,15 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let turned = drag_integrals(emitter.drag, seconds).x;
     let fade_out = smoothstep_unit((1.0 - age) / max(emitter.fade_out, 1.0e-4));
     return EmittedParticle(
-        vec4f(position, radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
+        vec4f(position, radius * size * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
         vec4f(
             look.y * TURN + emitter.spin * (2.0 * look.z - 1.0) * turned,
-            emitter.amount * fade_in * fade_out,
+            emitter.amount * share * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
         // Of a swirl that grows, too.
-        moved.velocity + swirl / lifetime,
+        moved.velocity * speed + swirl / lifetime,
         pack4x8unorm(vec4f(mix(emitter.tint, emitter.other_tint, color.x), 1.0 - emitter.heat_spread * color.y)),
     );
 }

@@ -92,6 +92,12 @@ fn emitters() -> impl Iterator<Item = Emitter> {
         Emitter { radius_start: 2.0, radius_end: 0.1, lifetime_spread: 0.9, velocity_spread: 5.0, ..base },
         Emitter { duration: 0.3, period: 0.7, ..base },
         Emitter {
+            velocity: Vec3::new(4.0, 1.0, 0.0),
+            speed_curve: "0:3,0.3:0.2,0.9:1".parse().unwrap(),
+            size_curve: "0:0,0.4:2.5,1:0.1".parse().unwrap(),
+            ..base
+        },
+        Emitter {
             bounce: 0.6,
             floor: -0.4,
             velocity: Vec3::new(-1.0, 3.0, 0.5),

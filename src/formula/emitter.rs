@@ -2,6 +2,7 @@
 
 use glam::{UVec3, Vec2, Vec3, Vec3Swizzles, Vec4};
 
+use super::curve::{curve_integral, curve_value};
 use super::gradient_noise::curl_noise;
 use super::hash::{pcg3d, unit};
 use super::saturate;
@@ -144,7 +145,14 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
     let velocity = emitter.velocity
         + offset.normalize_or_zero() * emitter.burst
         + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, seconds);
+    // Values of the curves, and the time in which a particle flies as far at speed 1.
+    let (mut speed, mut size, mut share, mut flown) = (1.0, 1.0, 1.0, seconds);
+    if emitter.has_curves != 0 {
+        [speed, size, share] =
+            [emitter.speed_curve, emitter.size_curve, emitter.amount_curve].map(|c| curve_value(&c, age));
+        flown = lifetime * curve_integral(&emitter.speed_curve, age);
+    }
+    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, flown);
     let base = moved.position;
 
     // Swirls grow with age: smoke leaves the source smooth and breaks up later.
@@ -161,15 +169,15 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
     let turned = drag_integrals(emitter.drag, seconds).x;
     let fade_out = smoothstep_unit((1.0 - age) / emitter.fade_out.max(1.0e-4));
     EmittedParticle {
-        position_radius: position.extend(radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
+        position_radius: position.extend(radius * size * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
         rotation_amount_frame_age: Vec4::new(
             look.y * std::f32::consts::TAU + emitter.spin * (2.0 * look.z - 1.0) * turned,
-            emitter.amount * fade_in * fade_out,
+            emitter.amount * share * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
         // Of a swirl that grows, too.
-        velocity: moved.velocity + swirl / lifetime,
+        velocity: moved.velocity * speed + swirl / lifetime,
         tint_heat: unorm8(emitter.tint.lerp(emitter.other_tint, color.x).extend(1.0 - emitter.heat_spread * color.y)),
     }
 }

@@ -4,6 +4,7 @@
 pub mod ambient;
 pub mod blending;
 pub mod color;
+pub mod curve;
 pub mod density_grid;
 pub mod depth;
 pub mod depth_moments;

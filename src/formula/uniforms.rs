@@ -272,6 +272,9 @@ uniform! {
         per_pulse: u32,
         first_in_pulse: u32,
         period: f32,
-        padding: f32,
+        has_curves: u32,
+        speed_curve: [Vec4; 4],
+        size_curve: [Vec4; 4],
+        amount_curve: [Vec4; 4],
     }
 }

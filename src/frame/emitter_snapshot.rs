@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::bounds::Bounds;
 use super::particle::Particle;
 use super::sprite_extent::SpriteExtent;
+use crate::formula::curve::{CurvePoints, curve_point};
 use crate::formula::emitter::{birth_delay, drag_integrals, emitted_particle};
 use crate::formula::uniforms::EmitterUniform;
 
@@ -66,9 +67,11 @@ impl EmitterSnapshot {
         let mut bounds = Bounds::EMPTY;
         let (longest, shortest) = (e.lifetime * (1.0 + e.lifetime_spread), e.lifetime * (1.0 - e.lifetime_spread));
         let oldest = e.since_first.min(longest);
-        // A particle that bounces comes back to where younger ones are.
-        let bounces = e.bounce > 0.0;
-        let youngest = if bounces { 0.0 } else { (e.since_first - birth_delay(e, e.count)).max(0.0) };
+        // A particle that bounces comes back to where younger ones are; one that is slower than others stays there.
+        let lags = e.bounce > 0.0 || e.has_curves != 0;
+        let highest = |curve: &CurvePoints| (0..8).map(|i| curve_point(curve, i).y).fold(0.0, f32::max);
+        let (fastest, largest) = (highest(&e.speed_curve), highest(&e.size_curve));
+        let youngest = if lags { 0.0 } else { (e.since_first - birth_delay(e, e.count)).max(0.0) };
         if e.count == 0 || oldest < youngest {
             return bounds;
         }
@@ -78,25 +81,27 @@ impl EmitterSnapshot {
         let at = |step: u32| youngest + (oldest - youngest) * step as f32 / AGE_INTERVALS as f32;
         for step in 0..AGE_INTERVALS {
             let (early, late) = (at(step), at(step + 1));
-            let (reached_early, reached_late) = (drag_integrals(e.drag, early), drag_integrals(e.drag, late));
+            let flown = late * fastest;
+            let (reached_early, reached_late) = (drag_integrals(e.drag, early), drag_integrals(e.drag, flown));
             // The factors only grow with age, so the ends of an interval bound them.
             let ways = [
                 (e.velocity, reached_early.x, reached_late.x),
-                (e.wind, early - reached_early.x, late - reached_late.x),
+                (e.wind, early - reached_early.x, flown - reached_late.x),
                 (e.rise, reached_early.y, reached_late.y),
             ];
             let (low, high) = ways.into_iter().fold((e.position, e.position), |(low, high), (way, from, to)| {
-                let (from, to) = (if bounces { Vec3::ZERO } else { way * from }, way * to);
+                let (from, to) = (if lags { Vec3::ZERO } else { way * from }, way * to);
                 (low + from.min(to), high + from.max(to))
             });
             let age = (late / shortest).min(1.0);
             let scattered =
                 (e.burst.abs() + e.velocity_spread) * reached_late.x + TURBULENCE_BOUND * e.turbulence * age;
-            let radius = e.radius_start.max(e.radius_start + (e.radius_end - e.radius_start) * age.sqrt());
-            let kept = 1.0 - e.drag * reached_early.x;
-            let speed = (e.velocity.length() + e.burst.abs() + e.velocity_spread) * kept
-                + e.wind.length()
-                + e.rise.length() * reached_late.x
+            let radius = largest * e.radius_start.max(e.radius_start + (e.radius_end - e.radius_start) * age.sqrt());
+            let kept = if lags { 1.0 } else { 1.0 - e.drag * reached_early.x };
+            let speed = fastest
+                * ((e.velocity.length() + e.burst.abs() + e.velocity_spread) * kept
+                    + e.wind.length()
+                    + e.rise.length() * reached_late.x)
                 + TURBULENCE_BOUND * 3.0_f32.sqrt() * e.turbulence / shortest;
             let margin = scattered + extent.reach(radius * (1.0 + e.radius_spread), speed);
             bounds.include(low - born, margin);

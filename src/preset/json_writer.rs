@@ -140,6 +140,7 @@ mod tests {
                         FieldRef::Number(value) => *value = 0.1234567,
                         FieldRef::Whole(value) => *value = u32::MAX,
                         FieldRef::Vector(value) => value.z = -1.0e-7,
+                        FieldRef::Curve(value) => *value = "0.1:0.3".parse().unwrap(),
                         FieldRef::Flag(value) => *value = !*value,
                         FieldRef::Choice(value) => value.set_index((value.index() + 1) % value.names().len()),
                         FieldRef::Text(value) => value.push_str("\"\\\n\u{1}ü"),

@@ -110,6 +110,9 @@ fn assign(leaf: FieldRef<'_>, text: &str) -> Result<(), String> {
         FieldRef::Whole(value) => *value = parse(text, "a whole number, 0 or more")?,
         FieldRef::Flag(value) => *value = parse(text, "true or false")?,
         FieldRef::Text(value) => text.clone_into(value),
+        FieldRef::Curve(value) => {
+            *value = parse(text, "1 to 8 points age:value with increasing ages from 0 to 1, such as 0:0.2,0.3:1,1:0")?;
+        }
         FieldRef::Choice(value) => {
             let index = value.names().iter().position(|name| *name == text);
             value.set_index(index.ok_or_else(|| format!("one of {}", value.names().join(", ")))?);

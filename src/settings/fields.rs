@@ -10,6 +10,7 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 
 use super::choice::Choice;
+use super::curve::Curve;
 use crate::error::FieldError;
 
 /// Settings struct whose fields can be visited.
@@ -63,6 +64,9 @@ pub trait FieldVisitor {
 
     /// sRGB color with 8 bits a channel.
     fn srgb(&mut self, _name: &'static str, _value: &mut [u8; 3]) {}
+
+    /// Curve over the life of a particle, with values in `range`.
+    fn curve(&mut self, _name: &'static str, _value: &mut Curve, _range: RangeInclusive<f32>) {}
 
     /// Boolean.
     fn flag(&mut self, _name: &'static str, _value: &mut bool) {}
@@ -175,6 +179,12 @@ impl FieldVisitor for Validator {
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
         for component in value.to_array() {
             self.check(name, component, &range, unit);
+        }
+    }
+
+    fn curve(&mut self, name: &'static str, value: &mut Curve, range: RangeInclusive<f32>) {
+        for point in value.points() {
+            self.check(name, point.y, &range, "");
         }
     }
 

@@ -8,6 +8,7 @@ mod accumulate;
 mod assign;
 #[doc(hidden)]
 pub mod choice;
+mod curve;
 pub(crate) mod fields;
 mod lighting;
 mod scale_budget;
@@ -25,6 +26,7 @@ pub use assign::set_field;
 #[doc(hidden)]
 pub use choice::choice;
 pub use choice::{Choice, UnknownChoice};
+pub use curve::{Curve, CurveError, MAX_CURVE_POINTS};
 pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Ambient, Backlight, CoverageMode, Diffuse, DiffuseMode, Fire, Lighting, RampFilter, SoftScatter, SoftScatterMode,

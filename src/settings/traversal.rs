@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 
 use super::choice::Choice;
+use super::curve::Curve;
 use super::fields::{FieldVisitor, Fields, ImageRole};
 
 /// Name on the path to a field, and its index if it is in a list.
@@ -20,6 +21,8 @@ pub enum FieldRef<'a> {
     Whole(&'a mut u32),
     /// Three numbers, or linear RGB.
     Vector(&'a mut Vec3),
+    /// Curve over the life of a particle.
+    Curve(&'a mut Curve),
     /// Boolean.
     Flag(&'a mut bool),
     /// Enum.
@@ -39,6 +42,8 @@ pub enum FieldValue {
     Whole(u32),
     /// Value of a [`FieldRef::Vector`].
     Vector(Vec3),
+    /// Value of a [`FieldRef::Curve`].
+    Curve(Curve),
     /// Value of a [`FieldRef::Flag`].
     Flag(bool),
     /// Name of the choice of a [`FieldRef::Choice`].
@@ -55,6 +60,7 @@ impl PartialEq for FieldValue {
             (Self::Number(a), Self::Number(b)) => same(*a, *b),
             (Self::Vector(a), Self::Vector(b)) => (0..3).all(|axis| same(a[axis], b[axis])),
             (Self::Whole(a), Self::Whole(b)) => a == b,
+            (Self::Curve(a), Self::Curve(b)) => a == b,
             (Self::Flag(a), Self::Flag(b)) => a == b,
             (Self::Choice(a), Self::Choice(b)) => a == b,
             (Self::Text(a), Self::Text(b)) => a == b,
@@ -70,6 +76,7 @@ impl FieldRef<'_> {
             Self::Number(value) => FieldValue::Number(**value),
             Self::Whole(value) => FieldValue::Whole(**value),
             Self::Vector(value) => FieldValue::Vector(**value),
+            Self::Curve(value) => FieldValue::Curve(**value),
             Self::Flag(value) => FieldValue::Flag(**value),
             Self::Choice(value) => FieldValue::Choice(value.names().get(value.index()).copied().unwrap_or_default()),
             Self::Text(value) => FieldValue::Text((*value).clone()),
@@ -82,6 +89,7 @@ impl FieldRef<'_> {
             (Self::Number(field), FieldValue::Number(value)) => *field = *value,
             (Self::Whole(field), FieldValue::Whole(value)) => *field = *value,
             (Self::Vector(field), FieldValue::Vector(value)) => *field = *value,
+            (Self::Curve(field), FieldValue::Curve(value)) => *field = *value,
             (Self::Flag(field), FieldValue::Flag(value)) => *field = *value,
             (Self::Text(field), FieldValue::Text(value)) => field.clone_from(value),
             (Self::Choice(field), FieldValue::Choice(name)) => {
@@ -150,6 +158,10 @@ impl FieldVisitor for FieldTraversal<'_> {
 
     fn vector(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
         self.leaf(name, FieldRef::Vector(value));
+    }
+
+    fn curve(&mut self, name: &'static str, value: &mut Curve, _: RangeInclusive<f32>) {
+        self.leaf(name, FieldRef::Curve(value));
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {

@@ -70,6 +70,11 @@ impl FieldVisitor for SettingMutator {
             *value = *value * 0.5 + Vec3::new(0.3, 0.2, 0.1);
         }
     }
+    fn curve(&mut self, name: &'static str, value: &mut Curve, _: RangeInclusive<f32>) {
+        if self.is_selected(name) {
+            *value = "0.1:0.4,0.6:1.3".parse().unwrap();
+        }
+    }
     fn flag(&mut self, name: &'static str, value: &mut bool) {
         if self.is_selected(name) {
             *value = !*value;

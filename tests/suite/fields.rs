@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use haze::glam::Vec3;
 use haze::preset::{Preset, PresetSystem};
-use haze::settings::{Choice, FieldVisitor, Fields, ImageRole};
+use haze::settings::{Choice, Curve, FieldVisitor, Fields, ImageRole};
 use haze::{Light, Settings};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
@@ -47,6 +47,9 @@ impl FieldVisitor for VisitedFields {
     fn vector(&mut self, name: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
         self.field(name);
     }
+    fn curve(&mut self, name: &'static str, _: &mut Curve, _: RangeInclusive<f32>) {
+        self.field(name);
+    }
     fn srgb(&mut self, name: &'static str, _: &mut [u8; 3]) {
         self.field(name);
     }
@@ -84,12 +87,12 @@ impl FieldVisitor for VisitedFields {
     }
 }
 
-/// Collects the paths of all fields in a file. A list of numbers is one field.
+/// Collects the paths of all fields in a file. A list of numbers, or of points, is one field.
 fn written(value: &Value, path: &str, fields: &mut BTreeSet<String>) {
     let join = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
     match value {
         Value::Object(entries) => entries.iter().for_each(|(name, value)| written(value, &join(name), fields)),
-        Value::Array(items) if !items.iter().all(Value::is_number) || items.is_empty() => {
+        Value::Array(items) if !items.iter().all(|item| item.is_number() || item.is_array()) || items.is_empty() => {
             items.iter().enumerate().for_each(|(index, value)| written(value, &join(&index.to_string()), fields));
         }
         _ => {

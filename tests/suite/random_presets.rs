@@ -3,7 +3,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use glam::{IVec2, UVec2, UVec3, Vec3, Vec4, Vec4Swizzles};
+use glam::{IVec2, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze::formula::tonemap::tonemapped;
 use haze::image::Image;
 use haze::noise::{pcg3d, unit};
@@ -76,6 +76,12 @@ impl FieldVisitor for RandomValues {
         if self.is_selected() {
             let moved = Vec3::new(self.random(), self.random(), self.random()) * 2.0 - 1.0;
             *value = (*value + moved).clamp(Vec3::splat(*range.start()), Vec3::splat(*range.end()));
+        }
+    }
+    fn curve(&mut self, _: &'static str, value: &mut Curve, _: RangeInclusive<f32>) {
+        if self.is_selected() {
+            let points = [0.0, 0.3, 1.0].map(|age| Vec2::new(age, 2.0 * self.random()));
+            *value = Curve::new(&points).unwrap();
         }
     }
     fn flag(&mut self, _: &'static str, value: &mut bool) {

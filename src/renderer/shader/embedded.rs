@@ -62,6 +62,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/lighting.wgsl",
     "lib/lit_smoke.wgsl",
     "lib/lit_target.wgsl",
+    "lib/curve.wgsl",
     "lib/grain.wgsl",
     "lib/noise_volume.wgsl",
     "lib/normal.wgsl",

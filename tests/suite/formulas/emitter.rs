@@ -1,9 +1,11 @@
 //! Formula tests of `shaders/lib/emitter.wgsl`.
 
-use glam::{Vec3, vec2, vec3};
+use glam::{Vec3, vec2, vec3, vec4};
 use haze::emitter::EmitterShape;
+use haze::formula::curve::{self, CurvePoints};
 use haze::formula::emitter;
 use haze::formula::uniforms::EmitterUniform;
+use haze::settings::Curve;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v3, with_choices};
@@ -49,8 +51,20 @@ fn test_emitter(x: &[f32]) -> EmitterUniform {
         per_pulse: 13,
         first_in_pulse: 5,
         period: 0.34,
-        padding: 0.0,
+        has_curves: 1,
+        speed_curve: curve("0:1.5,0.4:0.6,0.9:1.1"),
+        size_curve: curve("0.1:0.2,0.7:1.4"),
+        amount_curve: curve("0:0.3,0.2:1,0.5:0.4,1:0.8"),
     }
+}
+
+fn curve(text: &str) -> CurvePoints {
+    let points = text.parse::<Curve>().unwrap().points().to_vec();
+    let last = points[points.len() - 1];
+    std::array::from_fn(|pair| {
+        let at = |index: usize| points.get(index).copied().unwrap_or(last);
+        (at(2 * pair), at(2 * pair + 1)).into()
+    })
 }
 
 macro_rules! wgsl_emitter {
@@ -59,7 +73,10 @@ macro_rules! wgsl_emitter {
             "var e = Emitter(4294967195u, 330u, 3u, u32(x(0)), 8.0, 40.0, 6.0, 0.4, vec3f(1.0, 2.0, 3.0), 0.7, \
              vec3f(0.5, 0.25, 0.75), 0.5, vec3f(0.1, 0.6, 0.0), 0.6, vec3f(0.0, 0.5, 0.1), 0.5, vec3f(0.3, 0.0, -0.2), \
              1.5, vec3f(0.6, 0.8, 0.0), 0.25, vec3f(0.0, 0.0, 1.0), 1.5, vec2f(0.6, 0.8), 0.25, 0.5, 0.5, 0.25, 0.5, 4.0, \
-             vec3f(0.9, 0.2, 0.4), 0.6, vec3f(0.3, 0.8, 1.0), 0.0, vec3f(0.0, 1.0, 0.0), 1.8, 13u, 5u, 0.34, 0.0); ",
+             vec3f(0.9, 0.2, 0.4), 0.6, vec3f(0.3, 0.8, 1.0), 0.0, vec3f(0.0, 1.0, 0.0), 1.8, 13u, 5u, 0.34, 1u, \
+             Curve(array(vec4f(0.0, 1.5, 0.4, 0.6), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1))), \
+             Curve(array(vec4f(0.1, 0.2, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4))), \
+             Curve(array(vec4f(0.0, 0.3, 0.2, 1.0), vec4f(0.5, 0.4, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8)))); ",
             $call
         )
     };
@@ -86,7 +103,7 @@ const WGSL_EMITTED: &str = wgsl_emitter!(
 );
 
 pub fn formulas() -> Vec<Formula> {
-    [functions(), flights(), births()].into_iter().flatten().collect()
+    [functions(), curves(), flights(), births()].into_iter().flatten().collect()
 }
 
 fn functions() -> Vec<Formula> {
@@ -189,6 +206,67 @@ fn flights() -> Vec<Formula> {
     ]
 }
 
+/// Curve through three points, whose numbers are inputs 1 to 6; the ages increase.
+macro_rules! wgsl_curve {
+    ($call:literal) => {
+        concat!(
+            "let b = x(2) + 0.01 + x(4); let last = vec2f(b + 0.01 + x(6), x(7)); var c: Curve; \
+             c.points[0] = vec4f(x(2), x(3), b, x(5)); for (var i = 1; i < 4; i++) { c.points[i] = vec4f(last, last); } ",
+            $call
+        )
+    };
+}
+
+fn test_curve(x: &[f32]) -> CurvePoints {
+    let b = x[2] + 0.01 + x[4];
+    let last = vec2(b + 0.01 + x[6], x[7]);
+    let pair = (last, last).into();
+    [vec4(x[2], x[3], b, x[5]), pair, pair, pair]
+}
+
+fn curves() -> Vec<Formula> {
+    let cases = || {
+        random(100, &[(0.0, 7.99), (-0.1, 1.2), (0.0, 0.3), (0.0, 3.0), (0.0, 0.3), (0.0, 3.0), (0.0, 0.3), (0.0, 3.0)])
+    };
+    vec![
+        Formula {
+            name: "curve_point",
+            file: "lib/curve.wgsl",
+            wgsl: wgsl_curve!("y2(0, curve_point(c, u32(x(0))));"),
+            reference: |x| curve::curve_point(&test_curve(x), x[0] as usize).to_array().to_vec(),
+            cases: cases(),
+            tolerance: 0.0,
+            mutants: &[("select(pair.xy, pair.zw,", "select(pair.zw, pair.xy,"), ("index / 2u", "index / 4u")],
+        },
+        Formula {
+            name: "curve_value",
+            file: "lib/curve.wgsl",
+            wgsl: wgsl_curve!("y(0, curve_value(c, x(1)));"),
+            reference: |x| vec![curve::curve_value(&test_curve(x), x[1])],
+            cases: cases(),
+            // Divided by ages as close as 0.01.
+            tolerance: ARITHMETIC * 100.0,
+            mutants: &[
+                ("(next.y - last.y) * saturate", "next.y * saturate"),
+                ("saturate((age - last.x)", "(2.0 * (age - last.x)"),
+            ],
+        },
+        Formula {
+            name: "curve_integral",
+            file: "lib/curve.wgsl",
+            wgsl: wgsl_curve!("y(0, curve_integral(c, x(1)));"),
+            reference: |x| vec![curve::curve_integral(&test_curve(x), x[1])],
+            cases: cases(),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[
+                ("min(age, last.x) * last.y", "0.0"),
+                ("0.5 * (next.y - last.y)", "(next.y - last.y)"),
+                ("max(age - last.x, 0.0) * last.y", "0.0"),
+            ],
+        },
+    ]
+}
+
 fn births() -> Vec<Formula> {
     vec![
         Formula {
@@ -246,6 +324,10 @@ fn births() -> Vec<Formula> {
                 ("2.0 * look.x - 1.0", "look.x"),
                 ("(2.0 * look.z - 1.0) * turned", "(2.0 * look.z - 1.0) * seconds"),
                 ("fade_in * fade_out", "fade_in"),
+                ("lifetime * curve_integral", "curve_integral"),
+                ("curve_value(emitter.size_curve, age)", "curve_value(emitter.speed_curve, age)"),
+                ("share * fade_in", "fade_in"),
+                ("moved.velocity * speed", "moved.velocity"),
                 ("smoothstep_unit(age / max(emitter.fade_in", "saturate(age / max(emitter.fade_in"),
                 ("place.x * 256.0 + seconds", "place.x * 256.0 - seconds"),
                 ("birth_random(index, 3u", "birth_random(index, 2u"),

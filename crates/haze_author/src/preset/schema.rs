@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use haze::frame::Light;
 use haze::preset::{Camera, Preset, PresetSystem};
-use haze::settings::{FieldVisitor, Fields};
+use haze::settings::{Curve, FieldVisitor, Fields, MAX_CURVE_POINTS};
 
 /// Returns the JSON schema of preset files.
 pub fn schema() -> String {
@@ -86,6 +86,15 @@ impl FieldVisitor for RangeWriter<'_> {
 
     fn vector(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>, _: &'static str) {
         self.limit(name, "/items", decimal(*range.start()), decimal(*range.end()));
+    }
+
+    fn curve(&mut self, name: &'static str, _: &mut Curve, range: RangeInclusive<f32>) {
+        if let Some(property) = self.property(name) {
+            (property["minItems"], property["maxItems"]) = (json!(1), json!(MAX_CURVE_POINTS));
+            let age = json!({ "type": "number", "minimum": 0, "maximum": 1 });
+            let value = json!({ "type": "number", "minimum": range.start(), "maximum": range.end() });
+            property["items"]["prefixItems"] = json!([age, value]);
+        }
     }
 
     fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {

@@ -12,7 +12,7 @@ use super::tooltips::Tooltips;
 use haze::assets::builtin;
 use haze::frame::Light;
 use haze::preset::{Preset, PresetSystem};
-use haze::settings::{Choice, FieldValue, FieldVisitor, Fields, ImageRole, field_values};
+use haze::settings::{Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, MAX_CURVE_POINTS, field_values};
 
 const HEAD: &str = "\
 # Settings
@@ -111,6 +111,11 @@ impl FieldVisitor for SectionWriter<'_> {
         self.row(name, format_args!("linear RGB, {}", span(&range, "")));
     }
 
+    fn curve(&mut self, name: &'static str, _: &mut Curve, range: RangeInclusive<f32>) {
+        let points = format_args!("1 to {MAX_CURVE_POINTS} points [age, value], {}", span(&range, ""));
+        self.row(name, points);
+    }
+
     fn flag(&mut self, name: &'static str, _: &mut bool) {
         self.row(name, "`true`, `false`");
     }
@@ -165,6 +170,7 @@ fn shown(value: &FieldValue) -> String {
         FieldValue::Number(number) => number.to_string(),
         FieldValue::Whole(number) => number.to_string(),
         FieldValue::Vector(vector) => vector.to_array().map(|axis| axis.to_string()).join(", "),
+        FieldValue::Curve(curve) => format!("`{}`", serde_json::to_string(curve).unwrap_or_default()),
         FieldValue::Flag(flag) => format!("`{flag}`"),
         FieldValue::Choice(name) => format!("`{name}`"),
         FieldValue::Text(text) if text.is_empty() => "none".into(),

@@ -3,6 +3,7 @@
 pub mod color_popup;
 mod color_temperature;
 pub mod copy_icon;
+mod curve_editor;
 pub mod icon_button;
 pub mod picture_gallery;
 pub mod setting_rows;

@@ -5,9 +5,10 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Ui};
 use glam::Vec3;
-use haze::settings::{Choice, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
+use haze::settings::{Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
 use haze_author::preset::Tooltips;
 
+use super::curve_editor;
 use super::picture_gallery::gallery;
 use super::value_text::shown_value;
 use super::{Row, RowRequest, value_control};
@@ -231,6 +232,12 @@ impl FieldVisitor for Rows<'_, '_, '_> {
 
     fn color(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>) {
         self.row(name, ("", None), |ui, label, _, _, _| value_control::color(ui, value, &range, label));
+    }
+
+    fn curve(&mut self, name: &'static str, value: &mut Curve, range: RangeInclusive<f32>) {
+        self.row(name, ("", None), |ui, label, _, _, _| {
+            curve_editor::curve(ui, value, &range, label);
+        });
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {

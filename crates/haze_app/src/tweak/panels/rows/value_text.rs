@@ -26,6 +26,7 @@ pub fn shown_value(value: &FieldValue, unit: &str) -> String {
     match value {
         FieldValue::Number(number) => shown(f64::from(*number)) + &suffix(unit),
         FieldValue::Whole(number) => number.to_string() + &suffix(unit),
+        FieldValue::Curve(curve) => curve.to_string(),
         FieldValue::Vector(vector) => list(vector) + &suffix(unit),
         FieldValue::Flag(flag) => if *flag { "on" } else { "off" }.into(),
         FieldValue::Choice(name) => display_name(name),
