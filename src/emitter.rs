@@ -101,7 +101,12 @@ settings! {
         /// Multiplies the radius by age. With `radius_start` and `radius_end` alike, it is the size over the life.
         #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
         size_curve: Curve = Curve::constant(1.0), curve(0.0..=10.0);
+        /// Share of the radius by which a particle is moved up, along `up`. 1: its lower edge stays where it was born while it
+        /// grows, as a flame on its wick.
+        anchor: f32 = 0.0, number(0.0..=1.0, "");
         "appearance":
+        /// Random rotation at birth, as a share of a turn. 0: upright.
+        rotation_spread: f32 = 1.0, number(0.0..=1.0, "");
         /// Fastest spin at birth, either way; drag slows it. Normals and light turn with the sprite.
         spin: f32 = 0.6, number(0.0..=100.0, "rad/s");
         /// Amount of a full-grown particle: share of the background that one sprite hides. A lower amount with more
@@ -249,6 +254,9 @@ impl Emitter {
             speed_curve: self.speed_curve.packed(),
             size_curve: self.size_curve.packed(),
             amount_curve: self.amount_curve.packed(),
+            anchor: self.anchor,
+            rotation_spread: self.rotation_spread,
+            padding: [0.0; 2],
         };
         let step = (self.max_alive() / SAMPLE).ceil().max(1.0) as u32;
         let first_sample = (-first).rem_euclid(i64::from(step)) as u32;

@@ -58,6 +58,10 @@ struct Emitter {
     speed_curve: Curve,
     size_curve: Curve,
     amount_curve: Curve,
+    // Share of the radius by which a particle is moved up.
+    anchor: f32,
+    // Share of a turn.
+    rotation_spread: f32,
 }
 
 const EMITTER_SHAPE_SPHERE: u32 = 0u;
@@ -225,18 +229,18 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, emitter.seed * 977u);
     let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, emitter.seed * 977u + 5u);
     let swirl = (large + small * 0.4) * emitter.turbulence;
-    let position = base + swirl * age;
-
     // Growth like diffusion: fast at first.
-    let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * sqrt(age);
+    let mean_radius = size * (emitter.radius_start + (emitter.radius_end - emitter.radius_start) * sqrt(age));
+    let radius = mean_radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0));
+    let position = base + swirl * age + emitter.up * (emitter.anchor * radius);
     let fade_in = smoothstep_unit(age / max(emitter.fade_in, 1.0e-4));
     // Drag slows the spin.
     let turned = drag_integrals(emitter.drag, seconds).x;
     let fade_out = smoothstep_unit((1.0 - age) / max(emitter.fade_out, 1.0e-4));
     return EmittedParticle(
-        vec4f(position, radius * size * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
+        vec4f(position, radius),
         vec4f(
-            look.y * TURN + emitter.spin * (2.0 * look.z - 1.0) * turned,
+            look.y * TURN * emitter.rotation_spread + emitter.spin * (2.0 * look.z - 1.0) * turned,
             emitter.amount * share * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,

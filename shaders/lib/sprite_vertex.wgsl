@@ -164,7 +164,10 @@ fn tint_of(particle: Particle) -> vec3f {
 
 // Stretch of a particle's sprite. `centre_radius`: of the sprite, view space.
 fn stretch_of(particle: Particle, centre_radius: vec4f) -> vec2f {
-    let velocity = (system.view_from_particles * vec4f(particle.velocity, 0.0)).xyz;
+    var velocity = (system.view_from_particles * vec4f(particle.velocity, 0.0)).xyz;
+    if any(system.stretch_axis != vec3f(0.0)) {
+        velocity = (view.view_from_world * vec4f(system.stretch_axis, 0.0)).xyz;
+    }
     let radius = centre_radius.w;
     return sprite_stretch(centre_radius.xyz, velocity, system.stretch, radius, system.stretch_limit, view.orthographic);
 }

@@ -103,6 +103,8 @@ struct System {
     grain_dissolve: f32,
     grain_bump: f32,
     grain_tiles: f32,
+    // World space; 0 for the sprites' own velocities.
+    stretch_axis: vec3f,
     // Texels of the noise per pixel, on a sprite whose radius is 1 at a view depth of 1.
     grain_fineness: f32,
 }

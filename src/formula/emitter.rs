@@ -160,18 +160,18 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
     let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, seed);
     let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, seed.wrapping_add(5));
     let swirl = (large + small * 0.4) * emitter.turbulence;
-    let position = base + swirl * age;
-
     // Grows with the square root of age, like diffusion.
-    let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * age.sqrt();
+    let mean_radius = size * (emitter.radius_start + (emitter.radius_end - emitter.radius_start) * age.sqrt());
+    let radius = mean_radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0));
+    let position = base + swirl * age + emitter.up * (emitter.anchor * radius);
     let fade_in = smoothstep_unit(age / emitter.fade_in.max(1.0e-4));
     // Drag slows the spin.
     let turned = drag_integrals(emitter.drag, seconds).x;
     let fade_out = smoothstep_unit((1.0 - age) / emitter.fade_out.max(1.0e-4));
     EmittedParticle {
-        position_radius: position.extend(radius * size * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
+        position_radius: position.extend(radius),
         rotation_amount_frame_age: Vec4::new(
-            look.y * std::f32::consts::TAU + emitter.spin * (2.0 * look.z - 1.0) * turned,
+            look.y * std::f32::consts::TAU * emitter.rotation_spread + emitter.spin * (2.0 * look.z - 1.0) * turned,
             emitter.amount * share * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,

@@ -133,8 +133,8 @@ uniform! {
         grain_dissolve: f32,
         grain_bump: f32,
         grain_tiles: f32,
+        stretch_axis: Vec3,
         grain_fineness: f32,
-        padding: [f32; 3],
     }
 }
 
@@ -276,5 +276,8 @@ uniform! {
         speed_curve: [Vec4; 4],
         size_curve: [Vec4; 4],
         amount_curve: [Vec4; 4],
+        anchor: f32,
+        rotation_spread: f32,
+        padding: [f32; 2],
     }
 }

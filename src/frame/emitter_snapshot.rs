@@ -103,7 +103,8 @@ impl EmitterSnapshot {
                     + e.wind.length()
                     + e.rise.length() * reached_late.x)
                 + TURBULENCE_BOUND * 3.0_f32.sqrt() * e.turbulence / shortest;
-            let margin = scattered + extent.reach(radius * (1.0 + e.radius_spread), speed);
+            let radius = radius * (1.0 + e.radius_spread);
+            let margin = scattered + e.anchor * radius + extent.reach(radius, speed);
             bounds.include(low - born, margin);
             bounds.include(high + born, margin);
         }

@@ -1,5 +1,7 @@
 //! Distance to which sprites extend from their particles' centres.
 
+use glam::Vec3;
+
 use crate::formula::stretch::stretch_ratio;
 use crate::settings::{Settings, Technique};
 
@@ -12,6 +14,8 @@ pub struct SpriteExtent {
     corner: f32,
     /// Seconds, and largest ratio, by which sprites are stretched; 0 and 1 if they are not.
     stretch: (f32, f32),
+    /// Speed that counts in place of the particles' own.
+    speed: Option<f32>,
 }
 
 impl SpriteExtent {
@@ -24,13 +28,15 @@ impl SpriteExtent {
         };
         let sprite = &settings.sprite;
         let stretch = if settings.is_stretched() { (sprite.stretch, sprite.stretch_limit) } else { (0.0, 1.0) };
-        Self { size: sprite.size, corner, stretch }
+        let speed = (sprite.stretch_axis != Vec3::ZERO).then(|| sprite.stretch_axis.length());
+        Self { size: sprite.size, corner, stretch, speed }
     }
 
     /// Distance to which the sprite of a particle extends at most, metres. `radius`: of the particle, metres. `speed`: its
     /// own, metres per second; counts only for stretched sprites.
     pub fn reach(&self, radius: f32, speed: f32) -> f32 {
         let (seconds, limit) = self.stretch;
+        let speed = self.speed.unwrap_or(speed);
         let radius = radius * self.size;
         let ratio = if seconds > 0.0 { stretch_ratio(speed * seconds, radius, limit) } else { 1.0 };
         radius * self.corner * ratio
@@ -39,8 +45,6 @@ impl SpriteExtent {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::formula::stretch::sprite_stretch;
 

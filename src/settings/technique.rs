@@ -1,5 +1,7 @@
 //! Sprite techniques and their settings, and the appearance of sprites. `docs/techniques.md` compares the techniques.
 
+use glam::Vec3;
+
 use super::choice::choice;
 use super::settings_macro::settings;
 
@@ -96,6 +98,10 @@ settings! {
         /// long. Thin ones are at least a texel wide, and fainter in return. Higher: longer sparks and tongues of flame. 0: none, and
         /// no cost. Spheres are not stretched.
         stretch: f32 = 0.0, number(0.0..=10.0, "s");
+        /// Velocity, in world space, by which sprites are stretched in place of their own: upright tongues of flame, rain. 0, 0, 0:
+        /// their own.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        stretch_axis: Vec3 = Vec3::ZERO, vector(-1.0e3..=1.0e3, "m/s");
         /// Largest length of a stretched sprite, in lengths of the sprite at rest. Lower: fast sprites stay compact.
         stretch_limit: f32 = 4.0, number(1.0..=64.0, "");
         /// Shows a checkerboard instead of the sprite. (NV)

@@ -130,7 +130,10 @@ impl SpriteProjector<'_> {
     /// Same as `stretch_of()` in the shader.
     fn stretch(&self, particle: &Particle, centre: Vec3, radius: f32) -> Vec2 {
         let Self { view, system, .. } = *self;
-        let velocity = system.view_from_particles.transform_vector3(particle.velocity);
+        let velocity = match system.stretch_axis {
+            Vec3::ZERO => system.view_from_particles.transform_vector3(particle.velocity),
+            axis => view.view_from_world.transform_vector3(axis),
+        };
         sprite_stretch(centre, velocity, system.stretch, radius, system.stretch_limit, view.orthographic)
     }
 

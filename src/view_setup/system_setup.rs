@@ -124,6 +124,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         tint: settings.sprite.tint,
         stretch: if settings.is_stretched() { settings.sprite.stretch } else { 0.0 },
         stretch_limit: settings.sprite.stretch_limit,
+        stretch_axis: settings.sprite.stretch_axis,
         grain_bump: settings.grain.bump,
         grain_tiles: settings.grain.tiles,
         grain_fineness: settings.grain.tiles * material.noise_size

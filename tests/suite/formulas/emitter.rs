@@ -55,6 +55,9 @@ fn test_emitter(x: &[f32]) -> EmitterUniform {
         speed_curve: curve("0:1.5,0.4:0.6,0.9:1.1"),
         size_curve: curve("0.1:0.2,0.7:1.4"),
         amount_curve: curve("0:0.3,0.2:1,0.5:0.4,1:0.8"),
+        anchor: 0.7,
+        rotation_spread: 0.4,
+        padding: [0.0; 2],
     }
 }
 
@@ -76,7 +79,7 @@ macro_rules! wgsl_emitter {
              vec3f(0.9, 0.2, 0.4), 0.6, vec3f(0.3, 0.8, 1.0), 0.0, vec3f(0.0, 1.0, 0.0), 1.8, 13u, 5u, 0.34, 1u, \
              Curve(array(vec4f(0.0, 1.5, 0.4, 0.6), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1))), \
              Curve(array(vec4f(0.1, 0.2, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4))), \
-             Curve(array(vec4f(0.0, 0.3, 0.2, 1.0), vec4f(0.5, 0.4, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8)))); ",
+             Curve(array(vec4f(0.0, 0.3, 0.2, 1.0), vec4f(0.5, 0.4, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8))), 0.7, 0.4); ",
             $call
         )
     };
@@ -328,6 +331,8 @@ fn births() -> Vec<Formula> {
                 ("curve_value(emitter.size_curve, age)", "curve_value(emitter.speed_curve, age)"),
                 ("share * fade_in", "fade_in"),
                 ("moved.velocity * speed", "moved.velocity"),
+                ("emitter.up * (emitter.anchor * radius)", "emitter.up * emitter.anchor"),
+                ("TURN * emitter.rotation_spread", "TURN"),
                 ("smoothstep_unit(age / max(emitter.fade_in", "saturate(age / max(emitter.fade_in"),
                 ("place.x * 256.0 + seconds", "place.x * 256.0 - seconds"),
                 ("birth_random(index, 3u", "birth_random(index, 2u"),

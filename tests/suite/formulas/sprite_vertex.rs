@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/sprite_vertex.wgsl`.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, vec3};
 use haze::Particle;
 use haze::formula::sprite::{animation_frames, flipbook_frames, sprite_uv, trimmed_corner};
 use haze::settings::{Settings, SpriteAnimation, Technique};
@@ -38,6 +38,9 @@ fn changed(settings: &Settings) -> VisibleSystem<'_> {
     let system = &mut visible.system;
     let stretch = if settings.technique.is_sphere() { 0.0 } else { 0.1 };
     (system.billboard_radius, system.stretch, system.stretch_limit) = (1.3, stretch, 2.5);
+    if settings.technique as u32 % 2 == 1 {
+        system.stretch_axis = vec3(4.0, 1.0, -2.0);
+    }
     visible
 }
 
@@ -46,6 +49,7 @@ macro_rules! with_particle {
     ($wgsl:literal) => {
         concat!(
             "TECHNIQUE = u32(x(0)); STRETCH = !is_sphere(); system.billboard_radius = 1.3; system.stretch = 0.1; \
+             if u32(x(0)) % 2u == 1u { system.stretch_axis = vec3f(4.0, 1.0, -2.0); } \
              system.stretch_limit = 2.5; let p = Particle(vec4f(x(1), x(2), x(3), x(4)), \
              vec4f(x(5), x(6), x(7), x(8)), vec3f(x(5), x(7), x(6)), vec4f(1.0)); ",
             $wgsl
@@ -199,6 +203,8 @@ fn projection() -> Vec<Formula> {
                 ("max(view_depth, view.near), view.orthographic", "1.0, view.orthographic"),
                 ("vec4f(particle.velocity, 0.0)", "vec4f(particle.velocity.zyx, 0.0)"),
                 ("system.stretch, radius, system.stretch_limit", "system.stretch, radius, 1000.0"),
+                ("vec4f(system.stretch_axis, 0.0)", "vec4f(system.stretch_axis.zyx, 0.0)"),
+                ("if any(system.stretch_axis != vec3f(0.0))", "if false"),
             ],
         },
         Formula {

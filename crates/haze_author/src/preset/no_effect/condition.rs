@@ -76,5 +76,6 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
 
 pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {
     let emitter = &system.emitter;
-    emitter.buoyancy == 0.0 && emitter.bounce <= 0.0 && emitter.shape != EmitterShape::Disc
+    let is_anchored = emitter.anchor > 0.0;
+    emitter.buoyancy == 0.0 && emitter.bounce <= 0.0 && !is_anchored && emitter.shape != EmitterShape::Disc
 }

@@ -96,6 +96,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "material.rows",
             "material.y_down",
             "emitter.spin",
+            "emitter.rotation_spread",
             "emitter.frame_rate",
             "cache.flipbook_rate",
         ],
@@ -234,17 +235,17 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "spheres are not stretched",
         |s, _| technique(s).is_sphere(),
-        &["settings.sprite.stretch", "settings.sprite.stretch_limit"],
+        &["settings.sprite.stretch", "settings.sprite.stretch_limit", "settings.sprite.stretch_axis"],
     ),
     rule(
         "only at a sprite.stretch above 0",
         |s, _| s.settings.sprite.stretch <= 0.0,
-        &["settings.sprite.stretch_limit"],
+        &["settings.sprite.stretch_limit", "settings.sprite.stretch_axis"],
     ),
     rule(
         "only at a stretch_limit above 1",
         |s, _| s.settings.sprite.stretch_limit <= 1.0,
-        &["settings.sprite.stretch"],
+        &["settings.sprite.stretch", "settings.sprite.stretch_axis"],
     ),
     rule("only at an age_color above 0", |s, _| s.settings.sprite.age_color <= 0.0, &["material.age_ramp"]),
     rule(
@@ -341,7 +342,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &["emitter.turbulence_scale", "emitter.turbulence_speed"],
     ),
     rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
-    rule("only with buoyancy, bounce, or shape disc", ignores_up, &["emitter.up"]),
+    rule("only with buoyancy, bounce, anchor, or shape disc", ignores_up, &["emitter.up"]),
     rule("only at a bounce above 0", |s, _| s.emitter.bounce <= 0.0, &["emitter.floor"]),
     rule("only at a duration above 0", |s, _| s.emitter.duration <= 0.0, &["emitter.period"]),
 ];
