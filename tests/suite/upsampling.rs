@@ -4,7 +4,7 @@ use glam::{IVec2, UVec2, Vec4, vec3};
 use haze::builtin;
 use haze::formula::color::srgb_from_linear;
 use haze::image::Image;
-use haze::settings::{DebugView, Grain, LightingResolution, Upsample};
+use haze::settings::{DebugView, Grain, LightingResolution, Settings, Upsample};
 use haze_demo::shot::Shot;
 
 use crate::presets::render_on_gpu;
@@ -12,11 +12,12 @@ use crate::psnr::psnr;
 
 const SIZE: UVec2 = UVec2::new(640, 360);
 
-/// Renders with a scale and an upsampling mode for every system but sparks, which are smaller than a texel: presets draw them
-/// at scale 1.
+/// Renders with a scale and an upsampling mode for every system but sparks, which are smaller than a texel: presets draw these
+/// stretched sprites at scale 1.
 fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Image<Vec4> {
     let mut shot = shot.clone();
-    for system in shot.preset.systems.iter_mut().filter(|system| !system.settings.is_stretched()) {
+    let is_sparks = |settings: &Settings| settings.is_stretched() && settings.accumulate.scale == 1;
+    for system in shot.preset.systems.iter_mut().filter(|system| !is_sparks(&system.settings)) {
         (system.settings.accumulate.scale, system.settings.accumulate.upsample) = (scale, upsample);
     }
     render_on_gpu(&shot, true)
