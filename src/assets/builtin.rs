@@ -139,7 +139,7 @@ pub const PRESETS: &[Builtin] = presets!([
     "column",
     "backlit_fog",
     "corridor",
-    "explosion",
+    "colored_lights",
     "fence",
     "inside",
     "crates",
@@ -148,7 +148,8 @@ pub const PRESETS: &[Builtin] = presets!([
     "oil_fire",
     "fireball",
     "steam_vent",
-    "spell"
+    "spell",
+    "wildfire_sky"
 ]);
 
 /// Returns the built-in images for a role; empty for details and six-way maps.

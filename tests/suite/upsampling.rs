@@ -36,6 +36,11 @@ fn edges(shot: &Shot, reach: i32) -> Vec<bool> {
     (0..SIZE.element_product()).map(is_edge).collect()
 }
 
+/// True if any pixel is at an edge in the depths that the smoke reaches.
+fn has_edges(shot: &Shot) -> bool {
+    edges(shot, 2).contains(&true)
+}
+
 /// PSNR of the pixels at edges, dB, and the largest error of a channel among them, sRGB 0..1.
 fn error_at_edges(reduced: &Image<Vec4>, full: &Image<Vec4>, edges: &[bool]) -> (f32, f32) {
     let at_edges = |picture: &Image<Vec4>| {
@@ -98,8 +103,9 @@ fn lighting_at_target_resolution_stays_close_to_full_resolution() {
         let shot = Shot::load(preset.name, SIZE).unwrap();
         let lit = |scale, resolution| render_lit(&shot, scale, Upsample::Bilinear, resolution);
         assert!(lit(1, LightingResolution::Target) == lit(1, LightingResolution::Full));
-        // The reduced target alone is at 36 to 81 dB. `explosion` is the worst preset here, at 66 and 59 dB.
-        for (scale, least) in [(2, 63.0), (4, 56.0)] {
+        // The reduced target alone is at 36 to 81 dB. `wildfire_sky` is the worst preset here, whose backlight ramp is steep where
+        // grain tilts normals: 61 and 58 dB. The others are at 65 and 62 dB or more.
+        for (scale, least) in [(2, 60.0), (4, 56.0)] {
             let [full, target] = [LightingResolution::Full, LightingResolution::Target].map(|r| lit(scale, r));
             let all = psnr(&target, &full);
             println!("{} lit at scale {scale}: {all:.1} dB", preset.name);
@@ -133,11 +139,19 @@ fn carrying_texels_along_slopes_is_as_close_to_full_scale_as_a_fit_for_each_pixe
 
 #[test]
 fn guided_upsampling_at_half_scale_has_no_jagged_edges() {
+    let mut count = 0;
     for preset in builtin::PRESETS {
-        let guided = worst_at_edges(&Shot::load(preset.name, SIZE).unwrap(), Upsample::Guided);
+        let shot = Shot::load(preset.name, SIZE).unwrap();
+        // The smoke of `wildfire_sky` lies behind all of the scene, which then is one depth to it.
+        if !has_edges(&shot) {
+            continue;
+        }
+        count += 1;
+        let guided = worst_at_edges(&shot, Upsample::Guided);
         println!("{}: worst pixel at edges {guided:.2}", preset.name);
         assert!(guided <= 0.2, "{}: worst pixel at edges {guided}", preset.name);
     }
+    assert_eq!(count, builtin::PRESETS.len() - 1);
 }
 
 /// Shot in which the camera sees the brazier's top from a few degrees above it.

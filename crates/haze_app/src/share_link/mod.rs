@@ -35,6 +35,9 @@ pub struct Look {
     pub ramps: BTreeMap<String, RampRecipe>,
 }
 
+/// Earlier names of built-in presets, which links may have, and their names now.
+const RENAMED: [(&str, &str); 1] = [("explosion", "colored_lights")];
+
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Packed {
@@ -93,7 +96,8 @@ impl Look {
         let damaged = || refuse("it is damaged", whole);
         let text = packed_text::unpack(packed).ok_or_else(damaged)?;
         let Packed { b, d, r } = serde_json::from_str(&text).map_err(|_| damaged())?;
-        let name = builtin::find(builtin::PRESETS, &b).ok_or_else(damaged)?.name;
+        let name = RENAMED.iter().find(|(old, _)| *old == b).map_or(b.as_str(), |(_, new)| new);
+        let name = builtin::find(builtin::PRESETS, name).ok_or_else(damaged)?.name;
         let mut json = json_of(&base(name)?);
         if d.is_some_and(|difference| !json_diff::apply(&mut json, difference)) {
             return Err(damaged().into());

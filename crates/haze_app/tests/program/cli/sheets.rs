@@ -54,7 +54,7 @@ fn without_visible_smoke_costs_are_left_out() {
     let folder = folder();
     let run = |time: &str| {
         let arguments =
-            ["techniques", "explosion", "--size", "400x40", "--backend", "cpu", "--time", time, "-o", "t.png"];
+            ["techniques", "colored_lights", "--size", "400x40", "--backend", "cpu", "--time", time, "-o", "t.png"];
         let output = haze(folder.path(), &arguments);
         assert!(output.status.success(), "{}", stderr(&output));
         let sheet = haze::image::read_png(&folder.path().join("t.png")).unwrap().to_rgb8();

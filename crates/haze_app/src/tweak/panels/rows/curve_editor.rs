@@ -25,7 +25,7 @@ pub fn curve(ui: &mut Ui, value: &mut Curve, range: &RangeInclusive<f32>, name: 
     let dragged_id = response.id.with("dragged");
     // The scale stays while a point is dragged, or the point would run away.
     let dragged: Option<(usize, f32)> = ui.data(|data| data.get_temp(dragged_id));
-    let fitting = TOPS.into_iter().find(|top| highest <= *top).unwrap_or(highest).min(*range.end());
+    let fitting = TOPS.into_iter().find(|top| highest < *top).unwrap_or(highest).min(*range.end());
     let plot = Plot { rect: rect.shrink(RADIUS + 1.0), top: dragged.map_or(fitting, |(_, top)| top) };
 
     let (pointer, is_pressed) = ui.input(|input| (input.pointer.interact_pos(), input.pointer.primary_down()));
@@ -147,7 +147,7 @@ mod tests {
     fn points_are_dragged_added_and_removed() {
         let mut harness = harness("0:1,1:1".parse().unwrap());
         let image = harness.get_by_role(egui::Role::Image).rect();
-        let (top, middle) = (image.top() + RADIUS + 1.0, image.center());
+        let middle = image.center();
         // A click adds a point, and a drag in one go moves it.
         press(&mut harness, middle, egui::PointerButton::Primary, true);
         harness.event(egui::Event::PointerMoved(middle + Vec2::new(0.0, image.height())));
@@ -155,10 +155,10 @@ mod tests {
         press(&mut harness, middle + Vec2::new(0.0, image.height()), egui::PointerButton::Primary, false);
         assert_eq!(harness.state().to_string(), "0:1,0.5:0,1:1");
         // The first point cannot pass the second.
-        press(&mut harness, pos2(image.left() + RADIUS + 1.0, top), egui::PointerButton::Primary, true);
-        harness.event(egui::Event::PointerMoved(pos2(image.right(), top)));
+        press(&mut harness, pos2(image.left() + RADIUS + 1.0, middle.y), egui::PointerButton::Primary, true);
+        harness.event(egui::Event::PointerMoved(pos2(image.right(), middle.y)));
         harness.run();
-        press(&mut harness, pos2(image.right(), top), egui::PointerButton::Primary, false);
+        press(&mut harness, pos2(image.right(), middle.y), egui::PointerButton::Primary, false);
         assert_eq!(harness.state().to_string(), "0.495:1,0.5:0,1:1");
         let second = pos2(middle.x, image.bottom() - RADIUS - 1.0);
         press(&mut harness, second, egui::PointerButton::Secondary, true);
