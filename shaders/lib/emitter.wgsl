@@ -191,6 +191,11 @@ fn birth_random(index: u32, salt: u32, seed: u32) -> vec3f {
     return vec3f(unit(hash.x), unit(hash.y), unit(hash.z));
 }
 
+// Returns the rotation at birth, radians: any at a spread of 1, about upright at small ones.
+fn rotation_at_birth(spread: f32, random: f32) -> f32 {
+    return TURN * spread * (random - 0.5 * (1.0 - spread));
+}
+
 // Returns the particle of a birth, counted from the first; its amount is 0 if it is not alive.
 fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     let index = emitter.first + number;
@@ -240,7 +245,7 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     return EmittedParticle(
         vec4f(position, radius),
         vec4f(
-            look.y * TURN * emitter.rotation_spread + emitter.spin * (2.0 * look.z - 1.0) * turned,
+            rotation_at_birth(emitter.rotation_spread, look.y) + emitter.spin * (2.0 * look.z - 1.0) * turned,
             emitter.amount * share * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,

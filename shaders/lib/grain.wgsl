@@ -55,9 +55,9 @@ fn eroded(amount: f32, density: f32, erosion: f32) -> f32 {
     return saturate((amount - threshold) / max(1.0 - threshold, 0.01));
 }
 
-// Share of a sprite's density that erosion keeps. `alpha`: of the middle of its image.
-fn kept_share(alpha: f32, erosion: f32) -> f32 {
-    return eroded(alpha, 0.0, erosion) / max(alpha, 1.0e-3);
+// Share of a sprite's density that erosion keeps. `eroded_share`: the same at an erosion of 1.
+fn kept_share(eroded_share: f32, erosion: f32) -> f32 {
+    return 1.0 - (1.0 - eroded_share) * erosion;
 }
 
 // Normal with a tilt, at most of unit length.

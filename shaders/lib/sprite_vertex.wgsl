@@ -130,7 +130,7 @@ fn density_radius(particle: Particle) -> f32 {
 // Mean optical depth over that square, as it casts shadow.
 fn sprite_optical_depth(particle: Particle) -> f32 {
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity;
-    let kept = kept_share(system.peak_alpha, erosion_of(particle.rotation_amount_frame_age.w));
+    let kept = kept_share(system.eroded_share, erosion_of(particle.rotation_amount_frame_age.w));
     let depth = kept * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
     return system.shadow_density * depth / (system.density_reach * system.density_reach);
 }

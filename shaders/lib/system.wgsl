@@ -107,4 +107,6 @@ struct System {
     stretch_axis: vec3f,
     // Texels of the noise per pixel, on a sprite whose radius is 1 at a view depth of 1.
     grain_fineness: f32,
+    // Share of the sprite's alpha that remains at an erosion of 1.
+    eroded_share: f32,
 }

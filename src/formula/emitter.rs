@@ -128,6 +128,11 @@ pub fn birth_random(index: u32, salt: u32, seed: u32) -> Vec3 {
     Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z))
 }
 
+/// Rotation at birth, radians: any at a spread of 1, about upright at small ones.
+pub fn rotation_at_birth(spread: f32, random: f32) -> f32 {
+    std::f32::consts::TAU * spread * (random - 0.5 * (1.0 - spread))
+}
+
 /// Particle of birth `number`, counted from the emitter's first. Its amount is 0 if it is not alive.
 pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticle {
     let index = emitter.first.wrapping_add(number);
@@ -171,7 +176,7 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
     EmittedParticle {
         position_radius: position.extend(radius),
         rotation_amount_frame_age: Vec4::new(
-            look.y * std::f32::consts::TAU * emitter.rotation_spread + emitter.spin * (2.0 * look.z - 1.0) * turned,
+            rotation_at_birth(emitter.rotation_spread, look.y) + emitter.spin * (2.0 * look.z - 1.0) * turned,
             emitter.amount * share * fade_in * fade_out,
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,

@@ -47,9 +47,9 @@ pub fn eroded(amount: f32, density: f32, erosion: f32) -> f32 {
     saturate((amount - threshold) / (1.0 - threshold).max(0.01))
 }
 
-/// Share of a sprite's density that erosion keeps. `alpha`: of the middle of its image.
-pub fn kept_share(alpha: f32, erosion: f32) -> f32 {
-    eroded(alpha, 0.0, erosion) / alpha.max(1.0e-3)
+/// Share of a sprite's density that erosion keeps. `eroded_share`: the same at an erosion of 1.
+pub fn kept_share(eroded_share: f32, erosion: f32) -> f32 {
+    1.0 - (1.0 - eroded_share) * erosion
 }
 
 /// Normal with a tilt, at most of unit length.

@@ -135,6 +135,8 @@ uniform! {
         grain_tiles: f32,
         stretch_axis: Vec3,
         grain_fineness: f32,
+        eroded_share: f32,
+        padding: [f32; 3],
     }
 }
 

@@ -38,7 +38,7 @@ pub fn density_radius(system: &SystemUniform, particle: &Particle) -> f32 {
 /// Mean optical depth over that square, as it casts shadow.
 pub fn sprite_optical_depth(system: &SystemUniform, particle: &Particle) -> f32 {
     let amount = particle.shown_amount() * system.opacity;
-    let kept = kept_share(system.peak_alpha, erosion_of(system, particle));
+    let kept = kept_share(system.eroded_share, erosion_of(system, particle));
     let depth = kept * mean_optical_depth(amount, system.mean_alpha, system.peak_alpha);
     system.shadow_density * depth / (system.density_reach * system.density_reach)
 }

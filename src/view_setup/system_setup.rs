@@ -174,6 +174,7 @@ pub fn caster_uniform(system: &SystemInput<'_>) -> SystemUniform {
         alive_count: u32::MAX,
         mean_alpha: material.density.mean_alpha,
         peak_alpha: material.density.peak_alpha,
+        eroded_share: material.density.eroded_share,
         density_reach: material.density.reach,
         grid_from_view: shadow.map_or(Mat4::IDENTITY, |shadow| shadow.grid_from_view),
         grid_size: shadow.map_or(Vec3::ONE, |shadow| shadow.grid.size.as_vec3()),

@@ -3,7 +3,7 @@
 use glam::{IVec2, UVec2, Vec3, vec3};
 use haze::frame::particle_bounds;
 use haze::settings::*;
-use haze::{Bounds, Particle, SpriteExtent};
+use haze::{Bounds, Particle, SpriteExtent, builtin};
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
@@ -136,6 +136,43 @@ fn streaks_thinner_than_a_texel_do_not_flicker() {
         let mean = sums.iter().sum::<f32>() / 6.0;
         println!("{radius}: {sums:?}");
         assert!(sums.iter().all(|sum| (sum / mean - 1.0).abs() < 0.2), "{radius}: {sums:?}");
+    }
+}
+
+/// Largest difference of the amount along a trail of particles that follow each other at the distance of two radii, relative
+/// to its mean. `seconds`: of the stretch.
+fn ripple(path: RenderPath, seconds: f32) -> f32 {
+    let mut scene = streak(Vec3::ZERO, path);
+    scene.debug_view = DebugView::Amount;
+    scene.material.sprite = builtin::find(builtin::SPRITES, "ball").unwrap().sprite().unwrap();
+    (scene.material.detail, scene.material.six_way) = (None, None);
+    (scene.settings.sprite.stretch, scene.settings.sprite.stretch_limit) = (seconds, 64.0);
+    // Ten are born in a second.
+    let (spacing, first) = (vec3(0.25, 0.0, 0.0), vec3(-4.0, 0.0, -5.0));
+    let particle = |index: u16| Particle {
+        position: first + spacing * f32::from(index),
+        velocity: spacing * 10.0,
+        radius: 0.12,
+        amount: 0.15,
+        ..Particle::default()
+    };
+    scene.particles = (0..33).map(particle).collect();
+    let picture = scene.on_gpu(gpu()).picture;
+    let middle = |x: i32| picture.load(IVec2::new(x, SIZE.y as i32 / 2)).x;
+    let amounts: Vec<f32> = (SIZE.x as i32 * 3 / 8..SIZE.x as i32 * 5 / 8).map(middle).collect();
+    let (low, high) = amounts.iter().fold((f32::MAX, 0.0_f32), |(low, high), a| (low.min(*a), high.max(*a)));
+    (high - low) / (amounts.iter().sum::<f32>() / amounts.len() as f32)
+}
+
+#[test]
+fn particles_that_are_stretched_over_the_next_ones_leave_a_trail_without_beads() {
+    for path in [RenderPath::Raster, RenderPath::Tiled] {
+        if path == RenderPath::Tiled && !is_tiled_available() {
+            continue;
+        }
+        let [beads, trail] = [0.0, 1.0].map(|seconds| ripple(path, seconds));
+        println!("{}: ripple {beads:.3}, stretched {trail:.3}", path.name());
+        assert!(beads > 0.1 && trail <= 0.03, "{path:?}: {beads}, stretched {trail}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Sprite;
 use crate::formula::density_grid::mean_optical_depth;
+use crate::formula::grain::eroded;
 
 /// Largest alpha whose optical depth is counted: that of an alpha of 1 is infinite. 0.98 is 3.9.
 const MAX_ALPHA: f32 = 0.98;
@@ -14,6 +15,8 @@ const MIN_REACH: f32 = 0.25;
 pub(crate) struct SpriteDensity {
     pub mean_alpha: f32,
     pub peak_alpha: f32,
+    /// Share of its alpha that remains at an erosion of 1.
+    pub eroded_share: f32,
     /// Radius of the bump that spreads as far as the sprite's optical depth does, as a share of half the sprite's side.
     pub reach: f32,
 }
@@ -43,7 +46,8 @@ impl SpriteDensity {
                 high = middle;
             }
         }
-        Self { mean_alpha, peak_alpha: 0.5 * (low + high), reach: reach(sprite) }
+        let eroded_share = mean(|alpha| eroded(alpha, 0.0, 1.0)) / mean_alpha.max(1.0e-6);
+        Self { mean_alpha, peak_alpha: 0.5 * (low + high), eroded_share, reach: reach(sprite) }
     }
 }
 
@@ -66,6 +70,8 @@ fn reach(sprite: &Sprite) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assets::builtin;
+    use crate::formula::grain::kept_share;
 
     #[test]
     fn reach_is_that_of_a_bump_with_the_same_spread() {
@@ -79,6 +85,25 @@ mod tests {
             let sprite = Sprite::with_levels(SIDE, 1, (0..SIDE * SIDE).map(texel).collect());
             let reach = SpriteDensity::new(&sprite).reach;
             assert!((reach / radius - 1.0).abs() < 0.03, "{radius}: {reach}");
+        }
+    }
+
+    #[test]
+    fn erosion_by_noise_keeps_the_share_that_is_computed() {
+        for name in ["puff", "wisp", "strands"] {
+            let sprite = builtin::find(builtin::SPRITES, name).unwrap().sprite().unwrap();
+            let noise = builtin::find(builtin::NOISES, "fbm").unwrap().noise().unwrap();
+            let SpriteDensity { eroded_share, .. } = SpriteDensity::new(&sprite);
+            let alphas: Vec<_> =
+                sprite.level_bytes(0).iter().skip(3).step_by(4).map(|a| f32::from(*a) / 255.0).collect();
+            let densities: Vec<_> = noise.bytes().iter().skip(3).step_by(4).map(|a| f32::from(*a) / 255.0).collect();
+            for erosion in [0.3, 0.6, 0.9] {
+                // Any alpha may meet any density.
+                let met = alphas.iter().zip(densities.iter().cycle().step_by(7));
+                let kept: f32 = met.map(|(alpha, density)| eroded(*alpha, density - 0.5, erosion)).sum();
+                let (kept, computed) = (kept / alphas.iter().sum::<f32>(), kept_share(eroded_share, erosion));
+                assert!((kept - computed).abs() < 0.03, "{name} at {erosion}: {kept}, computed {computed}");
+            }
         }
     }
 

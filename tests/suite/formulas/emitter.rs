@@ -296,6 +296,15 @@ fn births() -> Vec<Formula> {
             mutants: &[("vec3u(index, salt, seed)", "vec3u(index, seed, salt)"), ("unit(hash.y)", "unit(hash.x)")],
         },
         Formula {
+            name: "rotation_at_birth",
+            file: "lib/emitter.wgsl",
+            wgsl: "y(0, rotation_at_birth(x(0), x(1)));",
+            reference: |x| vec![emitter::rotation_at_birth(x[0], x[1])],
+            cases: random(40, &[(0.0, 1.0), (0.0, 1.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("0.5 * (1.0 - spread)", "0.5"), ("TURN * spread", "TURN")],
+        },
+        Formula {
             name: "emitted_particle",
             file: "lib/emitter.wgsl",
             wgsl: WGSL_EMITTED,
@@ -332,7 +341,6 @@ fn births() -> Vec<Formula> {
                 ("share * fade_in", "fade_in"),
                 ("moved.velocity * speed", "moved.velocity"),
                 ("emitter.up * (emitter.anchor * radius)", "emitter.up * emitter.anchor"),
-                ("TURN * emitter.rotation_spread", "TURN"),
                 ("smoothstep_unit(age / max(emitter.fade_in", "saturate(age / max(emitter.fade_in"),
                 ("place.x * 256.0 + seconds", "place.x * 256.0 - seconds"),
                 ("birth_random(index, 3u", "birth_random(index, 2u"),

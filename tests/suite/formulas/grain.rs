@@ -66,8 +66,8 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: "y(0, kept_share(x(0), x(1)));",
             reference: |x| vec![grain::kept_share(x[0], x[1])],
             cases: random(60, &[SHARE, SHARE]),
-            tolerance: ARITHMETIC * 10.0,
-            mutants: &[("/ max(alpha, 1.0e-3)", ""), ("eroded(alpha, 0.0,", "eroded(alpha, 0.2,")],
+            tolerance: ARITHMETIC,
+            mutants: &[("(1.0 - eroded_share) * erosion", "eroded_share * erosion")],
         },
         Formula {
             name: "tilted_normal",

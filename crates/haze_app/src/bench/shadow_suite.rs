@@ -6,18 +6,13 @@ use haze::settings::{RenderPath, Settings};
 use haze::{Error, Light, LightKind};
 use haze_demo::shot::Shot;
 
-use super::sprite_shots::{WITHIN_IMAGE, small_sprites};
+use super::sprite_shots::crowd;
 use super::suite::{Case, Group, Suite, at_scale, changed, full_resolution};
-
-/// Number of small sprites.
-const SPRITES: u32 = 4096;
-/// Depth of the crowd, layers.
-const LAYERS: f32 = 64.0;
 
 /// Returns a group for each path: without shadow, with lights at the sprites, and with further lights by depth; then the
 /// resolutions of the grid.
 pub fn groups(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
-    let mut shot = small_sprites(size, SPRITES, LAYERS, WITHIN_IMAGE)?;
+    let mut shot = crowd(size)?;
     shot.preset.lights = lights();
     let paths = [RenderPath::Raster, RenderPath::Tiled];
     Ok(paths.into_iter().map(|path| group(&shot, path, quick)).collect())

@@ -52,6 +52,11 @@ pub fn with_alpha(mut shot: Shot, alpha: f32) -> Shot {
     shot
 }
 
+/// A shot of 4,096 small sprites, 64 layers deep.
+pub fn crowd(size: UVec2) -> Result<Shot, Error> {
+    small_sprites(size, 4096, 64.0, WITHIN_IMAGE)
+}
+
 /// Extent of a crowd of sprites.
 #[derive(Clone, Copy)]
 pub struct CrowdExtent {

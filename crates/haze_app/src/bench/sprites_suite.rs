@@ -5,13 +5,8 @@ use haze::Error;
 use haze::settings::{RenderPath, Settings};
 use haze_demo::shot::Shot;
 
-use super::sprite_shots::{WITHIN_IMAGE, small_sprites};
+use super::sprite_shots::crowd;
 use super::suite::{Case, Group, Suite, at_scale, changed, full_resolution};
-
-/// Number of small sprites.
-const SPRITES: u32 = 4096;
-/// Depth of the crowd, layers.
-const LAYERS: f32 = 64.0;
 
 type Change = (&'static str, fn(&mut Settings));
 
@@ -28,7 +23,7 @@ const CHANGES: &[Change] = &[
 
 /// Returns a group for each path.
 pub fn groups(size: UVec2) -> Result<Vec<Group>, Error> {
-    let shot = small_sprites(size, SPRITES, LAYERS, WITHIN_IMAGE)?;
+    let shot = crowd(size)?;
     Ok([RenderPath::Raster, RenderPath::Tiled].into_iter().map(|path| group(&shot, path)).collect())
 }
 
