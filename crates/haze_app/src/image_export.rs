@@ -9,9 +9,9 @@ use glam::UVec2;
 use haze::image::{CompressionEffort, write_file, write_png};
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::tonemap;
+use haze_demo::tonemap_pass::{tonemap, tonemap_straight};
 use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, DynamicImage, Frame, RgbImage, imageops};
+use image::{Delay, DynamicImage, Frame, imageops};
 
 use super::backend::Backend;
 use super::contact_sheet::ContactSheet;
@@ -19,12 +19,24 @@ use super::frame_range::FrameNames;
 use super::interrupt;
 use super::memory_check::check_memory;
 use super::progress::with_progress;
+use super::smoke_alone::{before_two_skies, separated};
+
+/// Background of exported images.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Background {
+    /// The scene of the preset.
+    #[default]
+    Scene,
+    /// None: the smoke alone, with its opacity in alpha, not premultiplied.
+    Transparent,
+}
 
 /// Range of frames. Frame 0 is at the preset's time.
 pub struct Frames {
     pub range: RangeInclusive<u32>,
     /// Frames per second.
     pub rate: f32,
+    pub background: Background,
 }
 
 /// Receiver of the progress, which can stop the work.
@@ -44,20 +56,51 @@ impl ExportProgress<'_> {
     }
 
     /// Renders an image; `None` if the work is to stop.
-    async fn render(&self, done: u32, count: u32, backend: &Backend, shot: &Shot) -> Result<Option<RgbImage>, Error> {
-        let picture = match self {
-            Self::Terminal if interrupt::is_requested() => return Ok(None),
-            Self::Terminal => with_progress(format!("haze: image {} of {count}", done + 1), || backend.render(shot))?,
-            Self::Callback(go_on) if !go_on(done, count) => return Ok(None),
-            Self::Callback(_) => backend.render_async(shot).await?,
+    async fn render(
+        &self,
+        (done, count): (u32, u32),
+        backend: &Backend,
+        shot: &Shot,
+        background: Background,
+    ) -> Result<Option<DynamicImage>, Error> {
+        let goes_on = match self {
+            Self::Terminal => !interrupt::is_requested(),
+            Self::Callback(go_on) => go_on(done, count),
         };
-        Ok(Some(tonemap(&picture, shot)))
+        if !goes_on {
+            return Ok(None);
+        }
+        let message = || format!("haze: image {} of {count}", done + 1);
+        let draw = async |shot: &Shot| match self {
+            Self::Terminal => with_progress(message(), || backend.render(shot)),
+            Self::Callback(_) => backend.render_async(shot).await,
+        };
+        Ok(Some(match background {
+            Background::Scene => tonemap(&draw(shot).await?, shot).into(),
+            Background::Transparent => {
+                let [dark, bright] = before_two_skies(shot);
+                tonemap_straight(&separated([&draw(&dark).await?, &draw(&bright).await?]), shot).into()
+            }
+        }))
     }
 }
 
 impl Frames {
     fn count(&self) -> u32 {
         self.range.end() - self.range.start() + 1
+    }
+
+    /// Returns the shot at the time of a frame.
+    pub fn shot(&self, shot: &Shot, frame: u32) -> Shot {
+        let mut shot = shot.clone();
+        shot.preset.time += frame as f32 / self.rate;
+        shot
+    }
+
+    /// Returns the error of a sequence that was stopped after so many frames.
+    pub fn stopped_sequence(&self, names: &FrameNames, done: u32) -> Error {
+        let what = format!("not written; this sequence is partial, {done} of {} frames are written", self.count());
+        stopped(&names.of(self.range.start() + done), what)
     }
 
     /// Renders every frame and passes it to `take` with its number. `stopped` makes the error of a run that was stopped
@@ -67,13 +110,13 @@ impl Frames {
         backend: &Backend,
         shot: &Shot,
         progress: &ExportProgress<'_>,
-        mut take: impl FnMut(u32, RgbImage) -> Result<(), Error>,
+        mut take: impl FnMut(u32, DynamicImage) -> Result<(), Error>,
         stopped: impl Fn(u32) -> Error,
     ) -> Result<(), Error> {
         for (done, frame) in (0..).zip(self.range.clone()) {
-            let mut shot = shot.clone();
-            shot.preset.time += frame as f32 / self.rate;
-            let picture = progress.render(done, self.count(), backend, &shot).await?.ok_or_else(|| stopped(done))?;
+            let (shot, place) = (self.shot(shot, frame), (done, self.count()));
+            let picture = progress.render(place, backend, &shot, self.background).await?;
+            let picture = picture.ok_or_else(|| stopped(done))?;
             take(frame, picture)?;
         }
         Ok(())
@@ -98,15 +141,8 @@ pub async fn write_sequence(
     effort: CompressionEffort,
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
-    let write = |frame, picture: RgbImage| write_png(&names.of(frame), &picture.into(), effort);
-    let first = *frames.range.start();
-    let stopped = |done| {
-        stopped(
-            &names.of(first + done),
-            format!("not written; this sequence is partial, {done} of {} frames are written", frames.count()),
-        )
-    };
-    frames.render(backend, shot, progress, write, stopped).await
+    let write = |frame, picture: DynamicImage| write_png(&names.of(frame), &picture, effort);
+    frames.render(backend, shot, progress, write, |done| frames.stopped_sequence(names, done)).await
 }
 
 /// Most pixels along a side of a flipbook.
@@ -137,12 +173,15 @@ pub async fn render_flipbook(
     cells: UVec2,
     path: &Path,
     progress: &ExportProgress<'_>,
-) -> Result<RgbImage, Error> {
+) -> Result<DynamicImage, Error> {
     let columns = cells.y;
     let size = shot.size * UVec2::new(columns, cells.x);
-    let mut sheet = RgbImage::new(size.x, size.y);
+    let mut sheet = match frames.background {
+        Background::Scene => DynamicImage::new_rgb8(size.x, size.y),
+        Background::Transparent => DynamicImage::new_rgba8(size.x, size.y),
+    };
     let mut index = 0;
-    let place = |_, picture| {
+    let place = |_, picture: DynamicImage| {
         let corner = UVec2::new(index % columns, index / columns) * shot.size;
         imageops::replace(&mut sheet, &picture, i64::from(corner.x), i64::from(corner.y));
         index += 1;
@@ -172,11 +211,10 @@ pub async fn write_gif(
     let mut index = 0;
     // Delays are differences of rounded end times, so that rounding does not change the total duration.
     let end = |index: u32| (index as f32 * 100.0 / frames.rate).round() as u32;
-    let encode = |_, picture: RgbImage| {
+    let encode = |_, picture: DynamicImage| {
         let delay = Delay::from_numer_denom_ms(10 * (end(index + 1) - end(index)), 1);
         index += 1;
-        let picture = DynamicImage::from(picture).into_rgba8();
-        encoder.encode_frame(Frame::from_parts(picture, 0, 0, delay)).map_err(failed)
+        encoder.encode_frame(Frame::from_parts(picture.into_rgba8(), 0, 0, delay)).map_err(failed)
     };
     let stopped = |done| stopped_before_writing(path, done, frames.count());
     frames.render(backend, shot, progress, encode, stopped).await?;
@@ -199,9 +237,9 @@ pub async fn render_sheet(
     let size = cells.first().map_or(UVec2::ONE, |(_, shot)| shot.size);
     let mut sheet = ContactSheet::new(size, columns, count);
     for (index, (label, shot)) in (0..).zip(cells) {
-        let picture = progress.render(index, count, backend, shot).await?;
+        let picture = progress.render((index, count), backend, shot, Background::Scene).await?;
         let picture = picture.ok_or_else(|| stopped_before_writing(path, index, count))?;
-        sheet.place(index, label, &picture);
+        sheet.place(index, label, &picture.into_rgb8());
     }
     Ok(sheet)
 }

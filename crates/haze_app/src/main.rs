@@ -13,6 +13,8 @@ mod command_line;
 mod commands;
 mod contact_sheet;
 mod debug_view_sheet;
+#[cfg(not(target_arch = "wasm32"))]
+mod exr_export;
 mod file_kind;
 #[cfg(not(target_arch = "wasm32"))]
 mod file_watcher;
@@ -43,6 +45,7 @@ mod puff_error;
 mod puff_sheet;
 mod recipe_files;
 mod share_link;
+mod smoke_alone;
 mod sprite_by_name;
 #[cfg(not(target_arch = "wasm32"))]
 mod startup;

@@ -14,7 +14,7 @@ use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
-use image::RgbImage;
+use image::DynamicImage;
 
 use super::backend::Backend;
 use super::inputs::image_paths;
@@ -154,7 +154,7 @@ impl ShotArguments {
     }
 
     /// Writes the image, and prints a line that says so.
-    pub fn write(&self, picture: RgbImage, shot: &Shot, backend: &Backend) -> Result<(), Error> {
+    pub fn write(&self, picture: impl Into<DynamicImage>, shot: &Shot, backend: &Backend) -> Result<(), Error> {
         write_png(&self.output, &picture.into(), self.effort())?;
         print_line!("{}: {} on {}", self.output.display(), shot.preset.name, backend.description())
     }

@@ -2,7 +2,7 @@
 //! the library never changes a host's colors.
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
-use image::RgbImage;
+use image::{RgbImage, RgbaImage};
 
 use super::shot::Shot;
 use haze::assets::image::Image;
@@ -20,6 +20,21 @@ pub fn tonemap(image: &Image<Vec4>, shot: &Shot) -> RgbImage {
     });
     // Never the default: there is one texel per pixel.
     RgbImage::from_raw(image.size.x, image.size.y, rounded.texels.into_flattened()).unwrap_or_default()
+}
+
+/// Converts smoke on a transparent background to 8-bit sRGB as [`tonemap`] does, not premultiplied, with the opacity in alpha.
+/// `smoke` is linear and premultiplied.
+pub fn tonemap_straight(smoke: &Image<Vec4>, shot: &Shot) -> RgbaImage {
+    let exposure = exposure(shot);
+    let mut rounded = Image::new(smoke.size, [0_u8; 4]);
+    rounded.for_each(|at, out| {
+        let texel = smoke.load(at.as_ivec2());
+        let color = texel.xyz() / texel.w.max(1.0e-4);
+        let [r, g, b] = quantise(if exposure == 0.0 { color } else { tonemapped(color, exposure) }, at);
+        *out = [r, g, b, (texel.w * 255.0 + 0.5) as u8];
+    });
+    // Never the default: there is one texel per pixel.
+    RgbaImage::from_raw(smoke.size.x, smoke.size.y, rounded.texels.into_flattened()).unwrap_or_default()
 }
 
 /// Returns the exposure factor of a shot; 0 if its debug view shows data.

@@ -7,13 +7,15 @@ use glam::UVec2;
 use haze::settings::DebugView;
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::tonemap;
 use pollster::block_on;
 
+use crate::exr_export;
 use crate::frame_range::{FrameNames, parse_frames, parse_rate, parse_sheet};
-use crate::image_export::{self, ExportProgress, Frames};
+use crate::image_export::{self, Background, ExportProgress, Frames};
+use crate::interrupt;
 use crate::options::{ShotArguments, choices};
 use crate::output::print_line;
+use crate::progress::with_progress;
 use crate::recipe_files::has_extension;
 
 #[derive(Args)]
@@ -33,34 +35,78 @@ pub struct Arguments {
     /// Put all frames on one sheet of R rows and C columns, a flipbook; --size is the size of a frame.
     #[arg(long, value_name = "RxC", value_parser = parse_sheet, requires = "frames")]
     sheet: Option<UVec2>,
+    /// Leave the scene out: the smoke alone, with its opacity in alpha. PNG is not premultiplied; a name that ends in .exr is
+    /// linear, premultiplied, and has layers for amount and normals.
+    #[arg(long)]
+    transparent: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let is_gif = has_extension(&arguments.shot.output, "gif");
     let frames = arguments.frames.clone().map(|range| {
         let usual = if is_gif { 25.0 } else { 60.0 };
-        Frames { range, rate: arguments.rate.unwrap_or(usual) }
+        Frames { range, rate: arguments.rate.unwrap_or(usual), background: arguments.background() }
     });
+    if is_gif && arguments.transparent {
+        return Err(FieldError::from_problem("--transparent", "a GIF has no partial opacity", "a PNG or EXR").into());
+    }
+    if arguments.transparent && arguments.view != DebugView::Final {
+        let problem = format!("--view {} shows no scene", arguments.view.name());
+        return Err(FieldError::from_problem("--transparent", problem, "--view final").into());
+    }
     match (&frames, arguments.sheet) {
         (Some(frames), None) if is_gif => gif(arguments, frames),
         (Some(frames), None) => sequence(arguments, frames),
         (Some(frames), Some(cells)) => flipbook(arguments, frames, cells),
-        (None, _) => {
-            let shot = Shot { debug_view: arguments.view, ..arguments.shot.load(&[])? };
-            let backend = arguments.shot.run.backend()?;
-            let picture = backend.render(&shot)?;
-            arguments.shot.write(tonemap(&picture, &shot), &shot, &backend)
-        }
+        (None, _) => image(arguments),
     }
+}
+
+impl Arguments {
+    fn background(&self) -> Background {
+        if self.transparent { Background::Transparent } else { Background::Scene }
+    }
+
+    /// Returns the kind of file to write.
+    fn kind(&self) -> &'static str {
+        if has_extension(&self.shot.output, "exr") { "exr" } else { "png" }
+    }
+}
+
+fn image(arguments: &Arguments) -> Result<(), Error> {
+    let path = &arguments.shot.output;
+    let outputs = [("--output", path.clone())];
+    let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, arguments.kind())? };
+    let backend = arguments.shot.run.backend()?;
+    if arguments.kind() == "exr" {
+        exr_export::write(&backend, &shot, arguments.background(), path)?;
+        return print_line!("{}: {} on {}", path.display(), shot.preset.name, backend.description());
+    }
+    let one = Frames { range: 0..=0, rate: 1.0, background: arguments.background() };
+    let progress = ExportProgress::Callback(&|_, _| true);
+    let picture = block_on(image_export::render_flipbook(&backend, &shot, &one, UVec2::ONE, path, &progress))?;
+    arguments.shot.write(picture, &shot, &backend)
 }
 
 fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     let names = FrameNames::parse(&arguments.shot.output)?;
     let outputs: Vec<_> = frames.range.clone().map(|frame| ("--output", names.of(frame))).collect();
-    let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, "png")? };
+    let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, arguments.kind())? };
     let backend = arguments.shot.run.backend()?;
     let (effort, progress) = (arguments.shot.effort(), ExportProgress::terminal());
-    block_on(image_export::write_sequence(&backend, &shot, frames, &names, effort, &progress))?;
+    if arguments.kind() == "exr" {
+        for (done, frame) in (0..).zip(frames.range.clone()) {
+            if interrupt::is_requested() {
+                return Err(frames.stopped_sequence(&names, done));
+            }
+            let (shot, path) = (frames.shot(&shot, frame), names.of(frame));
+            with_progress(format!("haze: {}", path.display()), || {
+                exr_export::write(&backend, &shot, frames.background, &path)
+            })?;
+        }
+    } else {
+        block_on(image_export::write_sequence(&backend, &shot, frames, &names, effort, &progress))?;
+    }
     let (first, last) = (names.of(*frames.range.start()), names.of(*frames.range.end()));
     print_line!("{} to {}: {} on {}", first.display(), last.display(), shot.preset.name, backend.description())
 }

@@ -10,7 +10,7 @@ use glam::UVec2;
 use haze::settings::set_field;
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
-use image::RgbImage;
+use image::{DynamicImage, RgbImage};
 
 use super::value_spread::spread_values;
 use crate::backend::Backend;
@@ -18,7 +18,7 @@ use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
-use crate::tweak::platform::render_job::{ExportProgress, Frames};
+use crate::tweak::platform::render_job::{Background, ExportProgress, Frames};
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::platform::{IS_PAGE, file_io, render_job};
 use crate::tweak::session::Session;
@@ -69,11 +69,13 @@ pub struct ExportOptions {
     pub rate: f32,
     /// Rows (`x`) and columns (`y`) of a flipbook.
     pub cells: UVec2,
+    pub background: Background,
 }
 
 impl Default for ExportOptions {
     fn default() -> Self {
-        Self { size: UVec2::new(1280, 720), first: 0, last: 31, rate: 25.0, cells: UVec2::new(4, 8) }
+        let background = Background::Scene;
+        Self { size: UVec2::new(1280, 720), first: 0, last: 31, rate: 25.0, cells: UVec2::new(4, 8), background }
     }
 }
 
@@ -296,7 +298,7 @@ fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     path.with_extension(ending.trim_start_matches('.'))
 }
 
-fn write(path: PathBuf, picture: RgbImage) -> Result<ExportResult, Error> {
+fn write(path: PathBuf, picture: impl Into<DynamicImage>) -> Result<ExportResult, Error> {
     write_png(&path, &picture.into(), CompressionEffort::Quick)?;
     Ok(ExportResult::Written(path))
 }
@@ -309,10 +311,11 @@ async fn make(
     Target { path, title }: &Target,
     watch: &ExportProgress<'_>,
 ) -> Result<ExportResult, Error> {
-    let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate };
+    let background = options.background;
+    let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate, background };
     let cells = match &product {
         ExportKind::Image => {
-            let one = Frames { range: 0..=0, rate: 1.0 };
+            let one = Frames { range: 0..=0, rate: 1.0, background };
             let picture = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, path, watch).await?;
             return write(path.clone(), picture);
         }
@@ -328,6 +331,8 @@ async fn make(
             return write(path.clone(), picture);
         }
         ExportKind::Gif => {
+            // A GIF has no partial opacity.
+            let frames = Frames { background: Background::Scene, ..frames };
             render_job::write_gif(backend, shot, &frames, path, watch).await?;
             return Ok(ExportResult::Written(path.clone()));
         }

@@ -4,6 +4,7 @@ use eframe::egui::{self, Ui};
 
 use crate::tweak::files::export_job::{ExportJob, ExportKind, MAX_PIXELS, Sheet};
 use crate::tweak::platform::clock::Duration;
+use crate::tweak::platform::render_job::Background;
 use crate::tweak::session::Session;
 use crate::tweak::session::setting_search::matches;
 
@@ -37,12 +38,22 @@ pub fn panel(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
     sheet(ui, export_job, session);
 }
 
+const BACKGROUNDS: [(&str, Background, &str); 2] = [
+    ("Scene", Background::Scene, "The scene of the preset"),
+    (
+        "Transparent",
+        Background::Transparent,
+        "The smoke alone, with its opacity in the alpha channel, not premultiplied",
+    ),
+];
+
 fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     let values = match &export_job.product {
         ExportKind::Values(path) => path.clone(),
         _ => String::new(),
     };
     let products = [
+        ("Image", ExportKind::Image),
         ("Sequence", ExportKind::Sequence),
         ("Flipbook", ExportKind::Flipbook),
         ("GIF", ExportKind::Gif),
@@ -77,6 +88,16 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
         if is_moving {
             let label = ui.label("Frames per second").id;
             ui.add(egui::DragValue::new(&mut options.rate).range(1.0..=50.0)).labelled_by(label);
+            ui.end_row();
+        }
+        if matches!(product, ExportKind::Image | ExportKind::Sequence | ExportKind::Flipbook) {
+            let label = ui.label("Background").id;
+            ui.horizontal(|ui| {
+                for (name, background, tooltip) in BACKGROUNDS {
+                    let choice = ui.selectable_value(&mut options.background, background, name);
+                    choice.on_hover_text(tooltip).labelled_by(label);
+                }
+            });
             ui.end_row();
         }
     });

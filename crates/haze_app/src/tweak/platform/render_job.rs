@@ -9,7 +9,8 @@ use crate::backend::Backend;
 use crate::page_renderer::PageRenderer;
 
 pub use crate::image_export::{
-    ExportProgress, Frames, check_flipbook, column_count, render_flipbook, render_sheet, write_gif, write_sequence,
+    Background, ExportProgress, Frames, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
+    write_sequence,
 };
 
 /// Opens the renderer of exported images: the GPU, which on a page is that of the canvas.

@@ -99,6 +99,33 @@ fn each_frame_is_written_to_its_own_file() {
 }
 
 #[test]
+fn smoke_is_written_alone() {
+    let folder = folder();
+    let run = |arguments: &[&str]| {
+        let output = haze(folder.path(), &[&SMALL[..], arguments, &["--transparent"]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+    };
+    let picture = |name: &str| haze::image::read_png(&folder.path().join(name)).unwrap();
+    run(&["one.png", "--time", "9"]);
+    let one = picture("one.png");
+    assert!(one.color().has_alpha());
+    let one = one.to_rgba8();
+    let opacities = || one.pixels().map(|pixel| pixel.0[3]);
+    assert!(opacities().min() == Some(0) && opacities().max() > Some(200));
+    run(&["flipbook.png", "--time", "9", "--frames", "0..1", "--sheet", "1x2"]);
+    let flipbook = picture("flipbook.png").to_rgba8();
+    assert_eq!(image::imageops::crop_imm(&flipbook, 0, 0, 32, 18).to_image(), one);
+    run(&["f_%d.exr", "--frames", "0..1"]);
+    let bytes = ["f_0.exr", "f_1.exr"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    assert!(bytes.iter().all(|bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01])) && bytes[0] != bytes[1]);
+
+    let line = |arguments: &[&str]| refusal(folder.path(), &[&SMALL[..], arguments, &["--transparent"]].concat());
+    assert!(line(&["a.gif", "--frames", "0..1"]).contains("a GIF has no partial opacity; expected a PNG or EXR"));
+    assert!(line(&["a.exr", "--frames", "0..1", "--sheet", "1x2"]).contains("a name that ends in .png"));
+    assert!(line(&["a.png", "--view", "amount"]).contains("--view amount shows no scene; expected --view final"));
+}
+
+#[test]
 fn frames_are_written_to_a_gif() {
     use image::AnimationDecoder as _;
     let folder = folder();
