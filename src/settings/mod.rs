@@ -9,6 +9,7 @@ mod assign;
 #[doc(hidden)]
 pub mod choice;
 mod curve;
+pub(crate) mod deserialize;
 pub(crate) mod fields;
 mod lighting;
 mod scale_budget;

@@ -9,10 +9,27 @@ macro_rules! settings {
         $($($heading:literal:)? $(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr, $kind:ident $(($($argument:tt)*))?;)+
     }) => {
         $(#[$meta])*
-        #[derive(serde::Serialize, serde::Deserialize)]
+        #[derive(serde::Serialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-        #[serde(default, deny_unknown_fields)]
+        #[cfg_attr(feature = "schema", schemars(default, deny_unknown_fields))]
         pub struct $name { $($(#[$field_meta])* pub $field: $type,)+ }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let fields = &[$(stringify!($field)),+];
+                $crate::settings::deserialize::struct_by_name(deserializer, stringify!($name), fields)
+            }
+        }
+
+        impl<'de> $crate::settings::deserialize::FieldsByName<'de> for $name {
+            fn read_field<A: serde::de::MapAccess<'de>>(&mut self, name: &str, map: &mut A) -> Result<(), A::Error> {
+                match name {
+                    $(stringify!($field) => self.$field = $crate::settings::deserialize::value(map)?,)+
+                    _ => {}
+                }
+                Ok(())
+            }
+        }
 
         impl Default for $name {
             fn default() -> Self {
