@@ -3,11 +3,10 @@
 use glam::{Vec2, Vec4, Vec4Swizzles};
 
 use super::saturate;
+use crate::settings::MAX_CURVE_POINTS;
 
 /// Points (age, value) of a curve, two in each vector. The last is repeated.
-pub type CurvePoints = [Vec4; 4];
-
-const CURVE_POINTS: usize = 8;
+pub type CurvePoints = [Vec4; MAX_CURVE_POINTS / 2];
 
 /// Point of a curve.
 pub fn curve_point(curve: &CurvePoints, index: usize) -> Vec2 {
@@ -19,7 +18,7 @@ pub fn curve_point(curve: &CurvePoints, index: usize) -> Vec2 {
 pub fn curve_value(curve: &CurvePoints, age: f32) -> f32 {
     let mut last = curve_point(curve, 0);
     let mut value = last.y;
-    for index in 1..CURVE_POINTS {
+    for index in 1..MAX_CURVE_POINTS {
         let next = curve_point(curve, index);
         value += (next.y - last.y) * saturate((age - last.x) / (next.x - last.x).max(1.0e-6));
         last = next;
@@ -31,7 +30,7 @@ pub fn curve_value(curve: &CurvePoints, age: f32) -> f32 {
 pub fn curve_integral(curve: &CurvePoints, age: f32) -> f32 {
     let mut last = curve_point(curve, 0);
     let mut sum = age.min(last.x) * last.y;
-    for index in 1..CURVE_POINTS {
+    for index in 1..MAX_CURVE_POINTS {
         let next = curve_point(curve, index);
         let width = next.x - last.x;
         let part = (age - last.x).clamp(0.0, width);

@@ -8,6 +8,7 @@ use super::sprite_extent::SpriteExtent;
 use crate::formula::curve::{CurvePoints, curve_point};
 use crate::formula::emitter::{birth_delay, drag_integrals, emitted_particle};
 use crate::formula::uniforms::EmitterUniform;
+use crate::settings::MAX_CURVE_POINTS;
 
 /// Particles of an emitter at one time, not yet evaluated. [`Emitter::snapshot`](crate::emitter::Emitter::snapshot)
 /// returns it.
@@ -69,7 +70,7 @@ impl EmitterSnapshot {
         let oldest = e.since_first.min(longest);
         // A particle that bounces comes back to where younger ones are; one that is slower than others stays there.
         let lags = e.bounce > 0.0 || e.has_curves != 0;
-        let highest = |curve: &CurvePoints| (0..8).map(|i| curve_point(curve, i).y).fold(0.0, f32::max);
+        let highest = |curve: &CurvePoints| (0..MAX_CURVE_POINTS).map(|i| curve_point(curve, i).y).fold(0.0, f32::max);
         let (fastest, largest) = (highest(&e.speed_curve), highest(&e.size_curve));
         let youngest = if lags { 0.0 } else { (e.since_first - birth_delay(e, e.count)).max(0.0) };
         if e.count == 0 || oldest < youngest {

@@ -71,7 +71,7 @@ impl Curve {
     }
 
     /// Points as `formula::curve` reads them, two in each vector.
-    pub(crate) fn packed(&self) -> [Vec4; 4] {
+    pub(crate) fn packed(&self) -> [Vec4; MAX_CURVE_POINTS / 2] {
         std::array::from_fn(|pair| (self.points[2 * pair], self.points[2 * pair + 1]).into())
     }
 }

@@ -27,7 +27,7 @@ pub enum Background {
     /// The scene of the preset.
     #[default]
     Scene,
-    /// None: the smoke alone, with its opacity in alpha, not premultiplied.
+    /// None: the smoke alone, with its opacity in alpha.
     Transparent,
 }
 
@@ -70,9 +70,8 @@ impl ExportProgress<'_> {
         if !goes_on {
             return Ok(None);
         }
-        let message = || format!("haze: image {} of {count}", done + 1);
         let draw = async |shot: &Shot| match self {
-            Self::Terminal => with_progress(message(), || backend.render(shot)),
+            Self::Terminal => with_progress(format!("haze: image {} of {count}", done + 1), || backend.render(shot)),
             Self::Callback(_) => backend.render_async(shot).await,
         };
         Ok(Some(match background {

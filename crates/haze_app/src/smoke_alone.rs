@@ -39,7 +39,7 @@ mod tests {
 
     #[test]
     fn smoke_over_a_background_is_the_image_of_both() {
-        for (name, tolerance) in [("column", 2.0e-3), ("campfire", 2.0e-2)] {
+        for name in ["column", "campfire"] {
             let shot = Shot::load(name, UVec2::new(48, 48)).unwrap();
             let [dark, bright] = before_two_skies(&shot).map(|shot| shot.render_on_cpu().unwrap());
             let smoke = separated([&dark, &bright]);
@@ -54,7 +54,8 @@ mod tests {
             for (smoke, expected) in smoke.texels.iter().zip(&expected.texels) {
                 let over = smoke.xyz() + light * (1.0 - smoke.w);
                 let error = (over - expected.xyz()).abs().max_element();
-                assert!(error < tolerance, "{name}: {error}");
+                // Images of the CPU have whole floats, whose steps at 64 are 8e-6.
+                assert!(error < 1.0e-5, "{name}: {error}");
             }
         }
     }
