@@ -283,12 +283,12 @@ impl Renderer {
             let state = states.iter_mut().find(|state| state.key == system.key)?;
             Some(state.measure_box(shared, &view, system))
         });
-        let mapped = frame.shadow_maps.iter().map(|map| map.projection.light);
+        let is_mapped = |light| frame.shadow_maps.iter().any(|map| map.projection.light == light);
         let shadow = SmokeShadow::new(
             (&view, frame.up.normalize_or(glam::Vec3::Y)),
             shared.max_volume_depth,
             frame.lights,
-            mapped,
+            is_mapped,
             measured,
         );
         self.shadowed_lights = shadow.map_or([None; SHADOWED_LIGHTS], |shadow| shadow.lights);

@@ -84,14 +84,14 @@ pub struct SmokeShadow {
 }
 
 impl SmokeShadow {
-    /// `up`: world space, unit length. `max_volume_depth`: of a 3D texture, texels. `mapped`: indices of the lights that have
-    /// shadow maps. `systems`: box and settings of each system. Returns `None` if no system receives shadow, or there is no
+    /// `up`: world space, unit length. `max_volume_depth`: of a 3D texture, texels. `is_mapped`: whether the light of
+    /// an index has shadow maps. `systems`: box and settings of each system. Returns `None` if no system receives shadow, or there is no
     /// smoke.
     pub fn new(
         (view, up): (&ViewGeometry, Vec3),
         max_volume_depth: u32,
         lights: &[Light],
-        mut mapped: impl Iterator<Item = usize>,
+        is_mapped: impl Fn(usize) -> bool,
         systems: impl Iterator<Item = (Bounds, ResolvedSettings)>,
     ) -> Option<Self> {
         let mut around = Bounds::EMPTY;
@@ -112,7 +112,8 @@ impl SmokeShadow {
         }
         let resolution = resolution.filter(|_| !around.is_empty())?;
         let chosen = brightest_lights(lights, &around, count as usize);
-        let has_visibility = by_depth && mapped.any(|light| chosen.contains(&Some(light)));
+        // The slots are the outer loop: inside a loop over shadow maps, LLVM copies that loop for every set of slots in use.
+        let has_visibility = by_depth && chosen.into_iter().flatten().any(is_mapped);
         let light_blocks = count.div_ceil(LIGHTS_PER_BLOCK as u32);
         // WebGL 2 guarantees 256 texels along each axis.
         let resolution = resolution.min(max_volume_depth / block_count(light_blocks, has_visibility, has_openness));
@@ -301,7 +302,8 @@ mod tests {
             settings.shadow.lights = lights_with_shadow;
             let resolved = ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 1.0, &RampSteps::default(), Support::ALL);
             let systems = [(bounds, resolved)].into_iter();
-            let shadow = SmokeShadow::new((&view, Vec3::Y), max_volume_depth, &lights, 0..1, systems).unwrap();
+            let shadow =
+                SmokeShadow::new((&view, Vec3::Y), max_volume_depth, &lights, |light| light == 0, systems).unwrap();
             assert_eq!(shadow.resolution, resolution, "{lights_with_shadow} lights, {max_volume_depth} texels");
             assert!(shadow.resolution * shadow.blocks() <= max_volume_depth);
             assert!(shadow.grid.size.max_element() <= resolution);

@@ -179,8 +179,8 @@ pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<Place
         measured.push(MeasuredSystem::new(&view, system, info));
     }
     let boxes = measured.iter().map(|measured| (measured.bounds, measured.settings));
-    let mapped = frame.shadow_maps.iter().map(|map| map.projection.light);
-    let shadow = SmokeShadow::new((&view, frame.up.normalize_or(Vec3::Y)), u32::MAX, frame.lights, mapped, boxes);
+    let is_mapped = |light| frame.shadow_maps.iter().any(|map| map.projection.light == light);
+    let shadow = SmokeShadow::new((&view, frame.up.normalize_or(Vec3::Y)), u32::MAX, frame.lights, is_mapped, boxes);
     let (mut visible, mut hidden) = (Vec::new(), Vec::new());
     for (index, (system, measured)) in frame.systems.iter().zip(measured).enumerate() {
         match VisibleSystem::new(&view, frame, system, measured, shadow.as_ref()) {

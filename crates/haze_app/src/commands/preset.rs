@@ -62,9 +62,10 @@ enum Command {
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     match &arguments.command {
         Command::List => {
+            let width = builtin::PRESETS.iter().map(|builtin| builtin.name.len()).max().unwrap_or_default();
             for builtin in builtin::PRESETS {
                 let preset = Preset::load(builtin.name)?;
-                print_line!("{:<14}{}", builtin.name, preset.description)?;
+                print_line!("{:<width$}  {}", builtin.name, preset.description)?;
             }
         }
         Command::Check { presets, assets } => {
