@@ -1,6 +1,6 @@
 //! `haze bench compare`: compares two runs of one machine row by row.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -45,22 +45,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
             print_error(format_args!("the runs differ in their {what}: {before:?} and {after:?}"));
         }
     }
-    let known: HashMap<_, _> = before.rows.iter().map(|row| ((&row.suite, &row.case, &row.size), row)).collect();
-    let both: Vec<_> = after
-        .rows
-        .iter()
-        .filter_map(|row| Some((row, ratio(known.get(&(&row.suite, &row.case, &row.size))?, row))))
-        .collect();
+    let known: HashMap<_, _> = before.rows.iter().map(|row| ((&row.suite, &row.case), row)).collect();
+    let both: Vec<_> =
+        after.rows.iter().filter_map(|row| Some((row, ratio(known.get(&(&row.suite, &row.case))?, row)))).collect();
     if both.is_empty() {
-        let size = |rows: &[Row]| rows.first().map_or("no rows".into(), |row| row.size.clone());
         let what = format!(
-            "no case of this run is also in {} ({} against {}); expected runs of the same suite and size",
+            "no case of this run is also in {}: one measures {}, the other {}; expected runs with a suite in common",
             arguments.before.display(),
-            size(&after.rows),
-            size(&before.rows)
+            distinct(&after.rows, |row| &row.suite),
+            distinct(&before.rows, |row| &row.suite)
         );
         let error = std::io::Error::new(std::io::ErrorKind::InvalidData, what);
         return Err(Error::Io { path: arguments.after.clone(), error }.into());
+    }
+    let [first, second] = [&before, &after].map(|report| distinct(&report.rows, |row| &row.size));
+    if first != second {
+        print_error(format_args!(
+            "the runs differ in their size: {first} and {second}; ratios compare a case of one size with the same case of the other"
+        ));
     }
     print_line!("{:<10} {:<44} {:>10} {:>10} {:>8} {:>8}", "suite", "case", "before ms", "after ms", "ratio", "±")?;
     let mut slower = 0;
@@ -89,6 +91,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let path = arguments.after.clone();
     let what = format!("{slower} of {} rows are more than {} % slower", both.len(), arguments.slower);
     Err(Error::Io { path, error: std::io::Error::other(what) }.into())
+}
+
+/// Different texts of a field of some rows.
+fn distinct(rows: &[Row], field: impl Fn(&Row) -> &String) -> String {
+    let texts: BTreeSet<&str> = rows.iter().map(|row| field(row).as_str()).collect();
+    if texts.is_empty() { "nothing".into() } else { texts.into_iter().collect::<Vec<_>>().join(", ") }
 }
 
 /// Reads a report whose times can be compared. An incomplete one is reported.

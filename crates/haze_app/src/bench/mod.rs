@@ -3,6 +3,7 @@
 mod adapter;
 mod clock_keepalive;
 mod compare_runs;
+mod frame_suite;
 mod limits;
 mod measure;
 mod page;

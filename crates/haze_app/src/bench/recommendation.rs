@@ -17,6 +17,13 @@ pub struct BreakEven {
     pub from_layers: Option<f64>,
 }
 
+impl BreakEven {
+    /// Layers over the whole image that fit into a frame of 1/30 second.
+    pub fn layers_at_30(&self) -> f64 {
+        ((1000.0 / 30.0 - self.base_ms) / self.layer_ms.max(1.0e-9)).max(0.0)
+    }
+}
+
 /// Least PSNR, dB, and greatest FLIP of an image that is as good as full resolution.
 const GOOD_PSNR: f64 = 35.0;
 const GOOD_FLIP: f64 = 0.05;
@@ -183,6 +190,7 @@ mod tests {
         let from: Vec<_> = found.iter().map(|way| way.from_layers.map(f64::round)).collect();
         assert_eq!(from, [Some(20.0), Some(5.0), Some(2.0), None]);
         assert!((found[1].layer_ms - 0.1).abs() < 1e-9 && (found[1].base_ms - 3.0).abs() < 1e-9);
+        assert!((found[1].layers_at_30() - 303.33).abs() < 0.01, "{}", found[1].layers_at_30());
         // A quarter of the resolution is cheaper, but its PSNR is too low.
         let sentence = recommendation(&report).unwrap();
         assert!(

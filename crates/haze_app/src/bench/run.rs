@@ -52,7 +52,7 @@ pub struct Arguments {
 const QUICK: u32 = 100;
 const THOROUGH: u32 = 360;
 /// Suites that render shots; the limits are measured before them.
-const SHOTS: [Suite; 10] = [
+const SHOTS: [Suite; 11] = [
     Suite::Scale,
     Suite::Overdraw,
     Suite::Lights,
@@ -61,6 +61,7 @@ const SHOTS: [Suite; 10] = [
     Suite::Soft,
     Suite::Upsample,
     Suite::Presets,
+    Suite::Frame,
     Suite::Particles,
     Suite::Auto,
 ];

@@ -23,6 +23,8 @@ pub enum Suite {
     Upsample,
     /// Every preset, deferred at each scale against forward.
     Presets,
+    /// Passes of the frame of every preset at each scale, on the path that `auto` takes.
+    Frame,
     /// 1,000 to 1,000,000 particles: evaluating, sorting, drawing.
     Particles,
     /// The path `auto` against `raster` and `tiled`, which it chooses from, by overdraw, scale, technique and size.

@@ -8,6 +8,7 @@ use haze::settings::{
 use haze::{Error, Light, builtin};
 use haze_demo::shot::Shot;
 
+use super::frame_suite;
 use super::shadow_suite;
 use super::sprite_shots::{BEYOND_IMAGE, CrowdExtent, WITHIN_IMAGE, layers, small_sprites, sprite_count, with_alpha};
 use super::sprites_suite;
@@ -45,6 +46,7 @@ pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Erro
         Suite::Soft => soft(size, quick),
         Suite::Upsample => upsample(size, quick),
         Suite::Presets => presets(size, quick),
+        Suite::Frame => frame_suite::groups(size, quick),
         Suite::Particles => particles(size, quick),
         Suite::Auto => auto(size, quick),
         Suite::Limits | Suite::All => Ok(Vec::new()),

@@ -49,11 +49,15 @@ pub fn write(report: &Report) -> Result<(), Error> {
     let ways = break_even(report);
     if !ways.is_empty() {
         print_line!("")?;
-        print_line!("{:<30} {:>10} {:>10}   cheaper than forward", "deferred against forward", "fixed ms", "ms/layer")?;
+        let heads = ["fixed ms", "ms/layer", "layers/33 ms"].map(|head| format!("{head:>12}")).join(" ");
+        print_line!("{:<30} {heads}   cheaper than forward", "deferred against forward")?;
     }
-    for BreakEven { path, scale, format, base_ms, layer_ms, from_layers } in ways {
+    for way in ways {
+        let fits = way.layers_at_30();
+        let BreakEven { path, scale, format, base_ms, layer_ms, from_layers } = way;
         let from = from_layers.map_or("never".into(), |layers| format!("from {layers:.1} layers"));
-        print_line!("{:<30} {base_ms:>10.3} {layer_ms:>10.4}   {from}", format!("{path} 1/{scale} {format}"))?;
+        let name = format!("{path} 1/{scale} {format}");
+        print_line!("{name:<30} {base_ms:>12.3} {layer_ms:>12.4} {fits:>12.0}   {from}")?;
     }
     let cases = auto_cases(report);
     if !cases.is_empty() {

@@ -26,15 +26,16 @@ pub fn page(report: &Report) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>haze bench: {name}</title><style>{STYLE}</style></head><body><main>\n\
          <h1>Cost of smoke</h1><p>{name}{software} · {}, {} · wgpu {} · haze {}</p>{partial}{recommendation}\n\
-         <div class=\"charts\">{}{}{}{}</div>\n{}{}{}</main></body></html>\n",
+         {}<div class=\"charts\">{}{}{}{}</div>\n{}{}{}</main></body></html>\n",
         adapter.backend,
         escaped(&adapter.driver),
         adapter.wgpu,
         escaped(&adapter.haze),
+        frames_by_pass(report),
         cost_by_scale(report),
         cost_by_overdraw(report),
         cost_by_error(report),
-        cost_by_pass(report),
+        layers_by_pass(report),
         break_even_table(report),
         rows_table(report),
         skipped_list(report),
@@ -138,37 +139,53 @@ fn cost_by_error(report: &Report) -> String {
     .figure()
 }
 
-/// Draws the passes of the rows of suite `scale` with the most sprites, as bars.
-fn cost_by_pass(report: &Report) -> String {
+/// Draws the passes of every preset's frame at every scale.
+fn frames_by_pass(report: &Report) -> String {
+    let rows: Vec<&Row> = report.rows.iter().filter(|row| row.is_of(Suite::Frame)).collect();
+    bars_by_pass("Milliseconds of a frame by preset and scale, by pass", &rows)
+}
+
+/// Draws the passes of the rows of suite `scale` with the most sprites.
+fn layers_by_pass(report: &Report) -> String {
     let deepest = report.rows.iter().filter(|row| row.is_of(Suite::Scale)).filter_map(|row| row.particles).max();
-    let is_shown = |row: &&Row| row.is_of(Suite::Scale) && row.particles == deepest && !row.passes.is_empty();
-    let rows: Vec<&Row> = report.rows.iter().filter(is_shown).collect();
-    let names: BTreeSet<&str> = rows.iter().flat_map(|row| row.passes.keys()).map(String::as_str).collect();
+    let is_shown = |row: &&Row| row.is_of(Suite::Scale) && row.particles == deepest;
+    bars_by_pass("Milliseconds by pass", &report.rows.iter().filter(is_shown).collect::<Vec<_>>())
+}
+
+/// Draws a bar for each row, in parts by pass. Those that take least share the last color.
+fn bars_by_pass(title: &str, rows: &[&Row]) -> String {
+    let mut totals = BTreeMap::<&str, f64>::new();
+    for (name, ms) in rows.iter().flat_map(|row| &row.passes) {
+        *totals.entry(name).or_default() += ms;
+    }
     let most = rows.iter().map(|row| row.passes.values().sum::<f64>()).fold(0.0, f64::max);
     if most <= 0.0 {
         return String::new();
     }
+    let mut names: Vec<&str> = totals.keys().copied().collect();
+    names.sort_by(|a, b| totals[b].total_cmp(&totals[a]));
+    let others = names.split_off(names.len().min(COLORS - 1));
     let bar = |row: &&Row| {
-        let parts = names.iter().enumerate().filter_map(|(index, name)| {
-            let ms = row.passes.get(*name)?;
-            let width = 100.0 * ms / most;
-            let title = format!("{name}: {} ms", number(*ms));
-            Some(format!("<i class=\"c{}\" style=\"width:{width:.2}%\" title=\"{title}\"></i>", index % COLORS))
-        });
-        let parts: String = parts.collect();
+        let sum = |names: &[&str]| names.iter().filter_map(|name| row.passes.get(*name)).sum::<f64>();
+        let parts = names.iter().map(|name| (*name, sum(&[name]))).chain([("others", sum(&others))]);
+        let part = |(index, (name, ms)): (usize, (&str, f64))| {
+            let (width, title) = (100.0 * ms / most, format!("{name}: {} ms", number(ms)));
+            format!("<i class=\"c{index}\" style=\"width:{width:.2}%\" title=\"{title}\"></i>")
+        };
+        let parts: String = parts.enumerate().filter(|(_, (_, ms))| *ms > 0.0).map(part).collect();
         format!(
             "<tr><th>{}</th><td class=\"bar\">{parts}</td><td>{}</td></tr>",
             escaped(&row.case),
             number(row.gpu_ms.median)
         )
     };
-    let legend =
-        names.iter().enumerate().map(|(index, name)| format!("<span class=\"c{}\">{name}</span>", index % COLORS));
+    let all = others.join(", ");
+    let legend = names.iter().copied().chain((!others.is_empty()).then_some(all.as_str())).enumerate();
     format!(
-        "<figure><figcaption>Milliseconds by pass</figcaption><div class=\"wide\"><table class=\"bars\">{}</table></div>\
+        "<figure><figcaption>{title}</figcaption><div class=\"wide\"><table class=\"bars\">{}</table></div>\
          <p class=\"legend\">{}</p></figure>\n",
         rows.iter().map(bar).collect::<String>(),
-        legend.collect::<String>()
+        legend.map(|(index, name)| format!("<span class=\"c{index}\">{name}</span>")).collect::<String>()
     )
 }
 
@@ -185,13 +202,14 @@ fn break_even_table(report: &Report) -> String {
             way.format.clone(),
             number(way.base_ms),
             number(way.layer_ms),
+            number(way.layers_at_30().round()),
             from,
         ];
         format!("<tr>{}</tr>", cells.map(|cell| format!("<td>{}</td>", escaped(&cell))).concat())
     };
     format!(
         "<h2>Overdraw from which deferred is cheaper</h2><div class=\"wide\"><table><tr><th>path</th><th>scale</th><th>format</th>\
-         <th>ms at 0 layers</th><th>ms per layer</th><th>cheaper than forward</th></tr>{}</table></div>\n",
+         <th>ms at 0 layers</th><th>ms per layer</th><th>layers in 33 ms</th><th>cheaper than forward</th></tr>{}</table></div>\n",
         ways.iter().map(row).collect::<String>()
     )
 }
@@ -208,6 +226,7 @@ fn rows_table(report: &Report) -> String {
             row.clock.name().into(),
             shown(row.layers),
             shown(row.gfragments_per_s),
+            shown(row.bytes.map(|bytes| bytes as f64 / row.gpu_ms.median / 1.0e6)),
             shown(row.limit_ratio),
             shown(row.psnr_db),
             shown(row.edge_psnr_db),
@@ -215,8 +234,20 @@ fn rows_table(report: &Report) -> String {
         ];
         format!("<tr>{}</tr>", cells.map(|cell| format!("<td>{}</td>", escaped(&cell))).concat())
     };
-    let heads =
-        ["suite", "case", "ms", "± %", "clock", "layers", "Gfrag/s", "× limit", "PSNR dB", "edge PSNR dB", "FLIP"];
+    let heads = [
+        "suite",
+        "case",
+        "ms",
+        "± %",
+        "clock",
+        "layers",
+        "Gfrag/s",
+        "GB/s",
+        "× limit",
+        "PSNR dB",
+        "edge PSNR dB",
+        "FLIP",
+    ];
     format!(
         "<h2>All figures</h2><div class=\"wide\"><table><tr>{}</tr>{}</table></div>\n",
         heads.map(|head| format!("<th>{head}</th>")).concat(),

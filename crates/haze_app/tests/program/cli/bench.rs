@@ -175,6 +175,18 @@ fn runs_are_compared_row_by_row() {
     assert!(said.contains("1 of ") && said.contains("rows are more than 10 % slower"), "{said}");
     assert_eq!(compare(&["--slower", "150"]).0, Some(0));
 
+    // Cases of another size are compared, and it says so; other suites have no case in common.
+    let mut other = certain.clone();
+    other["rows"].as_array_mut().unwrap().iter_mut().for_each(|row| row["size"] = "99x9".into());
+    write(&other);
+    let (code, text, said) = compare(&[]);
+    assert!(code == Some(0) && text.contains("0 rows are in one run only"), "{text}");
+    assert!(said.contains("differ in their size: ") && said.contains(" and 99x9; ratios"), "{said}");
+    other["rows"].as_array_mut().unwrap().iter_mut().for_each(|row| row["suite"] = "scale".into());
+    write(&other);
+    let said = compare(&[]).2;
+    assert!(said.contains("one measures scale, the other upsample; expected runs with a suite in common"), "{said}");
+
     // An invalid report is refused with the place of the error.
     fs::write(folder.path().join("after.json"), "{\"version\": 1, \"rows\": [}").unwrap();
     let text = refusal(folder.path(), &["bench", "compare", "run.json", "after.json"]);
