@@ -42,6 +42,10 @@ settings! {
         rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
         /// Seconds of emission, from time 0. 0: emission has no beginning and no end.
         duration: f32 = 0.0, number(0.0..=3600.0, "s");
+        /// Share of the births that happen, over the emission: from its beginning, at 0, to its end after `duration`, at 1. A
+        /// blast that dies down, a chimney that swells.
+        #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
+        rate_curve: Curve = Curve::constant(1.0), curve(0.0..=1.0);
         /// Seconds from the beginning of one emission to the next: puffs of a chimney, shots. At least `duration`. 0: one
         /// emission only.
         period: f32 = 0.0, number(0.0..=3600.0, "s");
@@ -170,7 +174,7 @@ impl Emitter {
         Ok(())
     }
 
-    /// Maximum number of particles that live at once.
+    /// Maximum number of particles that live at once, if all births happen.
     pub fn max_alive(&self) -> f64 {
         let (longest, duration) = (self.longest(), f64::from(self.duration));
         let emitting = match self.pulses() {
@@ -186,10 +190,15 @@ impl Emitter {
         f64::from(self.lifetime * (1.0 + self.lifetime_spread))
     }
 
+    /// Births of an emission that ends; 0 for one that does not.
+    fn births(&self) -> i64 {
+        // Less the rounding of f32, which would add a birth.
+        (f64::from(self.duration) * f64::from(self.rate) - 1.0e-3).ceil() as i64
+    }
+
     /// Returns the pulses of an emission that repeats.
     fn pulses(&self) -> Option<Pulses> {
-        // Less the rounding of f32, which would add a birth.
-        let births = (f64::from(self.duration) * f64::from(self.rate) - 1.0e-3).ceil() as i64;
+        let births = self.births();
         (births > 0 && self.period > 0.0).then_some(Pulses { births, period: f64::from(self.period) })
     }
 
@@ -202,10 +211,14 @@ impl Emitter {
     pub fn snapshot(&self, time: f32) -> EmitterSnapshot {
         let (first, last) = self.birth_range(time);
         let pulses = self.pulses();
-        let Pulses { births, period } = pulses.unwrap_or(Pulses { births: i64::from(u32::MAX), period: 0.0 });
-        let first_in_pulse = if pulses.is_some() { first.rem_euclid(births) } else { 0 };
+        // An emission that ends is one pulse; one without an end has a single pulse that begins with the first birth.
+        let (per_pulse, first_in_pulse) = match self.births() {
+            births @ 1.. => (births, if pulses.is_some() { first.rem_euclid(births) } else { first }),
+            _ => (i64::from(u32::MAX), 0),
+        };
+        let period = pulses.map_or(0.0, |pulses| pulses.period);
         let born = match pulses {
-            Some(_) => first.div_euclid(births) as f64 * period + first_in_pulse as f64 / f64::from(self.rate),
+            Some(_) => first.div_euclid(per_pulse) as f64 * period + first_in_pulse as f64 / f64::from(self.rate),
             None => first as f64 / f64::from(self.rate),
         };
         let up = self.up.normalize_or(Vec3::Y);
@@ -247,16 +260,18 @@ impl Emitter {
             bounce: self.bounce,
             up,
             floor: self.floor,
-            per_pulse: births as u32,
+            per_pulse: per_pulse as u32,
             first_in_pulse: first_in_pulse as u32,
             period: period as f32,
             has_curves: u32::from([self.speed_curve, self.size_curve, self.amount_curve] != [Curve::constant(1.0); 3]),
             speed_curve: self.speed_curve.packed(),
             size_curve: self.size_curve.packed(),
             amount_curve: self.amount_curve.packed(),
+            rate_curve: self.rate_curve.packed(),
             anchor: self.anchor,
             rotation_spread: self.rotation_spread,
-            padding: [0.0; 2],
+            has_rate_curve: u32::from(self.rate_curve != Curve::constant(1.0) && self.duration > 0.0),
+            padding: 0.0,
         };
         let step = (self.max_alive() / SAMPLE).ceil().max(1.0) as u32;
         let first_sample = (-first).rem_euclid(i64::from(step)) as u32;
@@ -283,7 +298,7 @@ impl Emitter {
         let mut last = (time * rate).floor() as i64 + 1;
         if self.duration > 0.0 {
             first = first.max(0);
-            last = last.min((f64::from(self.duration) * rate).ceil() as i64);
+            last = last.min(self.births());
         }
         (first, last.max(first))
     }

@@ -1,6 +1,7 @@
-// Curves over the life of a particle: straight lines between up to eight points, constant before the first and after the last.
+// Curves over the life of a particle, or over an emission: straight lines between up to eight points, constant before the first
+// and after the last.
 
-// Points (age, value), two in each vector. The last is repeated.
+// Points (x, value), two in each vector. The last is repeated.
 struct Curve {
     points: array<vec4f, 4>,
 }

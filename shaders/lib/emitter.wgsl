@@ -58,10 +58,14 @@ struct Emitter {
     speed_curve: Curve,
     size_curve: Curve,
     amount_curve: Curve,
+    // Share of the births that happen, over a pulse.
+    rate_curve: Curve,
     // Share of the radius by which a particle is moved up.
     anchor: f32,
     // Share of a turn.
     rotation_spread: f32,
+    // 0 if all births happen.
+    has_rate_curve: u32,
 }
 
 const EMITTER_SHAPE_SPHERE: u32 = 0u;
@@ -181,8 +185,18 @@ fn bouncing_flight(emitter: Emitter, start: vec3f, velocity: vec3f, seconds: f32
 fn birth_delay(emitter: Emitter, number: u32) -> f32 {
     let place = emitter.first_in_pulse + number;
     let pulse = place / emitter.per_pulse;
-    let in_pulse = f32(place - pulse * emitter.per_pulse) - f32(emitter.first_in_pulse);
-    return f32(pulse) * emitter.period + in_pulse / emitter.rate;
+    let in_pulse = place - pulse * emitter.per_pulse;
+    return f32(pulse) * emitter.period + f32(i32(in_pulse) - i32(emitter.first_in_pulse)) / emitter.rate;
+}
+
+// 2^32 over the golden ratio: multiples of it are spread evenly.
+const GOLDEN: u32 = 2654435769u;
+
+// True if a birth happens. Those that do are spread evenly among all.
+fn is_born(emitter: Emitter, number: u32) -> bool {
+    let in_pulse = (emitter.first_in_pulse + number) % emitter.per_pulse;
+    let share = curve_value(emitter.rate_curve, (f32(in_pulse) + 0.5) / f32(emitter.per_pulse));
+    return unit((emitter.first + number) * GOLDEN) < share;
 }
 
 // Returns three random numbers, 0..1, for a birth and a salt.
@@ -207,7 +221,7 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
     // Births are jittered within their interval, or a fast emitter would pulse.
     let seconds = emitter.since_first - birth_delay(emitter, number) - life.y / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
-    if !(seconds >= 0.0 && seconds < lifetime) {
+    if !(seconds >= 0.0 && seconds < lifetime) || (emitter.has_rate_curve != 0u && !is_born(emitter, number)) {
         return EmittedParticle();
     }
     let age = seconds / lifetime;

@@ -90,7 +90,7 @@ fn emitters() -> impl Iterator<Item = Emitter> {
         Emitter { burst: 8.0, duration: 0.1, drag: 2.0, velocity: Vec3::ZERO, ..base },
         Emitter { burst: -3.0, turbulence: 4.0, turbulence_scale: 0.3, drag: 0.0, buoyancy: -2.0, ..base },
         Emitter { radius_start: 2.0, radius_end: 0.1, lifetime_spread: 0.9, velocity_spread: 5.0, ..base },
-        Emitter { duration: 0.3, period: 0.7, ..base },
+        Emitter { duration: 0.3, period: 0.7, rate_curve: "0:1,1:0".parse().unwrap(), ..base },
         Emitter { anchor: 1.0, radius_end: 0.0, radius_start: 2.0, rotation_spread: 0.0, ..base },
         Emitter {
             velocity: Vec3::new(4.0, 1.0, 0.0),
@@ -129,6 +129,50 @@ fn velocity_is_the_change_of_position() {
         }
         assert!(count > 20, "{emitter:?}: {count}");
     }
+}
+
+#[test]
+fn births_follow_the_curve_of_the_rate() {
+    let rising = Emitter {
+        rate: 1000.0,
+        duration: 1.0,
+        period: 2.0,
+        rate_curve: "0:0,0.5:0.2,1:1".parse().unwrap(),
+        lifetime: 1.0,
+        lifetime_spread: 0.0,
+        frame_rate: 0.0,
+        ..Emitter::default()
+    };
+    let count = |emitter: &Emitter, time| at(emitter, time).len() as f32;
+    // Integral of the curve, within a hundredth of all births.
+    for pulse in [0.0, 14.0] {
+        assert!((count(&rising, pulse + 0.5) - 50.0).abs() < 10.0, "{}", count(&rising, pulse + 0.5));
+        assert!((count(&rising, pulse + 0.999) - 350.0).abs() < 10.0, "{}", count(&rising, pulse + 0.999));
+    }
+    // One emission, and one without an end, in which there is no place on the curve.
+    assert!((count(&Emitter { period: 0.0, ..rising }, 0.999) - 350.0).abs() < 10.0);
+    let endless = Emitter { period: 0.0, duration: 0.0, ..rising };
+    assert_eq!(at(&endless, 3.0), at(&Emitter { rate_curve: Curve::constant(1.0), ..endless }, 3.0));
+    // A birth is the same whether others happen or not.
+    let all = at(&Emitter { rate_curve: Curve::constant(1.0), ..rising }, 0.9);
+    assert!(at(&rising, 0.9).iter().all(|particle| all.contains(particle)));
+    let even = Emitter { rate_curve: Curve::constant(0.25), ..rising };
+    let mut births: Vec<f32> = at(&even, 0.999).iter().map(|particle| particle.age).collect();
+    births.sort_by(f32::total_cmp);
+    let widest = births.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f32::max);
+    assert!(widest < 0.007, "every fourth of 1000 births: {widest}");
+}
+
+#[test]
+fn births_of_long_pulses_keep_their_times() {
+    // f32 has no number for every birth after the first 16 million.
+    let emitter = Emitter { rate: 20_000.0, duration: 3000.0, period: 3600.0, lifetime: 0.01, ..Emitter::default() };
+    let emitter = Emitter { lifetime_spread: 0.0, ..emitter };
+    let mut ages: Vec<f32> = at(&emitter, 2999.0).iter().map(|particle| particle.age).collect();
+    ages.sort_by(f32::total_cmp);
+    // One birth in each of 200 intervals.
+    let widest = ages.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f32::max) * 200.0;
+    assert!(ages.len() >= 198 && widest < 2.1, "{} {widest}", ages.len());
 }
 
 #[test]

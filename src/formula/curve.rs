@@ -1,11 +1,11 @@
-//! Curves of up to eight points over the life of a particle. WGSL: `shaders/lib/curve.wgsl`.
+//! Curves of up to eight points over the life of a particle, or over an emission. WGSL: `shaders/lib/curve.wgsl`.
 
 use glam::{Vec2, Vec4, Vec4Swizzles};
 
 use super::saturate;
 use crate::settings::MAX_CURVE_POINTS;
 
-/// Points (age, value) of a curve, two in each vector. The last is repeated.
+/// Points (x, value) of a curve, two in each vector. The last is repeated.
 pub type CurvePoints = [Vec4; MAX_CURVE_POINTS / 2];
 
 /// Point of a curve.

@@ -119,7 +119,18 @@ pub fn bouncing_flight(emitter: &EmitterUniform, start: Vec3, velocity: Vec3, se
 pub fn birth_delay(emitter: &EmitterUniform, number: u32) -> f32 {
     let place = emitter.first_in_pulse + number;
     let (pulse, in_pulse) = (place / emitter.per_pulse, place % emitter.per_pulse);
-    pulse as f32 * emitter.period + (in_pulse as f32 - emitter.first_in_pulse as f32) / emitter.rate
+    let births = i64::from(in_pulse) - i64::from(emitter.first_in_pulse);
+    pulse as f32 * emitter.period + births as f32 / emitter.rate
+}
+
+/// 2^32 over the golden ratio: multiples of it are spread evenly.
+const GOLDEN: u32 = 2_654_435_769;
+
+/// True if a birth happens. Those that do are spread evenly among all.
+pub fn is_born(emitter: &EmitterUniform, number: u32) -> bool {
+    let in_pulse = (emitter.first_in_pulse + number) % emitter.per_pulse;
+    let share = curve_value(&emitter.rate_curve, (in_pulse as f32 + 0.5) / emitter.per_pulse as f32);
+    unit(emitter.first.wrapping_add(number).wrapping_mul(GOLDEN)) < share
 }
 
 /// Three random numbers 0..1 for a birth and a salt.
@@ -141,7 +152,7 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
     // Births are jittered within their interval. Without that a fast emitter would pulse.
     let seconds = emitter.since_first - birth_delay(emitter, number) - life.y / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
-    if !(0.0..lifetime).contains(&seconds) {
+    if !(0.0..lifetime).contains(&seconds) || emitter.has_rate_curve != 0 && !is_born(emitter, number) {
         return EmittedParticle::default();
     }
     let age = seconds / lifetime;

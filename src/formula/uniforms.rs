@@ -278,8 +278,10 @@ uniform! {
         speed_curve: [Vec4; 4],
         size_curve: [Vec4; 4],
         amount_curve: [Vec4; 4],
+        rate_curve: [Vec4; 4],
         anchor: f32,
         rotation_spread: f32,
-        padding: [f32; 2],
+        has_rate_curve: u32,
+        padding: f32,
     }
 }

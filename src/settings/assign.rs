@@ -111,7 +111,7 @@ fn assign(leaf: FieldRef<'_>, text: &str) -> Result<(), String> {
         FieldRef::Flag(value) => *value = parse(text, "true or false")?,
         FieldRef::Text(value) => text.clone_into(value),
         FieldRef::Curve(value) => {
-            *value = parse(text, "1 to 8 points age:value with increasing ages from 0 to 1, such as 0:0.2,0.3:1,1:0")?;
+            *value = parse(text, "1 to 8 points x:value, with x from 0 to 1, increasing, such as 0:0.2,0.3:1,1:0")?;
         }
         FieldRef::Choice(value) => {
             let index = value.names().iter().position(|name| *name == text);

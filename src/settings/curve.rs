@@ -1,12 +1,12 @@
-//! Curves over the life of a particle.
+//! Curves over the life of a particle, or over an emission.
 
 use glam::{Vec2, Vec4};
 
 /// Maximum number of points of a [`Curve`].
 pub const MAX_CURVE_POINTS: usize = 8;
 
-/// Curve over the life of a particle: one to eight points (age, value), with straight lines between them, and constant before
-/// the first and after the last. Ages are from 0, at birth, to 1, at death, and increase.
+/// Curve over the life of a particle, or over an emission: one to eight points (x, value), with straight lines between them,
+/// and constant before the first and after the last. x is from 0, at the beginning, to 1, at the end, and increases.
 ///
 /// In JSON: `[[0, 0.2], [0.3, 1], [1, 0]]`. On the command line: `0:0.2,0.3:1,1:0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl std::fmt::Display for CurveError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "{}; expected 1 to {MAX_CURVE_POINTS} points [age, value], with increasing ages from 0 to 1",
+            "{}; expected 1 to {MAX_CURVE_POINTS} points [x, value], with x from 0 to 1, increasing",
             self.problem
         )
     }
@@ -35,15 +35,15 @@ impl std::fmt::Display for CurveError {
 impl std::error::Error for CurveError {}
 
 impl Curve {
-    /// Curve with the same value at every age.
+    /// Curve with the same value everywhere.
     pub const fn constant(value: f32) -> Self {
         Self { points: [Vec2::new(0.0, value); MAX_CURVE_POINTS], count: 1 }
     }
 
-    /// Curve through these points (age, value).
+    /// Curve through these points (x, value).
     ///
     /// # Errors
-    /// No points, or more than [`MAX_CURVE_POINTS`]; ages outside 0..=1 or not increasing; numbers that are not finite.
+    /// No points, or more than [`MAX_CURVE_POINTS`]; x outside 0..=1 or not increasing; numbers that are not finite.
     pub fn new(points: &[Vec2]) -> Result<Self, CurveError> {
         let problem = |problem: String| Err(CurveError { problem });
         let Some(&last) = points.last().filter(|_| points.len() <= MAX_CURVE_POINTS) else {
@@ -53,14 +53,14 @@ impl Curve {
             return problem(format!("the point [{}, {}]", point.x, point.y));
         }
         if let Some(pair) = points.windows(2).find(|pair| pair[0].x >= pair[1].x) {
-            return problem(format!("age {} after age {}", pair[1].x, pair[0].x));
+            return problem(format!("x {} after x {}", pair[1].x, pair[0].x));
         }
         let mut all = [last; MAX_CURVE_POINTS];
         all[..points.len()].copy_from_slice(points);
         Ok(Self { points: all, count: points.len() })
     }
 
-    /// Points (age, value).
+    /// Points (x, value).
     pub fn points(&self) -> &[Vec2] {
         &self.points[..self.count]
     }
@@ -129,9 +129,9 @@ mod tests {
     #[test]
     fn points_that_are_no_curve_are_refused() {
         let refused = |json: &str| serde_json::from_str::<Curve>(json).unwrap_err().to_string();
-        let expected = "; expected 1 to 8 points [age, value], with increasing ages from 0 to 1";
+        let expected = "; expected 1 to 8 points [x, value], with x from 0 to 1, increasing";
         assert_eq!(refused("[]"), format!("0 points{expected}"));
-        assert_eq!(refused("[[0,1],[0.5,1],[0.5,2]]"), format!("age 0.5 after age 0.5{expected}"));
+        assert_eq!(refused("[[0,1],[0.5,1],[0.5,2]]"), format!("x 0.5 after x 0.5{expected}"));
         assert_eq!(refused("[[0,1],[1.5,1]]"), format!("the point [1.5, 1]{expected}"));
         assert_eq!(refused("[[0,1e39]]"), format!("the point [0, inf]{expected}"));
         assert!(refused(&format!("[{}]", ["[0,1]"; 9].join(","))).starts_with("9 points"));

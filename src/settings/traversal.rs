@@ -21,7 +21,7 @@ pub enum FieldRef<'a> {
     Whole(&'a mut u32),
     /// Three numbers, or linear RGB.
     Vector(&'a mut Vec3),
-    /// Curve over the life of a particle.
+    /// Curve over the life of a particle, or over an emission.
     Curve(&'a mut Curve),
     /// Boolean.
     Flag(&'a mut bool),

@@ -72,7 +72,7 @@ impl FieldVisitor for SettingMutator {
     }
     fn curve(&mut self, name: &'static str, value: &mut Curve, _: RangeInclusive<f32>) {
         if self.is_selected(name) {
-            *value = "0.1:0.4,0.6:1.3".parse().unwrap();
+            *value = "0.1:0.4,0.6:0.9".parse().unwrap();
         }
     }
     fn flag(&mut self, name: &'static str, value: &mut bool) {

@@ -78,9 +78,9 @@ impl FieldVisitor for RandomValues {
             *value = (*value + moved).clamp(Vec3::splat(*range.start()), Vec3::splat(*range.end()));
         }
     }
-    fn curve(&mut self, _: &'static str, value: &mut Curve, _: RangeInclusive<f32>) {
+    fn curve(&mut self, _: &'static str, value: &mut Curve, range: RangeInclusive<f32>) {
         if self.is_selected() {
-            let points = [0.0, 0.3, 1.0].map(|age| Vec2::new(age, 2.0 * self.random()));
+            let points = [0.0, 0.3, 1.0].map(|age| Vec2::new(age, range.end().min(2.0) * self.random()));
             *value = Curve::new(&points).unwrap();
         }
     }

@@ -55,9 +55,11 @@ fn test_emitter(x: &[f32]) -> EmitterUniform {
         speed_curve: curve("0:1.5,0.4:0.6,0.9:1.1"),
         size_curve: curve("0.1:0.2,0.7:1.4"),
         amount_curve: curve("0:0.3,0.2:1,0.5:0.4,1:0.8"),
+        rate_curve: curve("0:1,1:0.5"),
         anchor: 0.7,
         rotation_spread: 0.4,
-        padding: [0.0; 2],
+        has_rate_curve: 1,
+        padding: 0.0,
     }
 }
 
@@ -79,7 +81,9 @@ macro_rules! wgsl_emitter {
              vec3f(0.9, 0.2, 0.4), 0.6, vec3f(0.3, 0.8, 1.0), 0.0, vec3f(0.0, 1.0, 0.0), 1.8, 13u, 5u, 0.34, 1u, \
              Curve(array(vec4f(0.0, 1.5, 0.4, 0.6), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1))), \
              Curve(array(vec4f(0.1, 0.2, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4))), \
-             Curve(array(vec4f(0.0, 0.3, 0.2, 1.0), vec4f(0.5, 0.4, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8))), 0.7, 0.4); ",
+             Curve(array(vec4f(0.0, 0.3, 0.2, 1.0), vec4f(0.5, 0.4, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8))), \
+             Curve(array(vec4f(0.0, 1.0, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5))), \
+             0.7, 0.4, 1u); ",
             $call
         )
     };
@@ -99,6 +103,8 @@ const WGSL_BOUNCING: &str = wgsl_emitter!(
 );
 
 const WGSL_DELAY: &str = wgsl_emitter!("y(0, birth_delay(e, u32(x(0))));");
+
+const WGSL_BORN: &str = wgsl_emitter!("y(0, f32(is_born(e, u32(x(0)))));");
 
 const WGSL_EMITTED: &str = wgsl_emitter!(
     "let p = emitted_particle(e, u32(x(1))); for (var i = 0u; i < 4u; i++) { y(i, p.position_radius[i]); \
@@ -202,8 +208,22 @@ fn flights() -> Vec<Formula> {
             tolerance: ARITHMETIC,
             mutants: &[
                 ("f32(pulse) * emitter.period", "f32(pulse)"),
-                ("- f32(emitter.first_in_pulse)", ""),
-                ("in_pulse / emitter.rate", "in_pulse"),
+                ("- i32(emitter.first_in_pulse)", ""),
+                (") / emitter.rate", ")"),
+            ],
+        },
+        Formula {
+            name: "is_born",
+            file: "lib/emitter.wgsl",
+            wgsl: WGSL_BORN,
+            reference: |x| vec![f32::from(emitter::is_born(&test_emitter(&[0.0]), x[0] as u32))],
+            cases: random(200, &[(0.0, 330.0)]),
+            tolerance: 0.0,
+            mutants: &[
+                ("(emitter.first + number) * GOLDEN", "number * GOLDEN"),
+                ("GOLDEN: u32 = 2654435769u", "GOLDEN: u32 = 1654435769u"),
+                ("(emitter.first_in_pulse + number) % emitter.per_pulse", "number % emitter.per_pulse"),
+                ("emitter.rate_curve, (f32(in_pulse)", "emitter.amount_curve, (f32(in_pulse)"),
             ],
         },
     ]
@@ -322,6 +342,7 @@ fn births() -> Vec<Formula> {
             mutants: &[
                 (" - life.y / emitter.rate", ""),
                 ("seconds < lifetime", "true"),
+                ("!is_born(emitter, number)", "false"),
                 ("2.0 * life.x - 1.0", "life.x"),
                 ("outward * emitter.burst", "vec3f(0.0)"),
                 ("emitter.velocity_spread * life.z", "emitter.velocity_spread"),

@@ -91,9 +91,9 @@ impl FieldVisitor for RangeWriter<'_> {
     fn curve(&mut self, name: &'static str, _: &mut Curve, range: RangeInclusive<f32>) {
         if let Some(property) = self.property(name) {
             (property["minItems"], property["maxItems"]) = (json!(1), json!(MAX_CURVE_POINTS));
-            let age = json!({ "type": "number", "minimum": 0, "maximum": 1 });
+            let x = json!({ "type": "number", "minimum": 0, "maximum": 1 });
             let value = json!({ "type": "number", "minimum": range.start(), "maximum": range.end() });
-            property["items"]["prefixItems"] = json!([age, value]);
+            property["items"]["prefixItems"] = json!([x, value]);
         }
     }
 

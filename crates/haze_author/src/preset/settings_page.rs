@@ -112,7 +112,7 @@ impl FieldVisitor for SectionWriter<'_> {
     }
 
     fn curve(&mut self, name: &'static str, _: &mut Curve, range: RangeInclusive<f32>) {
-        let points = format_args!("1 to {MAX_CURVE_POINTS} points [age, value], {}", span(&range, ""));
+        let points = format_args!("1 to {MAX_CURVE_POINTS} points [x, value], {}", span(&range, ""));
         self.row(name, points);
     }
 

@@ -344,5 +344,5 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
     rule("only with buoyancy, bounce, anchor, or shape disc", ignores_up, &["emitter.up"]),
     rule("only at a bounce above 0", |s, _| s.emitter.bounce <= 0.0, &["emitter.floor"]),
-    rule("only at a duration above 0", |s, _| s.emitter.duration <= 0.0, &["emitter.period"]),
+    rule("only at a duration above 0", |s, _| s.emitter.duration <= 0.0, &["emitter.period", "emitter.rate_curve"]),
 ];

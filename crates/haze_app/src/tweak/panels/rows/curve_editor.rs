@@ -9,12 +9,12 @@ const HEIGHT: f32 = 64.0;
 /// Distance at which the pointer is on a point, points of the screen.
 const REACH: f32 = 10.0;
 const RADIUS: f32 = 4.0;
-/// Least distance between two points, ages.
+/// Least distance between two points, as a share of the width.
 const GAP: f32 = 0.005;
 /// Highest values of the plot.
 const TOPS: [f32; 5] = [1.0, 2.0, 4.0, 8.0, f32::INFINITY];
 
-const HINT: &str = "Drag a point, click to add one, right-click to remove one. From birth, left, to death, right.";
+const HINT: &str = "Drag a point, click to add one, right-click to remove one. Left: the beginning. Right: the end.";
 
 /// Draws the curve and changes it.
 pub fn curve(ui: &mut Ui, value: &mut Curve, range: &RangeInclusive<f32>, name: &Response) -> Response {
