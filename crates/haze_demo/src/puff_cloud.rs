@@ -145,26 +145,37 @@ impl PuffKind {
         PuffCloud { particles: vec![particle], kind: self }
     }
 
+    /// Material with default ramps and without scattered glow. Sprites are drawn texel by texel: no soft fade, no boost.
+    ///
+    /// # Errors
+    /// If an image cannot be baked.
+    pub fn material(&self) -> Result<PuffMaterial, Error> {
+        let mut settings = Settings { boost: 1.0, technique: Technique::Hard, ..Settings::default() };
+        settings.accumulate.scale = 1;
+        (settings.soft_scatter.intensity, settings.specular_scatter.intensity) = (0.0, 0.0);
+        let sheet = self.recipe.bake(|_| Ok::<_, Error>(()))?.picture;
+        let assets = MaterialAssets {
+            sprite: Sprite::from_image(Path::new("puff"), &sheet, self.recipe.layout())?,
+            detail: None,
+            ..MaterialNames::default().load(Path::new(""))?
+        };
+        Ok(PuffMaterial { settings, assets, exposure: 1.0 })
+    }
+
     /// Material with ramps for diffuse light, and with six-way maps of the medium.
     ///
     /// # Errors
     /// If an image cannot be baked.
     pub fn materials(&self, diffuse: &Ramp, backlight: &Ramp) -> Result<[PuffMaterial; 2], Error> {
-        let mut settings = Settings { boost: 1.0, technique: Technique::Hard, ..Settings::default() };
-        settings.accumulate.scale = 1;
+        let PuffMaterial { mut settings, assets, .. } = self.material()?;
         settings.diffuse.backlight = Backlight::Ramp;
-        (settings.soft_scatter.intensity, settings.specular_scatter.intensity) = (0.0, 0.0);
-        let sheet = self.recipe.bake(|_| Ok::<_, Error>(()))?.picture;
         let maps = self.recipe.bake_six_way(&self.medium, self.path_trace.samples, |_, _| Ok::<_, Error>(()))?;
-        let layout = self.recipe.layout();
-        let sprite = |picture, layout| Sprite::from_image(Path::new("puff"), picture, layout);
+        let layout = six_way_layout(self.recipe.layout());
         let assets = MaterialAssets {
-            sprite: sprite(&sheet, layout)?,
-            detail: None,
-            six_way: Some(sprite(&maps.picture, six_way_layout(layout))?),
+            six_way: Some(Sprite::from_image(Path::new("puff"), &maps.picture, layout)?),
             diffuse_ramp: diffuse.clone(),
             backlight_ramp: backlight.clone(),
-            ..MaterialNames::default().load(Path::new(""))?
+            ..assets
         };
         let mut six_way = Settings { lighting: Lighting::SixWay, ..settings };
         six_way.diffuse.six_way_anisotropy = maps.anisotropy;
@@ -220,6 +231,13 @@ impl PuffCloud<'_> {
             all.densities[index as usize] = self.density(all.voxel_centre(voxel));
         }
         all
+    }
+
+    /// View of the whole cube from the front, without perspective.
+    pub fn view(&self) -> View {
+        let view = Mat4::from_translation(vec3(0.0, 0.0, -3.0));
+        let projection = orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0);
+        View::new(view, projection, UVec2::splat(self.kind.path_trace.size))
     }
 
     /// Path trace of the summed densities of all puffs.
@@ -283,8 +301,7 @@ impl PuffCloud<'_> {
         f: impl FnOnce(&PreparedFrame<'_>) -> T,
     ) -> Result<T, Error> {
         let size = UVec2::splat(self.kind.path_trace.size);
-        let view = Mat4::from_translation(vec3(0.0, 0.0, -3.0));
-        let view = View::new(view, orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), size);
+        let view = self.view();
         let systems = [ParticleSystem::new(&self.particles, &material.settings, &material.assets)];
         let light = Light { kind: LightKind::Directional, direction: -to_light, ..Light::default() };
         let scene_depth = Image::new(size, 1.0);
