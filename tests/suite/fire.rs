@@ -151,6 +151,43 @@ fn smoke_in_front_dims_a_fire_by_its_transmittance() {
 }
 
 #[test]
+fn one_system_draws_what_fire_and_smoke_draw_in_separate_passes() {
+    let mut scene = burning();
+    // Nothing but fire gives light; heat is 1 at birth and 0 from then on. The ramp of the fire has one row.
+    scene.lights.clear();
+    (scene.settings.soft_scatter.intensity, scene.settings.boost) = (0.0, 1.0);
+    (scene.settings.accumulate.scale, scene.settings.fire.core) = (1, 0.0);
+    let heat = |x| if x == 0 { Vec3::ONE } else { Vec3::ZERO };
+    scene.material.heat_ramp = Ramp::from_linear(UVec2::new(64, 1), (0..64).map(heat));
+    scene.material.fire_ramp = Ramp::from_linear(UVec2::new(2, 1), [Vec3::ZERO, vec3(1.0, 0.5, 0.2)]);
+    let like = scene.particles[0];
+    let at = |index: u32, z: f32, age: f32| {
+        let turn = index as f32 * 2.4;
+        let position = vec3(turn.cos(), turn.sin(), 0.0) * 0.4 * (index as f32).sqrt();
+        Particle { position: position.with_z(z - 0.01 * index as f32), ..puff(z, age, 0.4, &like) }
+    };
+    let fire: Vec<_> = (0..12).map(|index| at(index, -6.5, 0.0)).collect();
+    let smoke: Vec<_> = (0..12).map(|index| at(index + 5, -5.5, 1.0)).collect();
+    for path in [RenderPath::Raster, RenderPath::Tiled] {
+        if path == RenderPath::Tiled && !is_tiled_available() {
+            continue;
+        }
+        scene.settings.path = path;
+        let drawn_with = |particles: &[&[Particle]], others: &[Particle]| {
+            let others = (!others.is_empty()).then(|| (others.to_vec(), scene.settings));
+            drawn(&TestScene { particles: particles.concat(), others: others.into_iter().collect(), ..scene.clone() })
+        };
+        let (one, two) = (drawn_with(&[&smoke, &fire], &[]), drawn_with(&[&fire], &smoke));
+        let (fire_alone, smoke_alone) = (drawn_with(&[&fire], &[]), drawn_with(&[&smoke], &[]));
+        let agreement = psnr(&one, &two);
+        assert!(agreement >= 60.0, "{path:?}: {agreement}");
+        let effect = psnr(&one, &fire_alone).max(psnr(&one, &smoke_alone));
+        println!("{path:?}: {agreement:.1} dB; without one of them {effect:.1}");
+        assert!(effect < 40.0, "{path:?}: {effect}");
+    }
+}
+
+#[test]
 fn cold_smoke_gives_no_light_and_strange_ages_are_harmless() {
     let mut scene = burning();
     scene.settings.fire.intensity = 1000.0;
