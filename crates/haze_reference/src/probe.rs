@@ -12,10 +12,12 @@ use super::visible_system::{VisibleSystem, place_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::fire::fire_from_moments;
-use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
+use haze::formula::lighting::{
+    backlight_weight, coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
+};
 use haze::formula::six_way::SixWay;
 use haze::formula::uniforms::LightUniform;
-use haze::settings::{DebugView, SoftScatterMode};
+use haze::settings::{Backlight, DebugView, SoftScatterMode};
 use haze::view_setup::{ViewGeometry, light_uniforms};
 
 /// Textures that a system was accumulated into, as read back from [`TargetViews`](haze::TargetViews), cropped to the
@@ -82,6 +84,8 @@ pub struct LightProbe {
     pub coordinate: f32,
     /// Multiplies the light's color.
     pub attenuation: f32,
+    /// Share of the backlight ramp in the light, 0 to 1; the rest comes from the diffuse ramp.
+    pub backlight: f32,
     /// Light added through the diffuse ramp or six-way maps, times the intensity of diffuse light. Modes other than
     /// `ramp` sum lights up differently.
     pub diffuse: Vec3,
@@ -221,6 +225,12 @@ impl<'a> ProbedSystem<'a> {
                 cosine: surface.normal.dot(sample.direction),
                 coordinate: diffuse_coordinate(surface.normal, sample.direction),
                 attenuation: sample.attenuation,
+                backlight: match visible.settings.diffuse.backlight {
+                    Backlight::Ramp => {
+                        backlight_weight(sample.direction, direction_to_viewer(position, visible.view.orthographic))
+                    }
+                    _ => 0.0,
+                },
                 diffuse: smoke.diffuse_from_light(light, &surface, covered, position)
                     * visible.system.diffuse_intensity
                     * surface.tint,

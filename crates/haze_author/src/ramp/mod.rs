@@ -8,6 +8,7 @@ mod gradient_text;
 pub mod import_gradient;
 pub mod lint;
 pub mod motif;
+mod paint;
 mod place_formula;
 mod ramp_recipe;
 pub mod response;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 use image::{DynamicImage, ImageBuffer};
 
 use super::blend_space::srgb16_from_linear;
@@ -197,10 +197,14 @@ pub struct Gradient {
 }
 
 impl Gradient {
+    /// Returns the position along the rows at a position, 0 to 1 on both axes.
+    pub(super) fn place(&self, at: Vec2) -> f32 {
+        self.place.as_ref().map_or(at.x, |formula| formula.place(at.x, at.y))
+    }
+
     /// Returns the linear RGB color at a position, 0 to 1 on both axes.
     pub fn sample(&self, u: f32, v: f32) -> Vec3 {
-        let place = self.place.as_ref().map_or(u, |formula| formula.place(u, v));
-        let light = self.rows.sample(place, v);
+        let light = self.rows.sample(self.place(Vec2::new(u, v)), v);
         self.times.as_ref().map_or(light, |times| light * times.sample(v, 0.0))
     }
 }

@@ -101,11 +101,9 @@ impl RampEdits {
     pub fn write_requested_copy(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, field)) = self.wanted.filter(|_| !document.is_built_in()) else { return Ok(()) };
         self.wanted = None;
-        let field = format!("systems[{system}].material.{field}");
-        let named = field_values(&document.preset).into_iter().find(|(path, _)| *path == field);
-        let Some((_, FieldValue::Text(name))) = named else { return Ok(()) };
+        let Some(name) = ramp_name(&document.preset, system, field) else { return Ok(()) };
         let copy = copy_of(&name, document.path())?;
-        set_field(&mut document.preset, &field, &copy)?;
+        set_field(&mut document.preset, &format!("systems[{system}].material.{field}"), &copy)?;
         Ok(())
     }
 
@@ -205,6 +203,15 @@ impl EditedRamp {
     fn is_to_be_written(&self, changed: Option<&RampRecipe>) -> bool {
         let RampOrigin::Recipe(recipe) = &self.source else { return false };
         self.written.as_ref() != Some(changed.unwrap_or(recipe))
+    }
+}
+
+/// Name that a preset has for the ramp in a field of a system's material.
+pub fn ramp_name(preset: &Preset, system: usize, field: &str) -> Option<String> {
+    let path = format!("systems[{system}].material.{field}");
+    match field_values(preset).into_iter().find(|(field, _)| *field == path) {
+        Some((_, FieldValue::Text(name))) => Some(name),
+        _ => None,
     }
 }
 

@@ -5,14 +5,14 @@ use glam::UVec2;
 use haze::MaterialAssets;
 use haze::formula::color::luminance;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
-use haze::preset::Preset;
 use haze::ramp::Ramp;
-use haze::settings::{FieldValue, ImageRole, RampFilter, field_values, set_field};
+use haze::settings::{ImageRole, RampFilter, set_field};
 use haze_reference::SystemProbe;
 
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
 use super::rows::picture_gallery::gallery;
 use crate::tweak::document::display_names::display_name;
+use crate::tweak::document::ramp_edits::ramp_name;
 use crate::tweak::session::Session;
 use crate::tweak::session::inspection::PixelValues;
 use crate::tweak::session::light_view::name_in_image;
@@ -62,7 +62,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
     for RampEntry { field, title, tooltip, switch } in &RAMPS {
         let field = *field;
         let path = format!("systems[{index}].material.{field}");
-        let Some(name) = ramp_name(&session.document.preset, &path) else { continue };
+        let Some(name) = ramp_name(&session.document.preset, index, field) else { continue };
         let name = name.as_str();
         ui.add_space(6.0);
         choose(ui, session, (title, tooltip), &path, name);
@@ -241,14 +241,6 @@ const RAMPS: [RampEntry; 9] = [
         switch("Turn on fire", "settings.fire.intensity", "1"),
     ),
 ];
-
-/// Returns the name of the ramp in a field.
-fn ramp_name(preset: &Preset, path: &str) -> Option<String> {
-    match field_values(preset).into_iter().find(|(field, _)| field == path) {
-        Some((_, FieldValue::Text(name))) => Some(name),
-        _ => None,
-    }
-}
 
 /// Draws the reason why a ramp is not used. If one setting turns it on, draws a button for it instead.
 fn off(ui: &mut Ui, session: &mut Session, system: usize, field: &str, switch: Option<&RampSwitch>, reason: &str) {

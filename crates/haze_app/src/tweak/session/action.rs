@@ -150,6 +150,10 @@ pub const GESTURES: &[(&str, &str)] = &[
     ("Right click", "Menu: add a light here"),
     ("Click a light", "Select it, then drag its handles: Shift for precision, Ctrl to snap, Escape to cancel"),
     ("Click while inspecting", "Pin the pixel; click again to unpin"),
+    (
+        "Ctrl + drag while inspecting",
+        "Paint the ramp that lights this smoke: up lightens, down darkens, right warms, left cools",
+    ),
     ("Double click a name", "Reset to the saved value"),
     ("Click a value", "Type a number, with or without its unit"),
     ("Grid icon beside a name", "Compare values of the setting side by side"),

@@ -15,6 +15,8 @@ use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 pub struct Inspection {
     /// The values of the pixel under the pointer are shown.
     pub is_on: bool,
+    /// A drag paints on the smoke, and the values would hide it.
+    pub is_painting: bool,
     /// Pointer position over the image, in shares of its sides.
     pub pointer: Option<Vec2>,
     /// Pinned position.

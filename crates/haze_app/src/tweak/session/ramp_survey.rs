@@ -197,6 +197,7 @@ mod tests {
             cosine: 0.0,
             coordinate: 0.5,
             attenuation: 1.0,
+            backlight: 0.0,
             diffuse: Vec3::ZERO,
             shadow: Some(ShadowProbe { coordinate: shadow, transmittance: Vec3::ONE }),
             glow: glow.map(|coordinate| GlowProbe { coordinate, specular: Vec3::ZERO }),

@@ -15,6 +15,7 @@ pub mod probe_job;
 mod ramp_highlight;
 mod ray;
 mod screen_projection;
+mod smoke_paint;
 mod split_view;
 mod toolbar;
 
@@ -35,6 +36,7 @@ use outlined_painter::OutlinedPainter;
 use path_traced_puff::PathTracedPuff;
 use ray::Ray;
 use screen_projection::ScreenProjection;
+use smoke_paint::SmokePaint;
 use split_view::{comparison_image, divider};
 
 /// State of the viewport.
@@ -43,6 +45,7 @@ pub struct Viewport {
     steering: CameraInput,
     smoke: SmokeGeometry,
     gizmo: LightGizmo,
+    paint: SmokePaint,
     menu: Menu,
     puff: PathTracedPuff,
 }
@@ -65,8 +68,11 @@ impl Viewport {
         self.begin_gesture(ui, session);
         session.view.lights.follow(&session.document.preset.lights);
         let projection = ScreenProjection::new(&session.document.preset.camera, rect);
-        // While the inspector is on, a click pins a pixel.
-        let is_taken = !session.inspect.is_on && self.gizmo.interact(ui, &response, &projection, session);
+        // While the inspector is on, a click pins a pixel, and a drag with Ctrl paints.
+        let is_taken = match session.inspect.is_on {
+            true => self.paint.interact(ui, &response, session),
+            false => self.gizmo.interact(ui, &response, &projection, session),
+        };
         if !is_taken {
             self.steer(ui, &response, &projection, session);
         }

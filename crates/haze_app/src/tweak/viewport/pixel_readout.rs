@@ -22,7 +22,7 @@ const WIDE: [f32; 2] = [540.0, 720.0];
 /// Draws the values while the inspector is on, on the side away from the pointer.
 pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
     let (inspect, compare) = (&session.inspect, &session.compare);
-    let Some(place) = inspect.place().filter(|_| inspect.is_on) else { return };
+    let Some(place) = inspect.place().filter(|_| inspect.is_on && !inspect.is_painting) else { return };
     let side = compare.side(place.x);
     let is_made = side == ComparedSide::Second && compare.against == Some(CompareWith::Reference);
     let values = inspect.pixel_values.as_ref().filter(|values| values.side == side && !is_made);

@@ -1,6 +1,7 @@
 mod camera_input;
 mod light_gizmo;
 mod pixel_readout;
+mod smoke_paint;
 mod turntable;
 
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, vec2};
