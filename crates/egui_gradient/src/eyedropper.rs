@@ -234,6 +234,29 @@ impl Eyedropper {
     }
 }
 
+/// Eyedropper for one color of a host's own. Keep it across frames while it is active.
+#[derive(Clone, Debug, Default)]
+pub struct ColorEyedropper {
+    eyedropper: Eyedropper,
+    sample_size: SampleSize,
+}
+
+impl ColorEyedropper {
+    /// Handles pointer and keys for one frame. Returns the picked color, or `None` in it after Escape; `None` while the
+    /// eyedropper stays active. A stroke picks the color of its end.
+    pub fn update(&mut self, ui: &Ui) -> Option<Option<HexColor>> {
+        let code = |colors: &[Vec3]| colors.last().map(|color| HexColor::from_srgb(*color / 255.0));
+        match self.eyedropper.update(ui, &mut self.sample_size) {
+            EyedropperResult::Done(colors) => Some(code(&colors)),
+            EyedropperResult::Pointed(colors) => {
+                let color = code(&colors).map_or(Color32::TRANSPARENT, paint::color32);
+                self.eyedropper.magnifier(ui, self.sample_size, &colors, |_| color);
+                None
+            }
+        }
+    }
+}
+
 fn color32(color: Vec3) -> Color32 {
     paint::color32(HexColor::from_srgb(color / 255.0))
 }

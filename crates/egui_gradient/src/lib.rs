@@ -36,6 +36,7 @@ use egui::{self, Ui};
 pub use clipboard::color as parse_color;
 pub use controls::sentence_case;
 pub use edit_context::DisplayOptions;
+pub use eyedropper::ColorEyedropper;
 pub use paint::histogram;
 
 use edit_context::{EditContext, EditorState};

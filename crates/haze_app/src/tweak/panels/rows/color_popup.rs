@@ -1,10 +1,12 @@
-//! Swatch of a color, and the popup that edits it: a picker, hexadecimal code, temperature and brightness.
+//! Swatch of a color, and the popup that edits it: a picker, hexadecimal code, temperature and brightness, an eyedropper
+//! and recent colors.
 
 use std::ops::RangeInclusive;
 
 use eframe::egui::color_picker::{Alpha, color_picker_hsva_2d, show_color_at};
 use eframe::egui::ecolor::Hsva;
 use eframe::egui::{self, Popup, PopupCloseBehavior, Response, Rgba, Sense, Ui};
+use egui_gradient::ColorEyedropper;
 use glam::Vec3;
 use haze::formula::color::srgb_from_linear;
 use haze_author::ramp::HexColor;
@@ -13,6 +15,9 @@ use super::color_temperature::{KELVIN, color_of_temperature, temperature_of_colo
 
 /// Range of the brightness, stops.
 const STOPS: RangeInclusive<f32> = -10.0..=10.0;
+
+/// Most recent colors that are kept.
+const MAX_RECENT: usize = 8;
 
 /// Draws a swatch of a linear RGB color, whose channels have a range; a click opens the popup. The color may exceed 1; what
 /// is shown is then normalised to its largest channel.
@@ -26,10 +31,30 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
         show_color_at(ui.painter(), Rgba::from_rgb(r, g, b).into(), rect);
         ui.painter().rect_stroke(rect, visuals.corner_radius, visuals.bg_stroke, egui::StrokeKind::Inside);
     }
+    let before = *value;
     let popup = Popup::from_toggle_button_response(&button);
     let popup = popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let edited = popup.show(|ui| popup_content(ui, value)).is_some_and(|shown| shown.inner);
-    if edited {
+    let opened_with = button.id.with("opened with");
+    let is_open = popup.show(|ui| popup_content(ui, value, button.id)).is_some();
+    if is_open {
+        ui.data_mut(|data| *data.get_temp_mut_or(opened_with, before));
+    } else if ui.data_mut(|data| data.remove_temp::<Vec3>(opened_with)).is_some_and(|opened| opened != *value) {
+        remember(ui, shown_code(*value));
+    }
+    // It outlives the popup, which would hide the image.
+    if let Some(mut eyedropper) = ui.data_mut(|data| data.remove_temp::<ColorEyedropper>(button.id)) {
+        match eyedropper.update(ui) {
+            None => {
+                ui.data_mut(|data| data.insert_temp(button.id, eyedropper));
+            }
+            Some(Some(picked)) => {
+                *value = picked.linear() * shown_peak(*value);
+                remember(ui, picked);
+            }
+            Some(None) => {}
+        }
+    }
+    if *value != before {
         *value = value.clamp(Vec3::splat(*range.start()), Vec3::splat(*range.end()));
         button.mark_changed();
     }
@@ -41,8 +66,13 @@ fn shown_peak(value: Vec3) -> f32 {
     value.max_element().max(1.0)
 }
 
-fn popup_content(ui: &mut Ui, value: &mut Vec3) -> bool {
-    let before = *value;
+/// sRGB code of what is shown of a color.
+fn shown_code(value: Vec3) -> HexColor {
+    HexColor::from_srgb((value / shown_peak(value)).map(srgb_from_linear))
+}
+
+/// Draws the content of the popup of a button.
+fn popup_content(ui: &mut Ui, value: &mut Vec3, button: egui::Id) {
     ui.spacing_mut().slider_width = 240.0;
     picker(ui, value);
     egui::Grid::new("color").num_columns(2).show(ui, |ui| {
@@ -53,7 +83,44 @@ fn popup_content(ui: &mut Ui, value: &mut Vec3) -> bool {
         brightness(ui, value);
         ui.end_row();
     });
-    *value != before
+    ui.horizontal(|ui| {
+        let pick = ui.button("Pick color").on_hover_text("Takes a color from anywhere in the window; Escape cancels");
+        if pick.clicked() {
+            ui.data_mut(|data| data.insert_temp(button, ColorEyedropper::default()));
+            ui.close();
+        }
+        recent(ui, value);
+    });
+}
+
+fn recent_id() -> egui::Id {
+    egui::Id::unique("recent colors")
+}
+
+/// Puts a color in front of the recent ones.
+fn remember(ui: &Ui, color: HexColor) {
+    ui.data_mut(|data| {
+        let recent: &mut Vec<HexColor> = data.get_temp_mut_or_default(recent_id());
+        recent.retain(|other| *other != color);
+        recent.insert(0, color);
+        recent.truncate(MAX_RECENT);
+    });
+}
+
+/// Draws the colors that were chosen last in any popup; a click takes one.
+fn recent(ui: &mut Ui, value: &mut Vec3) {
+    let colors: Vec<HexColor> = ui.data(|data| data.get_temp(recent_id())).unwrap_or_default();
+    for color in colors {
+        let [r, g, b] = color.0;
+        let size = egui::Vec2::splat(ui.spacing().interact_size.y);
+        let button = egui::Button::new("").fill(egui::Color32::from_rgb(r, g, b)).min_size(size);
+        let button = ui.add(button);
+        let name = format!("Recent color {}", String::from(color));
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        if button.on_hover_text(String::from(color)).clicked() {
+            *value = color.linear() * shown_peak(*value);
+        }
+    }
 }
 
 /// Draws the picker. It keeps hue and saturation while the color is grey or black.
@@ -72,8 +139,7 @@ fn picker(ui: &mut Ui, value: &mut Vec3) {
 
 /// Draws the sRGB code of the shown color. Typed text is used when the field loses focus; text that is no code is dropped.
 fn hex(ui: &mut Ui, value: &mut Vec3) {
-    let peak = shown_peak(*value);
-    let code = HexColor::from_srgb((*value / peak).map(srgb_from_linear));
+    let (peak, code) = (shown_peak(*value), shown_code(*value));
     let id = ui.scope_id().with("hex");
     let mut text = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| String::from(code));
     let label = ui.label("Hex");
@@ -159,6 +225,57 @@ mod tests {
         assert!(harness.state().abs_diff_eq(Vec3::new(0.0, 4.0, 0.0), 1e-4), "{}", harness.state());
         type_into(&mut harness, Role::TextInput, "Hex", "green");
         assert!(harness.state().abs_diff_eq(Vec3::new(0.0, 4.0, 0.0), 1e-4), "{}", harness.state());
+    }
+
+    #[test]
+    fn colors_of_closed_popups_are_offered_again() {
+        let mut harness = open(Vec3::new(4.0, 1.0, 0.5));
+        let close = |harness: &mut Harness<'_, Vec3>| {
+            harness.key_press(Key::Escape);
+            harness.run();
+            harness.get_by_role(Role::ColorWell).click();
+            harness.run();
+        };
+        // A popup in which nothing was changed adds no color.
+        close(&mut harness);
+        assert!(harness.query_all_by_label_contains("Recent color").next().is_none());
+        type_into(&mut harness, Role::TextInput, "Hex", "#00ff00");
+        close(&mut harness);
+        type_into(&mut harness, Role::TextInput, "Hex", "#0000ff");
+        close(&mut harness);
+        harness.get_by_label("Recent color #00ff00").click();
+        harness.run();
+        assert!(harness.state().abs_diff_eq(Vec3::new(0.0, 4.0, 0.0), 1e-4), "{}", harness.state());
+        assert!(harness.query_by_label("Recent color #0000ff").is_some());
+    }
+
+    #[test]
+    fn the_eyedropper_takes_a_color_of_the_window() {
+        let mut harness = open(Vec3::new(2.0, 2.0, 2.0));
+        harness.get_by_label("Pick color").click();
+        harness.run_steps(2);
+        for _ in 0..6 {
+            harness.step();
+            let _ = harness.render().unwrap();
+        }
+        // A place without widgets.
+        let place = egui::pos2(400.0, 500.0);
+        let background = harness.render().unwrap().get_pixel(400, 500).0;
+        harness.hover_at(place);
+        for pressed in [true, false] {
+            let modifiers = Modifiers::NONE;
+            harness.event(egui::Event::PointerButton {
+                pos: place,
+                button: egui::PointerButton::Primary,
+                pressed,
+                modifiers,
+            });
+            harness.run_steps(2);
+        }
+        let [r, g, b, _] = background;
+        let expected = HexColor([r, g, b]).linear() * 2.0;
+        assert!(harness.state().abs_diff_eq(expected, 1e-4), "{}, expected {expected}", harness.state());
+        assert!(harness.query_by_label("take a color").is_none());
     }
 
     #[test]
