@@ -8,6 +8,13 @@ use crate::settings::{LightingResolution, Settings};
 /// Largest step of a ramp times the scale, at which light per texel looks like light per pixel. Steps are those of
 /// [`RampSteps`].
 const SMOOTH_STEP: f32 = 0.4;
+/// Scale from which on the limit stays: a coarser target blurs the smoke more than the light.
+const COARSE_SCALE: u32 = 4;
+
+/// Largest step of a ramp at which a target of this scale is lit per texel.
+fn largest_smooth_step(scale: u32) -> f32 {
+    SMOOTH_STEP / scale.min(COARSE_SCALE) as f32
+}
 
 /// Lighting resolution that `auto` chose for a system, with the reason. `Display` formats it as one sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +31,7 @@ pub struct LightingChoice {
 impl LightingChoice {
     pub(super) fn new(ramp_steps: &RampSteps, settings: &Settings, scale: u32) -> Self {
         let largest_step = ramp_steps.largest(settings);
-        let is_smooth = largest_step * scale as f32 <= SMOOTH_STEP;
+        let is_smooth = largest_step <= largest_smooth_step(scale);
         let resolution = if is_smooth { LightingResolution::Target } else { LightingResolution::Full };
         Self { resolution, largest_step, scale }
     }
@@ -33,7 +40,7 @@ impl LightingChoice {
 impl fmt::Display for LightingChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { resolution, largest_step, scale } = self;
-        let limit = SMOOTH_STEP / *scale as f32;
+        let limit = largest_smooth_step(*scale);
         let comparison = if *resolution == LightingResolution::Target { "at most" } else { "above" };
         let name = resolution.name();
         write!(
@@ -54,6 +61,7 @@ mod tests {
             LightingChoice::new(&ramps, &Settings::default(), scale).to_string()
         };
         assert_eq!(sentence(0.05, 4), "target: the largest step of the ramps is 0.05, at most 0.10 at scale 4");
+        assert_eq!(sentence(0.09, 8), "target: the largest step of the ramps is 0.09, at most 0.10 at scale 8");
         assert_eq!(sentence(0.27, 2), "full: the largest step of the ramps is 0.27, above 0.20 at scale 2");
     }
 }

@@ -36,7 +36,7 @@ pub struct PathModel {
     pub source: PathModelSource,
 }
 
-/// Costs of one accumulation path, nanoseconds, each 0 or more and finite.
+/// Costs of one accumulation path, nanoseconds where nothing else is said, each 0 or more and finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathCosts {
     /// Per system.
@@ -55,6 +55,10 @@ pub struct PathCosts {
     pub sphere: f32,
     /// Per texel that a volumetric sprite covers, for each noise octave of each march step.
     pub march: f32,
+    /// Of each texture that is blended behind the first, as a share of `fragment`.
+    pub attachment: f32,
+    /// Of each octave of grain, as a share of `fragment`.
+    pub octave: f32,
     /// Width and height of the blocks that are shaded whole if a sprite covers any part of one, texels; 0 if only
     /// covered texels cost time.
     pub block: [u32; 2],
@@ -87,7 +91,8 @@ impl PathModelSource {
 }
 
 impl PathModel {
-    /// Measured on an NVIDIA H200: `bench/results/h200_auto.json`; the traversal in `h200.json`.
+    /// Measured on an NVIDIA H200: `bench/results/h200_auto.json`; the traversal in `h200.json`; further textures and grain
+    /// by the suite `sprites`.
     const GPU: Self = Self {
         raster: PathCosts {
             frame: 10.0e3,
@@ -98,6 +103,8 @@ impl PathModel {
             fragment: 0.085,
             sphere: 0.16,
             march: 0.086,
+            attachment: 1.0,
+            octave: 0.35,
             block: [0; 2],
         },
         tiled: PathCosts {
@@ -109,6 +116,8 @@ impl PathModel {
             fragment: 0.0033,
             sphere: 0.0035,
             march: 0.0032,
+            attachment: 0.05,
+            octave: 0.2,
             block: [0; 2],
         },
         cores: 1,
@@ -126,6 +135,8 @@ impl PathModel {
             fragment: 10.0,
             sphere: 15.0,
             march: 11.0,
+            attachment: 0.17,
+            octave: 0.3,
             block: [4, 4],
         },
         tiled: PathCosts {
@@ -137,6 +148,8 @@ impl PathModel {
             fragment: 7.4,
             sphere: 10.7,
             march: 12.7,
+            attachment: 0.13,
+            octave: 0.4,
             block: [8, 4],
         },
         cores: 2,
@@ -181,7 +194,8 @@ impl PathModel {
             return Err(FieldError::new("cores", self.cores, "1 or more"));
         }
         for (path, costs) in [("raster", self.raster), ("tiled", self.tiled)] {
-            let PathCosts { frame, texel, sprite, entry, layer, fragment, sphere, march, block: _ } = costs;
+            let PathCosts { frame, texel, sprite, entry, layer, fragment, sphere, march, attachment, octave, block: _ } =
+                costs;
             let named = [
                 ("frame", frame),
                 ("texel", texel),
@@ -191,9 +205,11 @@ impl PathModel {
                 ("fragment", fragment),
                 ("sphere", sphere),
                 ("march", march),
+                ("attachment", attachment),
+                ("octave", octave),
             ];
             if let Some((name, value)) = named.into_iter().find(|(_, cost)| !(0.0..f32::INFINITY).contains(cost)) {
-                return Err(FieldError::new(format!("{path}.{name}"), value, "nanoseconds, 0 or more"));
+                return Err(FieldError::new(format!("{path}.{name}"), value, "0 or more"));
             }
         }
         Ok(())
@@ -216,6 +232,9 @@ impl PathCosts {
             technique if technique.is_volumetric() => f64::from(self.march) * workload.lookups,
             _ => f64::from(self.fragment),
         };
+        let (attachments, octaves) = (f64::from(workload.attachments), f64::from(workload.grain_octaves));
+        let more = f64::from(self.attachment) * (attachments - 1.0).max(0.0) + f64::from(self.octave) * octaves;
+        let of_fragment = of_fragment + f64::from(self.fragment) * more;
         let nanoseconds = f64::from(self.frame)
             + f64::from(self.texel) * workload.texels()
             + f64::from(self.sprite) * workload.sprites
@@ -235,6 +254,8 @@ impl PathCosts {
             fragment: self.fragment * factor,
             sphere: self.sphere * factor,
             march: self.march * factor,
+            attachment: self.attachment,
+            octave: self.octave,
             block: self.block,
         }
     }

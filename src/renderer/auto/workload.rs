@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use crate::frame::Particle;
 use crate::settings::{BlendOrder, Layers, Settings, Technique};
-use crate::view_setup::{SpriteProjector, TexelGrid, optical_depth};
+use crate::view_setup::{AttachmentSet, SpriteProjector, TexelGrid, optical_depth};
 
 /// Maximum number of sprites sampled; the estimate takes about ten microseconds.
 const SAMPLE: usize = 256;
@@ -26,6 +26,10 @@ pub struct PathWorkload {
     pub size: UVec2,
     /// Mean optical depth of a sprite, −ln(1 − amount), over the texels that it covers; 0 if no layer may be skipped.
     pub optical_depth: f64,
+    /// Textures that each fragment is blended into.
+    pub attachments: u32,
+    /// Octaves of grain; 0 for none.
+    pub grain_octaves: u32,
     /// Noise lookups per fragment of a volumetric sprite: octaves times march steps.
     pub lookups: f64,
     /// True if only the number of sprites is known.
@@ -63,6 +67,8 @@ pub(crate) fn estimate_workload(
         fragments: fragments * loops,
         size: grid.size,
         optical_depth: if stops { depth } else { 0.0 },
+        attachments: AttachmentSet::of(settings).iter().count() as u32,
+        grain_octaves: settings.grain_octaves(),
         lookups: f64::from(settings.volumetric.march_steps * settings.volumetric.noise_octaves),
         is_assumed: known.is_none(),
     }

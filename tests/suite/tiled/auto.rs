@@ -59,7 +59,7 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
     assert_eq!(host.renderer.path_choice(0), None);
     let model = PathModel { raster: PathCosts { entry: -1.0, ..class.raster }, ..class };
     let message = host.renderer.context().set_path_model(model).unwrap_err().to_string();
-    assert_eq!(message, "raster.entry: -1 is not valid; expected nanoseconds, 0 or more");
+    assert_eq!(message, "raster.entry: -1 is not valid; expected 0 or more");
     let message = host.renderer.context().set_path_model(PathModel { cores: 0, ..class }).unwrap_err().to_string();
     assert_eq!(message, "cores: 0 is not valid; expected 1 or more");
     gpu().check().unwrap();

@@ -10,6 +10,8 @@ fn workload(layers: f64) -> PathWorkload {
         fragments: layers * size.as_dvec2().element_product(),
         size,
         optical_depth: 0.05,
+        attachments: 1,
+        grain_octaves: 0,
         lookups: 0.0,
         is_assumed: false,
     }
@@ -25,6 +27,19 @@ fn early_stop_limits_the_cost_of_tiled_but_not_of_raster() {
     // A traversal that does not stop visits all layers.
     let [_, all] = model.milliseconds(&PathWorkload { optical_depth: 0.0, ..workload(4000.0) });
     assert!(all > 1.7 * deep_tiled);
+}
+
+#[test]
+fn further_textures_and_grain_cost_raster_more_than_tiled_on_a_gpu() {
+    let model = PathModel::GPU;
+    let plain = PathWorkload { fragments: 0.7e6, size: UVec2::new(320, 180), ..workload(1.0) };
+    let ratio = |of: PathWorkload| {
+        let [raster, tiled] = model.milliseconds(&of);
+        raster / tiled
+    };
+    let textures = ratio(PathWorkload { attachments: 4, ..plain });
+    let grain = ratio(PathWorkload { attachments: 4, grain_octaves: 1, ..plain });
+    assert!(textures > 2.0 * ratio(plain) && grain > 1.05 * textures, "{} {textures} {grain}", ratio(plain));
 }
 
 #[test]
