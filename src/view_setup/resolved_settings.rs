@@ -101,7 +101,7 @@ mod tests {
             let resolved = ResolvedSettings::new(&settings, 1.0, UVec2::splat(512), 1.0, &ramps, Support::ALL);
             resolved.lights_per_texel()
         };
-        assert!(lights_per_texel(0.1, 2) && lights_per_texel(0.1, 4) && !lights_per_texel(0.1, 8));
+        assert!([2, 4, 8].into_iter().all(|scale| lights_per_texel(0.1, scale)) && !lights_per_texel(0.11, 8));
         assert!(!lights_per_texel(0.25, 2) && lights_per_texel(0.02, 16));
         assert!(!lights_per_texel(0.0, 1), "a texel is a pixel");
     }
