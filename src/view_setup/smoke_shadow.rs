@@ -84,9 +84,9 @@ pub struct SmokeShadow {
 }
 
 impl SmokeShadow {
-    /// `up`: world space, unit length. `max_volume_depth`: of a 3D texture, texels. `is_mapped`: whether the light of
-    /// an index has shadow maps. `systems`: box and settings of each system. Returns `None` if no system receives shadow, or there is no
-    /// smoke.
+    /// `up`: world space, unit length. `max_volume_depth`: of a 3D texture, texels. `is_mapped`: true for indices of
+    /// lights that have shadow maps. `systems`: box and settings of each system. Returns `None` if no system receives
+    /// shadow, or there is no smoke.
     pub fn new(
         (view, up): (&ViewGeometry, Vec3),
         max_volume_depth: u32,

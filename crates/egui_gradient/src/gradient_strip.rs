@@ -9,6 +9,7 @@ use super::selection::Selection;
 use super::stop_operations;
 use haze::error::FieldError;
 use haze::formula::color::srgb_from_linear;
+use haze_author::ramp::gradient::add_stop;
 use haze_author::ramp::{Blend, Gradient, HexColor, RampRecipe, RampRow, RampStop};
 
 /// Heights of the strip, of the lane for handles below it, and of histograms, points.
@@ -89,7 +90,7 @@ fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &G
         let color = color_at(gradient, at);
         let before = (context.stops.clone(), context.editor.selection.clone());
         context.edit("add a stop", |stops, selection| {
-            *selection = Selection::one(stop_operations::add(stops, at, color));
+            *selection = Selection::one(add_stop(stops, at, color));
         });
         if let Some(origin) = origin.filter(|_| response.drag_started()) {
             handles::begin_drag(context, origin.x, place, before, true);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::selection::Selection;
-use haze_author::ramp::{Curve, HexColor, RampStop};
+use haze_author::ramp::{Curve, RampStop};
 
 /// Sorts stops by position, stably.
 pub fn sort(stops: &mut [RampStop]) {
@@ -18,15 +18,6 @@ fn sort_selected(stops: &mut [RampStop], selection: &mut Selection) {
     order.iter().enumerate().for_each(|(new, old)| moved_to[*old] = new);
     *selection = selection.map(|old| moved_to.get(old).copied().unwrap_or(old));
     sort(stops);
-}
-
-/// Adds a stop with the curve of the previous one. Returns its index.
-pub fn add(stops: &mut Vec<RampStop>, at: f32, color: HexColor) -> usize {
-    let index = stops.partition_point(|stop| stop.at <= at);
-    let neighbour = stops.get(index.saturating_sub(1));
-    let curve = neighbour.map_or(Curve::default(), |stop| stop.curve);
-    stops.insert(index, RampStop { at, color, curve });
-    index
 }
 
 /// Inserts a copy after each selected stop and selects the copies.

@@ -12,12 +12,10 @@ use super::visible_system::{VisibleSystem, place_systems};
 use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::fire::fire_from_moments;
-use haze::formula::lighting::{
-    backlight_weight, coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
-};
+use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
 use haze::formula::six_way::SixWay;
 use haze::formula::uniforms::LightUniform;
-use haze::settings::{Backlight, DebugView, SoftScatterMode};
+use haze::settings::{DebugView, SoftScatterMode};
 use haze::view_setup::{ViewGeometry, light_uniforms};
 
 /// Textures that a system was accumulated into, as read back from [`TargetViews`](haze::TargetViews), cropped to the
@@ -225,12 +223,7 @@ impl<'a> ProbedSystem<'a> {
                 cosine: surface.normal.dot(sample.direction),
                 coordinate: diffuse_coordinate(surface.normal, sample.direction),
                 attenuation: sample.attenuation,
-                backlight: match visible.settings.diffuse.backlight {
-                    Backlight::Ramp => {
-                        backlight_weight(sample.direction, direction_to_viewer(position, visible.view.orthographic))
-                    }
-                    _ => 0.0,
-                },
+                backlight: visible.backlight_share(sample.direction, position),
                 diffuse: smoke.diffuse_from_light(light, &surface, covered, position)
                     * visible.system.diffuse_intensity
                     * surface.tint,

@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use haze_author::ramp::{RampRecipe, RampRow};
+use haze_author::ramp::gradient::add_stop;
+use haze_author::ramp::{HexColor, RampRecipe, RampRow};
 
 fn stops(list: &[(f32, u8, Curve)]) -> Vec<RampStop> {
     list.iter().map(|&(at, grey, curve)| RampStop { curve, ..RampStop::new(at, HexColor([grey; 3])) }).collect()
@@ -56,9 +57,9 @@ fn a_stop_changes_order_only_if_it_moves_past_another() {
 #[test]
 fn added_stops_are_inserted_in_order_and_the_last_stop_cannot_be_removed() {
     let mut list = stops(&[(0.2, 0, Curve::Ease), (0.2, 1, Curve::Constant), (0.8, 2, SMOOTH)]);
-    assert_eq!(add(&mut list, 0.2, HexColor([9; 3])), 2);
+    assert_eq!(add_stop(&mut list, 0.2, HexColor([9; 3])), 2);
     assert_eq!((greys(&list), list[2].curve), (vec![0, 1, 9, 2], Curve::Constant));
-    assert_eq!(add(&mut list, 0.1, HexColor([8; 3])), 0);
+    assert_eq!(add_stop(&mut list, 0.1, HexColor([8; 3])), 0);
     assert_eq!(list[0].curve, Curve::Ease);
     assert_eq!(removed(&mut list, 4), 3);
     while list.len() > 1 {

@@ -83,6 +83,15 @@ impl Fields for RampStop {
     }
 }
 
+/// Adds a stop to sorted ones, with the curve of the previous one. Returns its index.
+pub fn add_stop(stops: &mut Vec<RampStop>, at: f32, color: HexColor) -> usize {
+    let index = stops.partition_point(|stop| stop.at <= at);
+    let neighbour = stops.get(index.saturating_sub(1));
+    let curve = neighbour.map_or(Curve::default(), |stop| stop.curve);
+    stops.insert(index, RampStop { at, color, curve });
+    index
+}
+
 /// Returns an error for an empty list.
 pub fn check_not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
     if list.is_empty() {

@@ -4,7 +4,8 @@ use glam::{Vec2, Vec3};
 use haze::FieldError;
 use haze::formula::color::srgb_from_linear;
 
-use super::{HexColor, RampRecipe, RampRow, RampStop};
+use super::gradient::add_stop;
+use super::{HexColor, RampRecipe, RampRow};
 
 /// Distance from the place, along and across rows, at which colors change by 0.6 of what they change by there.
 const REACH: f32 = 0.12;
@@ -28,7 +29,9 @@ impl RampRecipe {
             // The nearest row changes as if it were at the place.
             let across = weight(distance(row) - nearest);
             if across > 0.5 && row.stops.iter().all(|stop| (stop.at - place).abs() > NEAR) {
-                add_stop(self, row, place)?;
+                let color = color_of(self, row, place)?;
+                row.stops.sort_by(|a, b| a.at.total_cmp(&b.at));
+                add_stop(&mut row.stops, place, color);
             }
             for stop in &mut row.stops {
                 let share = across * weight(stop.at - place);
@@ -46,20 +49,16 @@ fn weight(distance: f32) -> f32 {
     (-0.5 * (distance / REACH).powi(2)).exp()
 }
 
-/// Adds a stop of the row's own color.
-fn add_stop(recipe: &RampRecipe, row: &mut RampRow, at: f32) -> Result<(), FieldError> {
+/// Color of a row by itself.
+fn color_of(recipe: &RampRecipe, row: &RampRow, at: f32) -> Result<HexColor, FieldError> {
     let (place, times) = (String::new(), Vec::new());
     let alone = RampRecipe { place, times, rows: vec![row.clone()], ..recipe.clone() };
-    let color = HexColor::from_srgb(alone.gradient()?.sample(at, row.at).map(srgb_from_linear));
-    row.stops.sort_by(|a, b| a.at.total_cmp(&b.at));
-    let index = row.stops.partition_point(|stop| stop.at <= at);
-    let curve = row.stops.get(index.saturating_sub(1)).map(|stop| stop.curve).unwrap_or_default();
-    row.stops.insert(index, RampStop { curve, ..RampStop::new(at, color) });
-    Ok(())
+    Ok(HexColor::from_srgb(alone.gradient()?.sample(at, row.at).map(srgb_from_linear)))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::RampStop;
     use super::*;
 
     fn row(at: f32, stops: &[(f32, u8)]) -> RampRow {

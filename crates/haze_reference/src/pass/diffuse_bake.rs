@@ -130,12 +130,19 @@ impl VisibleSystem<'_> {
         let at = Vec2::new(diffuse_coordinate(normal, sample.direction), covered);
         let look_up = |ramp| sample_ramp_2d(ramp, self.settings.ramp_filter, at);
         let mut falloff = look_up(&self.material.diffuse_ramp);
-        if self.settings.diffuse.backlight == Backlight::Ramp {
-            let to_viewer = direction_to_viewer(position, self.view.orthographic);
-            let weight = backlight_weight(sample.direction, to_viewer);
-            falloff = falloff.lerp(look_up(&self.material.backlight_ramp), weight);
+        let backlight = self.backlight_share(sample.direction, position);
+        if backlight > 0.0 {
+            falloff = falloff.lerp(look_up(&self.material.backlight_ramp), backlight);
         }
         falloff * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, shade)
+    }
+
+    /// Share of the backlight ramp in a light, 0 to 1; the rest comes from the diffuse ramp.
+    pub fn backlight_share(&self, to_light: Vec3, position: Vec3) -> f32 {
+        match self.settings.diffuse.backlight {
+            Backlight::Ramp => backlight_weight(to_light, direction_to_viewer(position, self.view.orthographic)),
+            _ => 0.0,
+        }
     }
 
     /// Share of a light that comes through the smoke before it.
