@@ -1,6 +1,6 @@
 // depth_downsample: brings the scene's depth to the resolution of the accumulation target, one kept depth per texel.
 // Reads   scene_depth (full resolution, as the host stores it).
-// Writes  reduced depth: linear view depth over system.depth_limit, 0..1, as a depth buffer.
+// Writes  reduced depth: linear view depth over system.depth_limit, 0..1, as a depth buffer; by `texels`, as R32Float.
 // Blend   none.
 // Source  OTEE "Transfer & lighting", option 1.
 
@@ -24,7 +24,20 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
-    let texel = vec2i(floor(position.xy)) + vec2i(system.target_origin);
+    return kept_depth(vec2i(floor(position.xy)) + vec2i(system.target_origin));
+}
+
+@group(3) @binding(0) var written: texture_storage_2d<r32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn texels(@builtin(global_invocation_id) id: vec3u) {
+    if all(id.xy < vec2u(system.target_size)) {
+        textureStore(written, id.xy, vec4f(kept_depth(vec2i(id.xy) + vec2i(system.target_origin))));
+    }
+}
+
+// Stored depth of a texel of the view.
+fn kept_depth(texel: vec2i) -> f32 {
     let scale = i32(system.scale);
     let first = texel * scale;
     let last = vec2i(view.size) - 1;

@@ -14,7 +14,19 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let texel = vec2i(floor(position.xy));
+    return slope_at(vec2i(floor(position.xy)));
+}
+
+@group(3) @binding(2) var written: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(8, 8)
+fn texels(@builtin(global_invocation_id) id: vec3u) {
+    if all(id.xy < vec2u(system.target_size)) {
+        textureStore(written, id.xy, slope_at(vec2i(id.xy)));
+    }
+}
+
+fn slope_at(texel: vec2i) -> vec4f {
     let depth = guide(texel);
     let fade = 1.0 / system.fade_scale;
     var nearest = depth;

@@ -1,24 +1,39 @@
 // shadow_march
-// Marches from every cell of the density grid to the lights with shadow, and to sky and ground.
+// Marches from every cell of the density grid to the lights with shadow, and to sky and ground. First copies the grid to a
+// texture, between whose texels the hardware blends: eight loads and as many products per step took four times as long.
 //
 // Reads   optical depths across the cells, in fixed-point steps.
-// Writes  optical depths towards the lights; openness to sky and ground, in a block of its own.
+// Writes  texture of the density; optical depths towards the lights; openness to sky and ground, in a block of its own.
 // Space   Cells of the grid.
 
 #import "lib/shadow_march.wgsl"
 
 // The lower word first.
 @group(0) @binding(1) var<storage, read> density: array<vec2u>;
-@group(0) @binding(2) var optical_depths: texture_storage_3d<rgba16float, write>;
+// Optical depths towards the lights; in `copy_density`, texture of the density.
+@group(0) @binding(2) var written: texture_storage_3d<rgba16float, write>;
+// Texture of the density, with one empty cell around the grid.
+@group(0) @binding(3) var density_texture: texture_3d<f32>;
+@group(0) @binding(4) var linear_sampler: sampler;
 
-// Optical depth across a cell; 0 outside the grid.
-fn load_density(cell: vec3i) -> f32 {
+@compute @workgroup_size(4, 4, 4)
+fn copy_density(@builtin(global_invocation_id) id: vec3u) {
     let size = vec3i(march.size);
-    if any(cell < vec3i(0)) || any(cell >= size) {
-        return 0.0;
+    if any(vec3i(id) >= size + 2) {
+        return;
     }
-    let steps = density[(cell.z * size.y + cell.y) * size.x + cell.x];
-    return optical_depth_of_steps(steps.x, steps.y);
+    let cell = vec3i(id) - 1;
+    var depth = 0.0;
+    if all(cell >= vec3i(0)) && all(cell < size) {
+        let steps = density[(cell.z * size.y + cell.y) * size.x + cell.x];
+        depth = min(optical_depth_of_steps(steps.x, steps.y), MAX_OPTICAL_DEPTH);
+    }
+    textureStore(written, id, vec4f(depth, 0.0, 0.0, 0.0));
+}
+
+fn sample_density(place: vec3f) -> f32 {
+    let inside = clamp(place + 1.0, vec3f(0.5), march.size + 1.5);
+    return textureSampleLevel(density_texture, linear_sampler, inside / vec3f(textureDimensions(density_texture)), 0.0).r;
 }
 
 // Cells of a workgroup along each axis.
@@ -40,7 +55,7 @@ fn march_cells(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocatio
     workgroupBarrier();
     if light == 0u && all(cell < vec3u(march.size)) {
         let found = vec4f(depths[0][index], depths[1][index], depths[2][index], 0.0);
-        textureStore(optical_depths, vec3u(cell.xy, cell.z + block * march.resolution), found);
+        textureStore(written, vec3u(cell.xy, cell.z + block * march.resolution), found);
     }
 }
 
@@ -48,6 +63,6 @@ fn march_cells(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocatio
 fn march_sky(@builtin(global_invocation_id) cell: vec3u) {
     if all(cell < vec3u(march.size)) {
         let at = vec3u(cell.xy, cell.z + march.openness_block * march.resolution);
-        textureStore(optical_depths, at, vec4f(openness_of_cell(cell), 0.0, 0.0));
+        textureStore(written, at, vec4f(openness_of_cell(cell), 0.0, 0.0));
     }
 }

@@ -19,6 +19,20 @@ fn load_density(cell: vec3i) -> f32 {
     return textureLoad(density, cell, 0).r;
 }
 
+// Between the centres of eight cells.
+fn sample_density(place: vec3f) -> f32 {
+    let low = floor(place - 0.5);
+    let high_weight = place - 0.5 - low;
+    let low_weight = 1.0 - high_weight;
+    var sum = 0.0;
+    for (var corner = 0; corner < 8; corner++) {
+        let offset = vec3i(corner & 1, (corner >> 1u) & 1, corner >> 2u);
+        let weight = select(low_weight, high_weight, offset == vec3i(1));
+        sum += load_density(vec3i(low) + offset) * weight.x * weight.y * weight.z;
+    }
+    return sum;
+}
+
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slice: u32) -> SliceVertex {
     return slice_vertex(index, slice);

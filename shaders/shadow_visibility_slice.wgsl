@@ -7,6 +7,15 @@
 #import "lib/shadow_map_lookup.wgsl"
 #import "lib/volume_slice.wgsl"
 
+// Share of a cell that each light reaches: the mean of its octants.
+fn cell_visibility(cell: vec3u) -> vec3f {
+    var visible = vec3f(0.0);
+    for (var i = 0u; i < 8u; i++) {
+        visible += octant_visibility(2u * cell + vec3u(i & 1u, (i >> 1u) & 1u, i >> 2u));
+    }
+    return visible / 8.0;
+}
+
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slice: u32) -> SliceVertex {
     return slice_vertex(index, slice);

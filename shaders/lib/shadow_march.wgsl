@@ -1,5 +1,5 @@
-// Marches through the density grid. The importing file has load_density(cell: vec3i) -> f32: the optical depth across a cell, 0
-// outside the grid.
+// Marches through the density grid. The importing file has sample_density(place: vec3f) -> f32: the optical depth across a cell,
+// between the centres of eight cells, 0 outside the grid.
 
 #import "lib/density_grid.wgsl"
 #import "lib/shadow.wgsl"
@@ -24,20 +24,6 @@ struct ShadowMarch {
 }
 
 @group(0) @binding(0) var<uniform> march: ShadowMarch;
-
-// Between the centres of eight cells.
-fn sample_density(place: vec3f) -> f32 {
-    let low = floor(place - 0.5);
-    let high_weight = place - 0.5 - low;
-    let low_weight = 1.0 - high_weight;
-    var sum = 0.0;
-    for (var corner = 0; corner < 8; corner++) {
-        let offset = vec3i(corner & 1, (corner >> 1u) & 1, corner >> 2u);
-        let weight = select(low_weight, high_weight, offset == vec3i(1));
-        sum += load_density(vec3i(low) + offset) * weight.x * weight.y * weight.z;
-    }
-    return sum;
-}
 
 fn optical_depth_towards(light: vec4f, radius: f32, origin: vec3f, steps: u32) -> f32 {
     let ray = shadow_ray(light, origin, march.size);

@@ -126,7 +126,7 @@ impl Context {
             device_number: device_number.unwrap_or(number),
             textures: SharedTextures::new(&Gpu { device: &device, queue }),
             no_ramp: upload_ramp(&Gpu { device: &device, queue }, "haze no ramp", &white, &mut 0),
-            no_shadow: volume(&device, 1, 1, wgpu::TextureUsages::empty()),
+            no_shadow: volume(&device, "haze no shadow", (1, 1), wgpu::TextureUsages::empty()),
             read_only_depth: read_only_depth_is_supported(&device),
             max_volume_depth: device.limits().max_texture_dimension_3d,
             support: Support {

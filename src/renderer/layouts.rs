@@ -58,11 +58,7 @@ impl Layouts {
             has_dynamic_offset: false,
             min_binding_size: wgpu::BufferSize::new(size),
         };
-        let texture = |sample_type, view_dimension| wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension,
-            multisampled: false,
-        };
+        let texture = texture_type;
         let mut visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
         visibility.set(wgpu::ShaderStages::COMPUTE, tiles_are_supported(device));
         let layout_of = |label, is_bound: &dyn Fn(u32) -> bool, types: &[wgpu::BindingType]| {
@@ -98,8 +94,6 @@ impl Layouts {
             multisampled: true,
         };
         let map = texture(unfilterable, D2Array);
-        let mut transfer = [texture(unfilterable, D2); TRANSFER_TEXTURES];
-        transfer[2] = texture(filterable, D2Array);
         Self {
             frame: layout("haze frame", &[uniform(size_of::<ViewUniform>() as u64), texture(unfilterable, D2)]),
             system: layout(
@@ -110,7 +104,7 @@ impl Layouts {
             lighting: layout_of("haze material lighting", &|binding| LIGHTING_BINDINGS.contains(&binding), &material),
             depth_resolve: layout("haze depth samples", &[multisampled]),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),
-            transfer: layout("haze transfer inputs", &transfer),
+            transfer: layout("haze transfer inputs", &transfer_types()),
             lit: layout(
                 "haze lit inputs",
                 &[texture(filterable, D2), texture(unfilterable, D2), texture(filterable, D2)],
@@ -140,6 +134,23 @@ impl Layouts {
     }
 }
 
+/// Returns the type of a texture that shaders read.
+pub(crate) fn texture_type(
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
+}
+
+/// Returns the types of the textures that transfer and light_target read.
+pub(crate) fn transfer_types() -> [wgpu::BindingType; TRANSFER_TEXTURES] {
+    let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+    let mut types = [texture_type(unfilterable, wgpu::TextureViewDimension::D2); TRANSFER_TEXTURES];
+    let filterable = wgpu::TextureSampleType::Float { filterable: true };
+    types[2] = texture_type(filterable, wgpu::TextureViewDimension::D2Array);
+    types
+}
+
 /// Creates a bind group of resources, in the order of its layout.
 pub(crate) fn bind_resources<'a>(
     device: &wgpu::Device,
@@ -153,16 +164,11 @@ pub(crate) fn bind_resources<'a>(
 }
 
 /// Creates a bind group of textures, in the order of its layout.
-pub(crate) fn bind_textures<const N: usize>(
+pub(crate) fn bind_textures<'a>(
     device: &wgpu::Device,
     label: &str,
     layout: &wgpu::BindGroupLayout,
-    views: [&wgpu::TextureView; N],
+    views: impl IntoIterator<Item = &'a wgpu::TextureView>,
 ) -> wgpu::BindGroup {
-    let mut binding = 0..;
-    let entries = views.map(|view| wgpu::BindGroupEntry {
-        binding: binding.next().unwrap_or_default(),
-        resource: wgpu::BindingResource::TextureView(view),
-    });
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    bind_resources(device, label, layout, views.into_iter().map(wgpu::BindingResource::TextureView))
 }

@@ -113,6 +113,7 @@ impl ProbeScene {
             fragments: self.renderer.overdraw().fragments,
             size: SIZE,
             optical_depth: 0.0,
+            scale: 1,
             attachments: 1,
             grain_octaves: 0,
             lookups: 0.0,

@@ -1,5 +1,8 @@
 //! Shaders of all passes, and their pipelines.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+
 use super::gpu::capabilities::tiles_are_supported;
 use super::gpu::host_pass::HostPass;
 use super::gpu::pipeline::{PipelineStore, PipelineVariants, Shader, pipeline_variants};
@@ -10,7 +13,7 @@ use super::pass::depth_resolve::{self, DepthResolveKey};
 use super::pass::depth_slopes::{self, DepthSlopesKey};
 use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
-use super::pass::light_target::{self, LightingKey};
+use super::pass::light_target::{self, LightTargetKey};
 use super::pass::screen_shadow;
 use super::pass::shadow_march::MarchTo;
 use super::pass::shadow_march_slice;
@@ -29,7 +32,7 @@ pub(crate) struct Pipelines {
     pub depth_resolve: PipelineVariants<DepthResolveKey>,
     pub diffuse_bake: PipelineVariants<DiffuseBakeKey>,
     pub accumulate: PipelineVariants<AccumulateKey>,
-    pub light_target: PipelineVariants<LightingKey>,
+    pub light_target: PipelineVariants<LightTargetKey>,
     pub depth_slopes: PipelineVariants<DepthSlopesKey>,
     pub transfer: PipelineVariants<TransferKey>,
     pub transfer_lit: PipelineVariants<TransferLitKey>,
@@ -50,6 +53,16 @@ impl Pipelines {
         layouts: &Layouts,
         shader: impl Fn(&'static str) -> Result<Shader, E>,
     ) -> Result<Self, E> {
+        // Some shaders have variants for drawing and for computing.
+        let created = RefCell::new(HashMap::new());
+        let shader = |name| {
+            if let Some(shader) = created.borrow().get(name) {
+                return Ok(Shader::clone(shader));
+            }
+            let shader = shader(name)?;
+            created.borrow_mut().insert(name, shader.clone());
+            Ok(shader)
+        };
         let frame_and_system = [Some(&layouts.frame), Some(&layouts.system)];
         let material = [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material)];
         let with = |material, inputs| [Some(&layouts.frame), Some(&layouts.system), Some(material), Some(inputs)];
@@ -75,7 +88,7 @@ impl Pipelines {
             shadow_visibility_slice: pipeline_variants!(store, shader, shadow_visibility_slice, &visibility_slice),
             store: store.clone(),
             tiled: match tiles_are_supported(&store.device) {
-                true => Some(TiledPipelines::new(store, layouts, &shader)?),
+                true => Some(TiledPipelines::new(store, layouts, shader)?),
                 false => None,
             },
         })
@@ -94,8 +107,13 @@ impl Pipelines {
                 self.forward.check(plan.key)
             }
             Plan::Deferred(plan) => {
-                let mut downsamples = plan.depth_downsample.into_iter().chain(plan.depth_copy);
-                downsamples.try_for_each(|key| self.depth_downsample.check(key))?;
+                match self.tiled.as_ref().filter(|_| plan.computes_depth()) {
+                    Some(tiled) => plan.depth_downsample.map_or(Ok(()), |key| tiled.depth_downsample.check(key))?,
+                    None => {
+                        let mut downsamples = plan.depth_downsample.into_iter().chain(plan.depth_copy);
+                        downsamples.try_for_each(|key| self.depth_downsample.check(key))?;
+                    }
+                }
                 plan.diffuse_bake.map_or(Ok(()), |key| self.diffuse_bake.check(key))?;
                 match (plan.tiled, &self.tiled) {
                     (Some(keys), Some(tiled)) => tiled.compile(keys)?,
@@ -105,8 +123,16 @@ impl Pipelines {
                     }
                 }
                 plan.overdraw.map_or(Ok(()), |key| self.accumulate.check(key))?;
-                plan.light_target.map_or(Ok(()), |key| self.light_target.check(key))?;
-                plan.depth_slopes.map_or(Ok(()), |key| self.depth_slopes.check(key))?;
+                match self.tiled.as_ref().filter(|_| plan.computes_texels) {
+                    Some(tiled) => {
+                        plan.light_target.map_or(Ok(()), |key| tiled.light_target.check(key))?;
+                        plan.depth_slopes.map_or(Ok(()), |key| tiled.depth_slopes.check(key))?;
+                    }
+                    None => {
+                        plan.light_target.map_or(Ok(()), |key| self.light_target.check(key))?;
+                        plan.depth_slopes.map_or(Ok(()), |key| self.depth_slopes.check(key))?;
+                    }
+                }
                 plan.transfers().try_for_each(|key| self.transfer.check(key))?;
                 plan.transfer_lit.map_or(Ok(()), |key| self.transfer_lit.check(key))?;
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(key))

@@ -9,7 +9,7 @@ use super::pass::depth_resolve::RESOLVED_DEPTH_FORMAT;
 use super::pass::depth_slopes::DepthSlopesKey;
 use super::pass::diffuse_bake::DiffuseBakeKey;
 use super::pass::forward::ForwardKey;
-use super::pass::light_target::LightingKey;
+use super::pass::light_target::{LightTargetKey, LightingKey};
 use super::pass::specular_scatter::SpecularScatterKey;
 use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
@@ -100,8 +100,11 @@ pub(crate) struct DeferredPlan<'a> {
     pub tiled: Option<TiledKeys>,
     /// Accumulation variant that counts layers.
     pub overdraw: Option<AccumulateKey>,
+    /// True if compute shaders light the target and fit its slopes. Where computing is not slower than drawing it can be far
+    /// faster: server GPUs draw with a few of their processors only.
+    pub computes_texels: bool,
     /// Present if smoke is lit at the target's resolution.
-    pub light_target: Option<LightingKey>,
+    pub light_target: Option<LightTargetKey>,
     /// Present if lit smoke is upsampled by `guided`.
     pub depth_slopes: Option<DepthSlopesKey>,
     /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
@@ -204,6 +207,12 @@ fn deferred<'a>(
     };
     let glows =
         debug_views.iter().any(|debug_view| debug_view.shows_glow()) && settings.specular_scatter.intensity > 0.0;
+    let tiled = inputs.tiles.filter(|_| settings.path == RenderPath::Tiled);
+    // No debug view shows the one without the other.
+    let glow_per_texel = glows
+        && tiled.is_some()
+        && settings.glow_per_texel()
+        && debug_views.iter().all(|view| view.shows_lit_smoke() == view.shows_glow());
     let accumulate_key = AccumulateKey {
         format: accumulate.format,
         encoding: accumulate.encoding,
@@ -226,14 +235,13 @@ fn deferred<'a>(
             exact_filtering,
         }),
         accumulate: accumulate_key,
-        tiled: inputs
-            .tiles
-            .filter(|_| settings.path == RenderPath::Tiled)
-            .map(|cooperative| tiled_keys(&accumulate_key, accumulate.layers, cooperative, exact_filtering)),
+        tiled: tiled.map(|cooperative| tiled_keys(&accumulate_key, accumulate.layers, cooperative, exact_filtering)),
         overdraw: debug_views
             .contains(&DebugView::Overdraw)
             .then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
-        light_target: lights_target.then_some(lighting),
+        // Cooperative: on a GPU.
+        computes_texels: tiled.is_some() || inputs.tiles == Some(true),
+        light_target: lights_target.then_some(LightTargetKey { lighting, glow: glow_per_texel }),
         depth_slopes: (lights_target && upsample == Upsample::Guided).then_some(DepthSlopesKey),
         transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
         transfer_lit: lights_target.then_some(TransferLitKey {
@@ -244,7 +252,7 @@ fn deferred<'a>(
             exact_filtering,
         }),
         debug_views,
-        specular_scatter: glows.then_some(SpecularScatterKey {
+        specular_scatter: (glows && !glow_per_texel).then_some(SpecularScatterKey {
             host,
             lit: lights_target,
             upsample,
@@ -301,6 +309,11 @@ pub(crate) fn reads_linear_target(scene_depth: SceneDepthKind, read_only_depth: 
 }
 
 impl DeferredPlan<'_> {
+    /// Returns true if compute shaders write the reduced depth. Where the hardware counts layers, it tests them.
+    pub fn computes_depth(&self) -> bool {
+        self.tiled.is_some() && self.depth_downsample.is_some() && self.overdraw.is_none()
+    }
+
     /// Returns the transfer keys of all debug views that transfer draws.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
         let drawn =

@@ -130,7 +130,8 @@ impl SliceBuffers {
             usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
-        let optical_depths = volume(device, resolution, blocks, wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let optical_depths =
+            volume(device, "haze optical depths", (resolution, blocks), wgpu::TextureUsages::RENDER_ATTACHMENT);
         let density_view = density.create_view(&wgpu::TextureViewDescriptor::default());
         let resources = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&density_view)];
         let march = bind_resources(device, "haze shadow_march_slice", &layouts.shadow_march_slice, resources);

@@ -8,14 +8,13 @@ use super::gpu::Gpu;
 use super::gpu::record::begin_compute;
 use super::gpu::timing::Timing;
 use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
-use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
 use super::pass::depth_sort::DepthSort;
 use super::pass::diffuse_bake::DiffuseBake;
 use super::pass::emit::Emit;
 use super::pass::forward::Forward;
 use super::pass::specular_scatter::SpecularScatter;
 use super::pass::transfer::Transfer;
-use super::pass::{Groups, TexelPass};
+use super::pass::{Groups, TexelPass, TexelPipeline};
 use super::pipelines::Pipelines;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::sprite_instances::Sprites;
@@ -57,8 +56,8 @@ pub(crate) enum SystemPasses {
 /// Passes of the deferred path, in execution order.
 #[derive(Debug)]
 pub(crate) struct DeferredPasses {
-    pub depth_downsample: Option<Downsample>,
-    pub depth_copy: Option<Downsample>,
+    pub depth_downsample: Option<TexelPass>,
+    pub depth_copy: Option<TexelPass>,
     pub diffuse_bake: Option<DiffuseBake>,
     pub accumulate: AccumulatePasses,
     pub overdraw: Option<Accumulate>,
@@ -124,15 +123,6 @@ impl PassBuilder<'_> {
         let Self { gpu, pipelines, groups, sprites } = self;
         let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
         let size = setup.rect.size;
-        let downsample = |key: Option<DepthDownsampleKey>, target: &Option<wgpu::TextureView>| {
-            Some(Downsample {
-                pipeline: pipelines.depth_downsample.get(key?),
-                target: target.clone()?,
-                size,
-                frame: groups.frame.clone(),
-                system: groups.system.clone(),
-            })
-        };
         let accumulate = |key: AccumulateKey, targets: &Arc<[wgpu::TextureView]>| Accumulate {
             pipeline: pipelines.accumulate.get(key),
             targets: targets.clone(),
@@ -147,14 +137,30 @@ impl PassBuilder<'_> {
             inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
             sprites: sprites.clone(),
         };
-        let texel_pass = |name, pipeline, target: &Option<wgpu::TextureView>, inputs: Option<&wgpu::BindGroup>| {
-            let (target, groups, inputs) = (target.clone()?, groups.clone(), inputs?.clone());
-            Some(TexelPass { name, pipeline, target, size, groups, inputs })
+        let computed = pipelines.tiled.as_ref().filter(|_| plan.computes_texels);
+        let texel_pass = |name, pipeline, inputs: &Option<wgpu::BindGroup>| TexelPass {
+            name,
+            pipeline,
+            size,
+            groups: groups.clone(),
+            inputs: inputs.clone(),
         };
         let lights = setup.uniform.light_count;
         SystemPasses::Deferred(DeferredPasses {
-            depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
-            depth_copy: downsample(plan.depth_copy, &accumulation.depth_copy),
+            depth_downsample: plan.depth_downsample.and_then(|key| {
+                let pipeline = match computed.filter(|_| plan.computes_depth()) {
+                    Some(tiled) => TexelPipeline::Compute(tiled.depth_downsample.get(key)),
+                    None => {
+                        TexelPipeline::Depth(pipelines.depth_downsample.get(key), accumulation.reduced_depth.clone()?)
+                    }
+                };
+                Some(texel_pass("depth_downsample", pipeline, &inputs.depth_downsample))
+            }),
+            depth_copy: plan.depth_copy.and_then(|key| {
+                let pipeline =
+                    TexelPipeline::Depth(pipelines.depth_downsample.get(key), accumulation.depth_copy.clone()?);
+                Some(texel_pass("depth_downsample", pipeline, &None))
+            }),
             diffuse_bake: plan.diffuse_bake.map(|key| DiffuseBake {
                 pipeline: pipelines.diffuse_bake.get(key),
                 faces: baked_diffuse.faces.clone(),
@@ -175,12 +181,18 @@ impl PassBuilder<'_> {
             },
             overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
             light_target: plan.light_target.and_then(|key| {
-                let pipeline = pipelines.light_target.get(key);
-                texel_pass("light_target", pipeline, &accumulation.lit, Some(&inputs.transfer))
+                let pipeline = match computed {
+                    Some(tiled) => TexelPipeline::Compute(tiled.light_target.get(key)),
+                    None => TexelPipeline::Color(pipelines.light_target.get(key), accumulation.lit.clone()?),
+                };
+                Some(texel_pass("light_target", pipeline, &inputs.light_target))
             }),
             depth_slopes: plan.depth_slopes.and_then(|key| {
-                let pipeline = pipelines.depth_slopes.get(key);
-                texel_pass("depth_slopes", pipeline, &accumulation.depth_slopes, inputs.lit.as_ref())
+                let pipeline = match computed {
+                    Some(tiled) => TexelPipeline::Compute(tiled.depth_slopes.get(key)),
+                    None => TexelPipeline::Color(pipelines.depth_slopes.get(key), accumulation.depth_slopes.clone()?),
+                };
+                Some(texel_pass("depth_slopes", pipeline, &inputs.depth_slopes))
             }),
             transfer: transfer_pass(pipelines, plan, &groups, inputs),
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {

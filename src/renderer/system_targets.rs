@@ -22,12 +22,16 @@ pub(crate) struct SystemTargets {
 pub(crate) struct TargetInputs {
     /// Group 3 of accumulate; `None` if sprites are compared with the host's own depth.
     pub accumulate: Option<wgpu::BindGroup>,
-    /// Group 3 of transfer and light_target.
+    /// Group 3 of transfer.
     pub transfer: wgpu::BindGroup,
     /// As `transfer`, with counted layers in place of the first attachment.
     pub overdraw: Option<wgpu::BindGroup>,
-    /// Group 3 of depth_slopes, without the slopes, which it writes.
-    pub lit: Option<wgpu::BindGroup>,
+    /// Group 3 of depth_downsample, if it is computed.
+    pub depth_downsample: Option<wgpu::BindGroup>,
+    /// Group 3 of light_target.
+    pub light_target: Option<wgpu::BindGroup>,
+    /// Group 3 of depth_slopes, which writes the slopes.
+    pub depth_slopes: Option<wgpu::BindGroup>,
     /// Group 3 of transfer_lit and specular_scatter: lit smoke and its slopes, or the first attachment.
     pub upsampled: wgpu::BindGroup,
 }
@@ -60,6 +64,8 @@ impl SystemTargets {
             depth_slopes: plan.depth_slopes.is_some(),
             depth_copy: !shared.read_only_depth,
             tiled: plan.tiled.is_some(),
+            computes_depth: plan.computes_depth(),
+            computes_texels: plan.computes_texels,
         };
         let (accumulation, is_new) = AccumulationTarget::ensure(&mut self.accumulation, device, key, size, limit);
         let (baked_diffuse, is_newly_baked) =
@@ -70,24 +76,46 @@ impl SystemTargets {
         let inputs = self.inputs.get_or_insert_with(|| {
             let depth = accumulation.reduced_depth.as_ref();
             let amount = &accumulation.attachments[0];
-            let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
+            let layouts = &shared.layouts;
             // Placeholders: no shader reads the textures that a system does not have, but the bindings must be filled.
-            let transfer = |amount| {
+            let transfer_textures = |amount| {
                 let mut inputs = [amount; TRANSFER_TEXTURES];
                 (inputs[1], inputs[2]) = (depth.unwrap_or(amount), &baked_diffuse.array);
                 inputs[3..].iter_mut().zip(&accumulation.attachments[1..]).for_each(|(input, view)| *input = view);
-                bind_textures(device, "haze transfer inputs", transfer, inputs)
+                inputs
             };
+            let transfer =
+                |amount| bind_textures(device, "haze transfer inputs", &layouts.transfer, transfer_textures(amount));
             let lit = accumulation.lit.as_ref().unwrap_or(amount);
-            let lit_inputs = |slopes| {
-                bind_textures(device, "haze lit inputs", &shared.layouts.lit, [lit, depth.unwrap_or(lit), slopes])
-            };
+            let lit_inputs =
+                |slopes| bind_textures(device, "haze lit inputs", &layouts.lit, [lit, depth.unwrap_or(lit), slopes]);
+            // Passes that compute texels write the last of their textures.
+            let computed = shared.pipelines.tiled.as_ref().map(|tiled| &tiled.layouts);
+            let computed_texels = computed.filter(|_| plan.computes_texels);
+            let depth_slopes = accumulation.depth_slopes.as_ref();
             TargetInputs {
-                accumulate: depth.map(|depth| bind_textures(device, "haze accumulate inputs", accumulate, [depth])),
+                depth_downsample: computed.filter(|_| key.computes_depth).zip(depth).map(|(computed, depth)| {
+                    bind_textures(device, "haze depth_downsample target", &computed.depth_downsample, [depth])
+                }),
+                accumulate: depth
+                    .map(|depth| bind_textures(device, "haze accumulate inputs", &layouts.accumulate, [depth])),
                 transfer: transfer(amount),
                 overdraw: accumulation.overdraw.as_ref().map(|layers| transfer(&layers[0])),
-                lit: accumulation.depth_slopes.as_ref().map(|_| lit_inputs(lit)),
-                upsampled: lit_inputs(accumulation.depth_slopes.as_ref().unwrap_or(lit)),
+                light_target: accumulation.lit.as_ref().map(|lit| match computed_texels {
+                    Some(computed) => {
+                        let textures = transfer_textures(amount).into_iter().chain([lit]);
+                        bind_textures(device, "haze light_target inputs", &computed.light_target, textures)
+                    }
+                    None => transfer(amount),
+                }),
+                depth_slopes: depth_slopes.map(|slopes| match computed_texels {
+                    Some(computed) => {
+                        let textures = [lit, depth.unwrap_or(lit), slopes];
+                        bind_textures(device, "haze depth_slopes inputs", &computed.depth_slopes, textures)
+                    }
+                    None => lit_inputs(lit),
+                }),
+                upsampled: lit_inputs(depth_slopes.unwrap_or(lit)),
             }
         });
         ReadyTargets { accumulation, baked_diffuse, inputs }

@@ -48,7 +48,8 @@ pub fn cell_index(size: UVec3, cell: IVec3) -> Option<usize> {
     inside.then(|| ((at.z * size.y + at.y) * size.x + at.x) as usize)
 }
 
-/// Value at a place, in cells, between the centres of eight cells. `sample_density()` in shadow_march.wgsl.
+/// Value at a place, in cells, between the centres of eight cells. `sample_density()` in shadow_march.wgsl
+/// and shadow_march_slice.wgsl.
 pub fn trilinear(place: Vec3, load: impl Fn(IVec3) -> f32) -> f32 {
     let low = (place - 0.5).floor();
     let high_weight = place - 0.5 - low;

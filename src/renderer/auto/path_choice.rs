@@ -125,6 +125,7 @@ mod tests {
             fragments: layers * 1.0e6,
             size: UVec2::splat(1000),
             optical_depth: 0.1,
+            scale: 1,
             attachments: 1,
             grain_octaves: 0,
             lookups: 0.0,

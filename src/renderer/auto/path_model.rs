@@ -43,6 +43,8 @@ pub struct PathCosts {
     pub frame: f32,
     /// Per texel of the system's target.
     pub texel: f32,
+    /// Per pixel of the picture that the target covers, whose depth is reduced. 0 on CPUs, where both paths take as long.
+    pub pixel: f32,
     /// Per sprite.
     pub sprite: f32,
     /// Per square of 32 by 32 texels that a sprite touches, summed over all sprites.
@@ -92,11 +94,13 @@ impl PathModelSource {
 
 impl PathModel {
     /// Measured on an NVIDIA H200: `bench/results/h200_auto.json`; the traversal in `h200.json`; further textures and grain
-    /// by the suite `sprites`.
+    /// by the suite `sprites`; pixels by the suite `frame` (`h200_frame.json`): `raster` draws depth_downsample, `tiled` computes
+    /// it.
     const GPU: Self = Self {
         raster: PathCosts {
             frame: 10.0e3,
             texel: 0.06,
+            pixel: 0.07,
             sprite: 0.0,
             entry: 0.0,
             layer: 0.0,
@@ -110,6 +114,7 @@ impl PathModel {
         tiled: PathCosts {
             frame: 48.0e3,
             texel: 0.01,
+            pixel: 0.008,
             sprite: 5.0,
             entry: 0.15,
             layer: 1200.0,
@@ -129,6 +134,7 @@ impl PathModel {
         raster: PathCosts {
             frame: 0.6e6,
             texel: 13.0,
+            pixel: 0.0,
             sprite: 3000.0,
             entry: 0.0,
             layer: 0.0,
@@ -142,6 +148,7 @@ impl PathModel {
         tiled: PathCosts {
             frame: 0.92e6,
             texel: 34.0,
+            pixel: 0.0,
             sprite: 400.0,
             entry: 1900.0,
             layer: 0.0,
@@ -194,11 +201,24 @@ impl PathModel {
             return Err(FieldError::new("cores", self.cores, "1 or more"));
         }
         for (path, costs) in [("raster", self.raster), ("tiled", self.tiled)] {
-            let PathCosts { frame, texel, sprite, entry, layer, fragment, sphere, march, attachment, octave, block: _ } =
-                costs;
+            let PathCosts {
+                frame,
+                texel,
+                pixel,
+                sprite,
+                entry,
+                layer,
+                fragment,
+                sphere,
+                march,
+                attachment,
+                octave,
+                block: _,
+            } = costs;
             let named = [
                 ("frame", frame),
                 ("texel", texel),
+                ("pixel", pixel),
                 ("sprite", sprite),
                 ("entry", entry),
                 ("layer", layer),
@@ -237,6 +257,7 @@ impl PathCosts {
         let of_fragment = of_fragment + f64::from(self.fragment) * more;
         let nanoseconds = f64::from(self.frame)
             + f64::from(self.texel) * workload.texels()
+            + f64::from(self.pixel) * workload.texels() * f64::from(workload.scale * workload.scale)
             + f64::from(self.sprite) * workload.sprites
             + f64::from(self.layer) * workload.layers()
             + (f64::from(self.entry) * workload.entries() + of_fragment * workload.texels_shaded(self.block)) * share;
@@ -248,6 +269,7 @@ impl PathCosts {
         Self {
             frame: self.frame * factor,
             texel: self.texel * factor,
+            pixel: self.pixel * factor,
             sprite: self.sprite * factor,
             entry: self.entry * factor,
             layer: self.layer * factor,

@@ -24,6 +24,8 @@ pub struct PathWorkload {
     pub fragments: f64,
     /// Size of the target, texels.
     pub size: UVec2,
+    /// Pixels of the picture per texel, along each side.
+    pub scale: u32,
     /// Mean optical depth of a sprite, −ln(1 − amount), over the texels that it covers; 0 if no layer may be skipped.
     pub optical_depth: f64,
     /// Textures that each fragment is blended into.
@@ -66,6 +68,7 @@ pub(crate) fn estimate_workload(
         sprites: f64::from(sprites) * loops,
         fragments: fragments * loops,
         size: grid.size,
+        scale: grid.scale as u32,
         optical_depth: if stops { depth } else { 0.0 },
         attachments: AttachmentSet::of(settings).iter().count() as u32,
         grain_octaves: settings.grain_octaves(),

@@ -6,14 +6,19 @@
 //! Blend: none.
 //! Source: He and Sun, "Fast guided filter", 2015.
 
-use crate::renderer::gpu::pipeline::{RenderPipelineDescription, color_target};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, RenderPipelineDescription, color_target};
 use crate::renderer::targets::LIT_FORMAT;
 
 /// Key of the only pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DepthSlopesKey;
 
-/// Returns the pipeline's parts.
+/// Returns the parts of the compute pipeline.
+pub(crate) fn describe_compute(DepthSlopesKey: DepthSlopesKey) -> ComputePipelineDescription {
+    ComputePipelineDescription { entry_point: "texels", constants: Vec::new() }
+}
+
+/// Returns the parts of the render pipeline.
 pub(crate) fn describe(DepthSlopesKey: DepthSlopesKey) -> RenderPipelineDescription {
     RenderPipelineDescription {
         buffers: &[],

@@ -32,7 +32,7 @@ use std::ops::Range;
 use glam::{UVec2, UVec3};
 
 use super::gpu::pipeline::{Constant, RenderPipelineDescription, color_target};
-use super::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor};
+use super::gpu::record::{begin_compute, begin_pass, color_attachment, set_viewport_and_scissor, written_depth};
 use super::gpu::timing::Timing;
 use super::layouts::SHADOW_FORMAT;
 
@@ -63,34 +63,67 @@ impl Groups {
     }
 
     fn bind_to_compute(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.bind_to_compute_with(pass, &self.material);
+    }
+
+    fn bind_to_compute_with(&self, pass: &mut wgpu::ComputePass<'_>, material: &wgpu::BindGroup) {
         pass.set_bind_group(0, &self.frame, &[]);
         pass.set_bind_group(1, &self.system, &[]);
-        pass.set_bind_group(2, &self.material, &[]);
+        pass.set_bind_group(2, material, &[]);
     }
 }
 
-/// A pass that computes every texel of a system's lit target: light_target, depth_slopes.
+/// A pass that writes every texel of a system's target: depth_downsample, light_target, depth_slopes.
 #[derive(Debug)]
 pub(crate) struct TexelPass {
     /// Name in times and captures.
     pub name: &'static str,
-    pub pipeline: wgpu::RenderPipeline,
-    pub target: wgpu::TextureView,
+    pub pipeline: TexelPipeline,
     /// Size of the part in use, texels.
     pub size: UVec2,
     pub groups: Groups,
     /// Group 3.
-    pub inputs: wgpu::BindGroup,
+    pub inputs: Option<wgpu::BindGroup>,
 }
+
+/// Pipeline of a `TexelPass`, and the target that it writes.
+#[derive(Debug)]
+pub(crate) enum TexelPipeline {
+    Color(wgpu::RenderPipeline, wgpu::TextureView),
+    Depth(wgpu::RenderPipeline, wgpu::TextureView),
+    /// The target is among the inputs.
+    Compute(wgpu::ComputePipeline),
+}
+
+/// Texels of a workgroup along each axis, in the entry point `texels`.
+const TEXELS_SIDE: u32 = 8;
 
 impl TexelPass {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        let mut pass = begin_pass(encoder, self.name, &[color_attachment(&self.target)], None, timing);
+        let (pipeline, colors, depth) = match &self.pipeline {
+            TexelPipeline::Color(pipeline, target) => (pipeline, color_attachment(target), None),
+            TexelPipeline::Depth(pipeline, target) => (pipeline, None, Some(written_depth(target))),
+            TexelPipeline::Compute(pipeline) => return self.record_compute(pipeline, encoder, timing),
+        };
+        let mut pass = begin_pass(encoder, self.name, colors.is_some().then_some(colors).as_slice(), depth, timing);
         set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(pipeline);
         self.groups.bind_for_lighting(&mut pass);
         pass.set_bind_group(3, &self.inputs, &[]);
         pass.draw(0..3, 0..1);
+    }
+
+    fn record_compute(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        encoder: &mut wgpu::CommandEncoder,
+        timing: Option<&Timing>,
+    ) {
+        let mut pass = begin_compute(encoder, self.name, timing);
+        pass.set_pipeline(pipeline);
+        self.groups.bind_to_compute_with(&mut pass, &self.groups.lighting);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.dispatch_workgroups(self.size.x.div_ceil(TEXELS_SIDE), self.size.y.div_ceil(TEXELS_SIDE), 1);
     }
 }
 

@@ -10,7 +10,7 @@ use crate::renderer::gpu::record::begin_compute;
 use crate::renderer::gpu::timing::Timing;
 
 /// Cells of a workgroup along each axis.
-const SIDE: u32 = 4;
+const SIDE: u32 = 2;
 
 /// Returns the pipeline's parts.
 pub(crate) fn describe((): ()) -> ComputePipelineDescription {

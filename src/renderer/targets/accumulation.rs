@@ -15,6 +15,9 @@ use crate::view_setup::AttachmentSet;
 /// which does not hold for `R32Float`.
 pub(crate) const REDUCED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// Format of the reduced depth if compute shaders write it, which no device can do to a depth format.
+pub(crate) const COMPUTED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
 /// Format of the copy that OpenGL tests against: half the size of the reduced depth, to limit the memory per system.
 pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
@@ -37,6 +40,10 @@ pub(crate) struct AccumulationKey {
     pub depth_copy: bool,
     /// True if compute shaders write the target.
     pub tiled: bool,
+    /// True if compute shaders write the reduced depth.
+    pub computes_depth: bool,
+    /// True if compute shaders light the target and fit its slopes.
+    pub computes_texels: bool,
 }
 
 /// Textures of one system. The part in use starts at (0, 0) and has the size of the system's screen rectangle.
@@ -101,8 +108,10 @@ impl AccumulationTarget {
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
         let mut textures = TextureAllocator { device, bytes: 0, written: TextureUsages::RENDER_ATTACHMENT };
+        let written =
+            |computed| if computed { TextureUsages::STORAGE_BINDING } else { TextureUsages::RENDER_ATTACHMENT };
         let mut create = |set, tiled| -> Arc<[_]> {
-            textures.written = if tiled { TextureUsages::STORAGE_BINDING } else { TextureUsages::RENDER_ATTACHMENT };
+            textures.written = written(tiled);
             let mut texture = |row: &Attachment| {
                 let format = if tiled { row.tiled_format(key.format) } else { row.raster_format(key.format) };
                 textures.create_whole(row.label, format, size)
@@ -112,11 +121,14 @@ impl AccumulationTarget {
         let attachments = create(key.attachments, key.tiled);
         // Layers are always counted by hardware blending.
         let overdraw = key.overdraw.then(|| create(AttachmentSet::NORMAL_AND_AMOUNT, false));
-        textures.written = TextureUsages::RENDER_ATTACHMENT;
+        textures.written = written(key.computes_texels);
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
         let depth_slopes = key.depth_slopes.then(|| textures.create_whole("haze depth slopes", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;
-        let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", REDUCED_DEPTH_FORMAT, size));
+        textures.written = written(key.computes_depth);
+        let depth_format = if key.computes_depth { COMPUTED_DEPTH_FORMAT } else { REDUCED_DEPTH_FORMAT };
+        let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", depth_format, size));
+        textures.written = TextureUsages::RENDER_ATTACHMENT;
         let depth_copy =
             (is_reduced && key.depth_copy).then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
         let bytes = textures.bytes;

@@ -13,7 +13,7 @@ use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::layouts::SHADOW_FORMAT;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::density_splat::DensitySplat;
-use crate::renderer::pass::shadow_march::{MarchTo, ShadowMarch};
+use crate::renderer::pass::shadow_march::{MarchTo, ShadowMarch, ShadowMarchKey};
 use crate::renderer::pass::shadow_visibility::ShadowVisibility;
 use crate::renderer::shadow_map_bindings::ShadowMapBindings;
 use crate::renderer::sprite_instances::Sprites;
@@ -41,6 +41,7 @@ struct VolumeBuffers {
     uniform: wgpu::Buffer,
     density: wgpu::Buffer,
     optical_depths: wgpu::TextureView,
+    copy_density: wgpu::BindGroup,
     march: wgpu::BindGroup,
     /// By block of lights; empty unless shadow maps shade smoke.
     maps: Vec<ShadowMapBindings>,
@@ -96,13 +97,14 @@ impl ShadowVolume {
 
     /// Returns the pass that marches to the lights.
     pub fn march(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowMarch> {
-        let inputs = self.buffers.as_ref()?.march.clone();
-        let to_sky = shadow.has_openness.then(|| tiled.shadow_march.get(MarchTo::Sky));
-        let to_lights = tiled.shadow_march.get(MarchTo::Lights);
+        let buffers = self.buffers.as_ref()?;
+        let march_to = |end| tiled.shadow_march.get(ShadowMarchKey::MarchTo(end));
         Some(ShadowMarch {
-            to_lights,
-            to_sky,
-            inputs,
+            copy_density: tiled.shadow_march.get(ShadowMarchKey::CopyDensity),
+            copy_inputs: buffers.copy_density.clone(),
+            to_lights: march_to(MarchTo::Lights),
+            to_sky: shadow.has_openness.then(|| march_to(MarchTo::Sky)),
+            inputs: buffers.march.clone(),
             size: shadow.grid.size,
             light_blocks: shadow.used_light_blocks(),
         })
@@ -121,7 +123,8 @@ impl ShadowVolume {
         self.buffers.as_ref().map_or(0, |held| {
             let maps = held.maps.iter().map(ShadowMapBindings::bytes).sum::<u64>();
             let volume = u64::from(held.blocks) * TEXEL_BYTES * u64::from(held.resolution).pow(3);
-            held.uniform.size() + held.density.size() + volume + maps
+            let density = TEXEL_BYTES * u64::from(density_side(held.resolution)).pow(3);
+            held.uniform.size() + held.density.size() + density + volume + maps
         })
     }
 }
@@ -131,29 +134,48 @@ impl VolumeBuffers {
         let (resolution, blocks) = (shadow.resolution, shadow.blocks());
         let uniform = uniform_buffer(device, "haze shadow_march", size_of::<ShadowMarchUniform>() as u64);
         let density = storage(device, "haze density", resolution.pow(3), CELL_BYTES);
-        let optical_depths = volume(device, resolution, blocks, wgpu::TextureUsages::STORAGE_BINDING);
-        let resources = [
-            uniform.as_entire_binding(),
-            density.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&optical_depths),
-        ];
-        let march = bind(device, &tiled.layouts.shadow_march, resources);
+        let written = wgpu::TextureUsages::STORAGE_BINDING;
+        let optical_depths = volume(device, "haze optical depths", (resolution, blocks), written);
+        let density_texture = volume(device, "haze density texture", (density_side(resolution), 1), written);
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("haze density"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        let bind_volumes = |written, read| {
+            let resources = [
+                uniform.as_entire_binding(),
+                density.as_entire_binding(),
+                wgpu::BindingResource::TextureView(written),
+                wgpu::BindingResource::TextureView(read),
+                wgpu::BindingResource::Sampler(&sampler),
+            ];
+            bind(device, &tiled.layouts.shadow_march, resources)
+        };
+        let copy_density = bind_volumes(&density_texture, &optical_depths);
+        let march = bind_volumes(&optical_depths, &density_texture);
         let maps = (0..shadow.map_blocks())
             .map(|_| ShadowMapBindings::new(device, &tiled.layouts.shadow_visibility, Some(&optical_depths)))
             .collect();
-        Self { resolution, blocks, uniform, density, optical_depths, march, maps }
+        Self { resolution, blocks, uniform, density, optical_depths, copy_density, march, maps }
     }
+}
+
+/// Returns the cells along each axis of the density's texture: one more at each end, which are empty.
+fn density_side(resolution: u32) -> u32 {
+    resolution + 2
 }
 
 /// Creates a volume of `blocks` cubes along z.
 pub(crate) fn volume(
     device: &wgpu::Device,
-    resolution: u32,
-    blocks: u32,
+    label: &str,
+    (resolution, blocks): (u32, u32),
     usage: wgpu::TextureUsages,
 ) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("haze optical depths"),
+        label: Some(label),
         size: wgpu::Extent3d { width: resolution, height: resolution, depth_or_array_layers: resolution * blocks },
         mip_level_count: 1,
         sample_count: 1,

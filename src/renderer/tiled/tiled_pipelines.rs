@@ -10,12 +10,15 @@ use crate::formula::uniforms::{
 use crate::renderer::gpu::pipeline::{
     ComputePipelineDescription, PipelineStore, PipelineVariants, Shader, pipeline_variants,
 };
-use crate::renderer::layouts::{Layouts, SHADOW_FORMAT};
+use crate::renderer::layouts::{Layouts, SHADOW_FORMAT, texture_type, transfer_types};
 use crate::renderer::pass::density_splat;
+use crate::renderer::pass::depth_downsample::{self, DepthDownsampleKey};
+use crate::renderer::pass::depth_slopes::{self, DepthSlopesKey};
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
+use crate::renderer::pass::light_target::{self, LightTargetKey};
 use crate::renderer::pass::measure::{self, MeasureKey};
-use crate::renderer::pass::shadow_march::{self, MarchTo};
+use crate::renderer::pass::shadow_march::{self, ShadowMarchKey};
 use crate::renderer::pass::shadow_visibility;
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::TileAccumulateKey;
@@ -23,6 +26,7 @@ use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_gather::{self, TileGatherKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
 use crate::renderer::pass::tile_refine::{self, TileRefineKey};
+use crate::renderer::targets::{COMPUTED_DEPTH_FORMAT, LIT_FORMAT};
 
 /// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
 #[derive(Debug)]
@@ -37,8 +41,12 @@ pub(crate) struct TiledPipelines {
     pub measure: PipelineVariants<MeasureKey, ComputePipelineDescription>,
     pub depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
     pub density_splat: PipelineVariants<(), ComputePipelineDescription>,
-    pub shadow_march: PipelineVariants<MarchTo, ComputePipelineDescription>,
+    pub shadow_march: PipelineVariants<ShadowMarchKey, ComputePipelineDescription>,
     pub shadow_visibility: PipelineVariants<(), ComputePipelineDescription>,
+    // Variants of the passes that write every texel of a target.
+    pub depth_downsample: PipelineVariants<DepthDownsampleKey, ComputePipelineDescription>,
+    pub light_target: PipelineVariants<LightTargetKey, ComputePipelineDescription>,
+    pub depth_slopes: PipelineVariants<DepthSlopesKey, ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
     gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
@@ -56,6 +64,10 @@ pub(crate) struct TiledLayouts {
     pub density_splat: wgpu::BindGroupLayout,
     pub shadow_march: wgpu::BindGroupLayout,
     pub shadow_visibility: wgpu::BindGroupLayout,
+    /// Of the passes that write every texel: as the render pass's group 3, with the target as last binding.
+    pub depth_downsample: wgpu::BindGroupLayout,
+    pub light_target: wgpu::BindGroupLayout,
+    pub depth_slopes: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
     pub gather: wgpu::BindGroupLayout,
@@ -103,6 +115,7 @@ impl TiledPipelines {
         let device = &store.device;
         let own = TiledLayouts::new(device);
         let with = |inputs| [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material), Some(inputs)];
+        let texels = |inputs| [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.lighting), Some(inputs)];
         Ok(Self {
             cooperative: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
             limits: device.limits(),
@@ -112,6 +125,27 @@ impl TiledPipelines {
             density_splat: pipeline_variants!(store, shader, density_splat, &with(&own.density_splat)),
             shadow_march: pipeline_variants!(store, shader, shadow_march, &[Some(&own.shadow_march)]),
             shadow_visibility: pipeline_variants!(store, shader, shadow_visibility, &[Some(&own.shadow_visibility)]),
+            depth_downsample: PipelineVariants::new(
+                store,
+                "depth_downsample",
+                shader("depth_downsample")?,
+                depth_downsample::describe_compute,
+                &texels(&own.depth_downsample),
+            ),
+            light_target: PipelineVariants::new(
+                store,
+                "light_target",
+                shader("light_target")?,
+                light_target::describe_compute,
+                &texels(&own.light_target),
+            ),
+            depth_slopes: PipelineVariants::new(
+                store,
+                "depth_slopes",
+                shader("depth_slopes")?,
+                depth_slopes::describe_compute,
+                &texels(&own.depth_slopes),
+            ),
             project: pipeline_variants!(store, shader, tile_project, &with(&own.project)),
             sort: pipeline_variants!(store, shader, sort, &[Some(&own.sort)]),
             gather: pipeline_variants!(store, shader, tile_gather, &[Some(&own.gather)]),
@@ -152,8 +186,7 @@ impl TiledPipelines {
     /// Compiles the pipelines of shadow.
     pub fn compile_shadow(&self) -> Result<(), Error> {
         self.density_splat.check(())?;
-        self.shadow_march.check(MarchTo::Lights)?;
-        self.shadow_march.check(MarchTo::Sky)?;
+        ShadowMarchKey::ALL.into_iter().try_for_each(|key| self.shadow_march.check(key))?;
         self.shadow_visibility.check(())
     }
 
@@ -203,21 +236,19 @@ impl TiledLayouts {
             buffer(wgpu::BufferBindingType::Storage { read_only: true }),
             buffer(wgpu::BufferBindingType::Storage { read_only: false }),
         );
-        let depth = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let map = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        };
-        let volume = wgpu::BindingType::StorageTexture {
+        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+        let depth = texture_type(unfilterable, wgpu::TextureViewDimension::D2);
+        let map = texture_type(unfilterable, wgpu::TextureViewDimension::D2Array);
+        let target = |format, view_dimension| wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
-            format: SHADOW_FORMAT,
-            view_dimension: wgpu::TextureViewDimension::D3,
+            format,
+            view_dimension,
         };
+        let filterable = wgpu::TextureSampleType::Float { filterable: true };
+        let density = texture_type(filterable, wgpu::TextureViewDimension::D3);
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let volume = target(SHADOW_FORMAT, wgpu::TextureViewDimension::D3);
+        let lit = target(LIT_FORMAT, wgpu::TextureViewDimension::D2);
         let layout = |label, types: &[wgpu::BindingType]| {
             let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
                 binding,
@@ -235,12 +266,18 @@ impl TiledLayouts {
             density_splat: layout("haze density_splat inputs", &[uniform_of(size_of::<SplatUniform>()), read, written]),
             shadow_march: layout(
                 "haze shadow_march inputs",
-                &[uniform_of(size_of::<ShadowMarchUniform>()), read, volume],
+                &[uniform_of(size_of::<ShadowMarchUniform>()), read, volume, density, sampler],
             ),
             shadow_visibility: layout(
                 "haze shadow_visibility inputs",
                 &[uniform_of(size_of::<ShadowVisibilityUniform>()), map, map, map, volume],
             ),
+            depth_downsample: layout(
+                "haze depth_downsample target",
+                &[target(COMPUTED_DEPTH_FORMAT, wgpu::TextureViewDimension::D2)],
+            ),
+            light_target: layout("haze light_target inputs", &[transfer_types().as_slice(), &[lit]].concat()),
+            depth_slopes: layout("haze depth_slopes inputs", &[depth, depth, lit]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
             gather: layout("haze tile_gather inputs", &[uniform, read, read, read, written, written, written]),

@@ -39,6 +39,7 @@ fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
         size,
         // -ln(1 - amount) of sprites of amount 0.3, averaged over a texture that is one third full.
         optical_depth: 0.12,
+        scale: 1,
         attachments: 1,
         grain_octaves: 0,
         lookups: 0.0,

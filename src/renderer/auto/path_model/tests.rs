@@ -10,6 +10,7 @@ fn workload(layers: f64) -> PathWorkload {
         fragments: layers * size.as_dvec2().element_product(),
         size,
         optical_depth: 0.05,
+        scale: 1,
         attachments: 1,
         grain_octaves: 0,
         lookups: 0.0,
