@@ -1,7 +1,12 @@
 //! Renders and writes images as the command line does.
 
+#[cfg(target_arch = "wasm32")]
+use std::path::Path;
+
 use haze::Error;
 use haze::shader::Sources;
+#[cfg(target_arch = "wasm32")]
+use haze_demo::shot::Shot;
 
 use super::IS_PAGE;
 use crate::backend::Backend;
@@ -9,9 +14,11 @@ use crate::backend::Backend;
 use crate::page_renderer::PageRenderer;
 
 pub use crate::image_export::{
-    Background, ExportProgress, Frames, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
+    ExportProgress, Frames, SCENE, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
     write_sequence,
 };
+
+pub use crate::image_format::{Alpha, Background, BitDepth, ImageFormat};
 
 /// Opens the renderer of exported images: the GPU, which on a page is that of the canvas.
 #[cfg(not(target_arch = "wasm32"))]
@@ -23,6 +30,28 @@ pub fn open_backend(sources: Option<&Sources>) -> Result<Backend, Error> {
 #[cfg(target_arch = "wasm32")]
 pub fn open_backend(_: Option<&Sources>) -> Result<Backend, Error> {
     Ok(Backend::Page(Box::new(PageRenderer::open()?)))
+}
+
+/// Writes an OpenEXR file; see `exr_export`.
+#[cfg(not(target_arch = "wasm32"))]
+pub use crate::exr_export::{write as write_exr, write_sequence as write_exr_sequence};
+
+/// A page offers no OpenEXR files.
+#[cfg(target_arch = "wasm32")]
+pub async fn write_exr(_: &Backend, _: &Shot, _: Background, _: f32, path: &Path) -> Result<(), Error> {
+    Err(Error::Io { path: path.into(), error: std::io::ErrorKind::Unsupported.into() })
+}
+
+/// A page offers no OpenEXR files.
+#[cfg(target_arch = "wasm32")]
+pub async fn write_exr_sequence(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    names: &FrameNames,
+    _: &ExportProgress<'_>,
+) -> Result<(), Error> {
+    write_exr(backend, shot, frames.format.background, 1.0, &names.of(0)).await
 }
 
 /// Opens the renderer of thumbnails: the CPU, so that the GPU is left to the viewport; on a page, the GPU.

@@ -200,7 +200,7 @@ fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
     bench.window.run_steps(2);
     bench.until(|window| window.export_job.sheet.is_some());
     let Sheet { kind, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
-    assert_eq!(kind.file_ending().0, "thickness");
+    assert_eq!(kind.file_ending(FileKind::Png).0, "thickness");
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn the_button_beside_a_name_makes_a_sheet() {
         bench.window.run_steps(2);
         let window = bench.window.state();
         assert!(window.export_job.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
-        kind.file_ending().0.to_owned()
+        kind.file_ending(FileKind::Png).0.to_owned()
     };
     assert!(made("Look", "Thickness", "Five values side by side: Thickness").contains("thickness"));
     assert!(made("Advanced", "Coverage", "All values side by side: Coverage").contains("coverage"));
