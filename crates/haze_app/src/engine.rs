@@ -1,12 +1,13 @@
 //! Engines that looks and images are exported for, and their conventions.
 
-use clap::ValueEnum;
 use haze_author::sprite::six_way::Packing;
 
 /// Engine to export for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(not(target_arch = "wasm32"), derive(clap::ValueEnum))]
 pub enum Engine {
     /// Unreal Engine.
+    #[default]
     Unreal,
     /// Unity.
     Unity,

@@ -13,7 +13,6 @@ mod command_line;
 mod commands;
 mod contact_sheet;
 mod debug_view_sheet;
-#[cfg(not(target_arch = "wasm32"))]
 mod engine;
 #[cfg(not(target_arch = "wasm32"))]
 mod exr_export;

@@ -3,6 +3,7 @@
 mod fill;
 mod frame_layers;
 mod motion_fit;
+mod numbers;
 mod readme;
 mod sheets;
 
@@ -19,6 +20,7 @@ use crate::backend::Backend;
 use crate::engine::Engine;
 use crate::image_export::{ExportProgress, Frames, stopped_before_writing};
 use frame_layers::FrameLayers;
+use numbers::FlipbookNumbers;
 use sheets::Sheets;
 
 /// Choices of a flipbook.
@@ -30,22 +32,6 @@ pub struct FlipbookOptions {
     /// Frames after the last that fade into the first ones, so that the flipbook loops. 0: none.
     pub loop_fade: u32,
     pub has_six_way: bool,
-}
-
-/// Numbers of a flipbook, for programs: `flipbook.json`.
-#[derive(serde::Serialize)]
-#[cfg_attr(test, derive(serde::Deserialize))]
-pub struct FlipbookNumbers {
-    pub columns: u32,
-    pub rows: u32,
-    pub frames: u32,
-    /// Frames per second.
-    pub rate: f32,
-    /// Way that full red or green stands for, as a share of a frame's width or height.
-    pub motion_scale: f32,
-    /// Intensity of a light under which the six-way maps have the brightness of the preset's smoke; absent without them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub six_way_intensity: Option<f32>,
 }
 
 /// Files of a flipbook.

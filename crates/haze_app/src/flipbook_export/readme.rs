@@ -2,7 +2,7 @@
 
 use image::DynamicImage;
 
-use super::FlipbookNumbers;
+use super::numbers::FlipbookNumbers;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;
 

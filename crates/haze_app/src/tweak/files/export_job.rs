@@ -18,7 +18,7 @@ use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
-use crate::tweak::platform::render_job::{ExportProgress, Frames, ImageFormat, SCENE};
+use crate::tweak::platform::render_job::{Engine, ExportProgress, Frames, ImageFormat, SCENE};
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::platform::{IS_PAGE, file_io, render_job};
 use crate::tweak::session::Session;
@@ -31,6 +31,8 @@ pub enum ExportKind {
     Sequence,
     Flipbook,
     Gif,
+    /// Ramps and lighting formula of the selected system, for an engine. Not on a page.
+    Material,
     DebugView,
     /// Sheet of nine seeds.
     Seeds,
@@ -51,6 +53,7 @@ impl ExportKind {
             Self::Sequence => ("frames", ""),
             Self::Flipbook => ("flipbook", ".png"),
             Self::Gif => ("", ".gif"),
+            Self::Material => ("material", ""),
             Self::DebugView => ("debug_views", ".png"),
             Self::Seeds => ("seeds", ".png"),
             Self::Values(path) => (path.rsplit('.').next().unwrap_or(path), ".png"),
@@ -89,6 +92,10 @@ pub struct ExportOptions {
     pub cells: UVec2,
     pub file: FileKind,
     pub format: ImageFormat,
+    /// Of a material.
+    pub engine: Engine,
+    /// System of a material. The selected one, when the export begins.
+    pub system: usize,
 }
 
 impl Default for ExportOptions {
@@ -101,6 +108,8 @@ impl Default for ExportOptions {
             cells: UVec2::new(4, 8),
             file: FileKind::default(),
             format: ImageFormat::default(),
+            engine: Engine::default(),
+            system: 0,
         }
     }
 }
@@ -255,6 +264,7 @@ impl ExportJob {
         let target = Target { path, title: session.document.title() };
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
+        self.options.system = session.view.system;
         let (options, shaders) = (self.options.clone(), session.shaders.clone());
         self.worker.submit_async(async move |ticket: Ticket| {
             let go_on = |done, count| {
@@ -366,6 +376,10 @@ async fn make(
         ExportKind::Gif => {
             let frames = Frames { format: SCENE, ..frames };
             render_job::write_gif(backend, shot, &frames, path, watch).await?;
+            return Ok(ExportResult::Written(path.clone()));
+        }
+        ExportKind::Material => {
+            render_job::write_material(shot, options.system, options.engine, path)?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::DebugView => debug_view_sheet::stages(shot),

@@ -5,7 +5,7 @@ use eframe::egui::{self, Ui};
 use crate::tweak::files::export_job::{ExportJob, ExportKind, FileKind, MAX_PIXELS, Sheet};
 use crate::tweak::platform::IS_PAGE;
 use crate::tweak::platform::clock::Duration;
-use crate::tweak::platform::render_job::{Alpha, Background, BitDepth};
+use crate::tweak::platform::render_job::{Alpha, Background, BitDepth, Engine};
 use crate::tweak::session::Session;
 use crate::tweak::session::setting_search::matches;
 
@@ -59,12 +59,19 @@ const FILES: [(&str, (FileKind, BitDepth), &str); 3] = [
     ),
 ];
 
+const ENGINES: [(&str, Engine, &str); 4] = [
+    ("Unreal", Engine::Unreal, "Ramps, and HLSL for a Custom node"),
+    ("Unity", Engine::Unity, "Ramps, and HLSL for a Custom Function node of Shader Graph"),
+    ("Godot", Engine::Godot, "Ramps, and a spatial shader"),
+    ("WGSL", Engine::Wgsl, "Ramps, and functions for wgpu and Bevy"),
+];
+
 /// Draws a row of choices.
 fn choices<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, choices: &[(&str, T, &str)]) {
-    let label = ui.label(name).id;
+    ui.label(name);
     ui.horizontal(|ui| {
         for (name, choice, tooltip) in choices {
-            ui.selectable_value(value, *choice, *name).on_hover_text(*tooltip).labelled_by(label);
+            ui.selectable_value(value, *choice, *name).on_hover_text(*tooltip);
         }
     });
     ui.end_row();
@@ -80,18 +87,24 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
         ("Sequence", ExportKind::Sequence),
         ("Flipbook", ExportKind::Flipbook),
         ("GIF", ExportKind::Gif),
+        ("Material", ExportKind::Material),
         ("Debug Views", ExportKind::DebugView),
         ("Nine Seeds", ExportKind::Seeds),
         ("Values of a Setting", ExportKind::Values(values)),
     ];
     ui.horizontal_wrapped(|ui| {
-        for (name, product) in products {
+        let is_offered = |product: &ExportKind| !IS_PAGE || *product != ExportKind::Material;
+        for (name, product) in products.into_iter().filter(|(_, product)| is_offered(product)) {
             ui.selectable_value(&mut export_job.product, product, name);
         }
     });
     let (product, options) = (&mut export_job.product, &mut export_job.options);
     let is_moving = matches!(product, ExportKind::Sequence | ExportKind::Flipbook | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
+        if *product == ExportKind::Material {
+            choices(ui, "Engine", &mut options.engine, &ENGINES);
+            return;
+        }
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
             let label = ui.label(name).id;
             ui.horizontal(|ui| {

@@ -1,15 +1,19 @@
 //! Renders and writes images as the command line does.
 
-#[cfg(target_arch = "wasm32")]
 use std::path::Path;
 
 use haze::Error;
+#[cfg(not(target_arch = "wasm32"))]
+use haze::FieldError;
 use haze::shader::Sources;
-#[cfg(target_arch = "wasm32")]
 use haze_demo::shot::Shot;
 
 use super::IS_PAGE;
+#[cfg(not(target_arch = "wasm32"))]
+use super::file_io::make_folder;
 use crate::backend::Backend;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::material_export::MaterialExport;
 #[cfg(target_arch = "wasm32")]
 use crate::page_renderer::PageRenderer;
 
@@ -18,6 +22,7 @@ pub use crate::image_export::{
     write_sequence,
 };
 
+pub use crate::engine::Engine;
 pub use crate::image_format::{Alpha, Background, BitDepth, ImageFormat};
 
 /// Opens the renderer of exported images: the GPU, which on a page is that of the canvas.
@@ -48,10 +53,27 @@ pub async fn write_exr_sequence(
     backend: &Backend,
     shot: &Shot,
     frames: &Frames,
-    names: &FrameNames,
+    names: &crate::frame_range::FrameNames,
     _: &ExportProgress<'_>,
 ) -> Result<(), Error> {
     write_exr(backend, shot, frames.format.background, 1.0, &names.of(0)).await
+}
+
+/// Writes the material of a system into a folder.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn write_material(shot: &Shot, system: usize, engine: Engine, folder: &Path) -> Result<(), Error> {
+    let Some((found, images)) = shot.preset.systems.get(system).zip(shot.materials.get(system)) else {
+        return Err(FieldError::new("export", "a material", "a preset with a system").into());
+    };
+    let export = MaterialExport::new(&shot.preset.name, (system, found), images, engine)?;
+    make_folder(folder)?;
+    export.write(folder)
+}
+
+/// A page offers no materials.
+#[cfg(target_arch = "wasm32")]
+pub fn write_material(_: &Shot, _: usize, _: Engine, folder: &Path) -> Result<(), Error> {
+    Err(Error::Io { path: folder.into(), error: std::io::ErrorKind::Unsupported.into() })
 }
 
 /// Opens the renderer of thumbnails: the CPU, so that the GPU is left to the viewport; on a page, the GPU.
