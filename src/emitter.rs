@@ -207,6 +207,18 @@ impl Emitter {
         self.snapshot(time).evaluate(particles);
     }
 
+    /// Replaces `displacements` with the way of each particle of [`evaluate`](Self::evaluate) in the next `seconds`, in metres
+    /// and in the same order: for motion vectors. The swirls of turbulence that a particle crosses are in it, and not in
+    /// [`Particle::velocity`](Particle). Particles that die before are taken to fly on.
+    pub fn displacements(&self, time: f32, seconds: f32, displacements: &mut Vec<Vec3>) {
+        let now = self.snapshot(time);
+        let mut later = now.uniform;
+        later.since_first += seconds;
+        later.phase = self.snapshot(time + seconds).uniform.phase;
+        displacements.clear();
+        displacements.extend(now.displacements(&later, seconds));
+    }
+
     /// Particles alive at `time`, seconds, not evaluated, for [`Particles::Emitter`](crate::Particles::Emitter).
     pub fn snapshot(&self, time: f32) -> EmitterSnapshot {
         let (first, last) = self.birth_range(time);

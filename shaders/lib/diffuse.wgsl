@@ -1,7 +1,7 @@
 // Lighting of smoke, shared by transfer, forward and diffuse_bake.
 
 #import "lib/bindings.wgsl"
-#import "lib/ramp.wgsl"
+#import "lib/response.wgsl"
 #import "lib/six_way.wgsl"
 #import "lib/shadow.wgsl"
 #import "lib/shadow_volume.wgsl"
@@ -10,10 +10,6 @@
 const SOFT_SCATTER_MODE_SMOOTHSTEP: u32 = 0u;
 const SOFT_SCATTER_MODE_RAMP: u32 = 1u;
 override SOFT_SCATTER_MODE: u32 = SOFT_SCATTER_MODE_SMOOTHSTEP;
-
-const BACKLIGHT_SAME: u32 = 0u;
-const BACKLIGHT_RAMP: u32 = 1u;
-override BACKLIGHT: u32 = BACKLIGHT_SAME;
 
 // True if light from sky and ground falls on the smoke.
 override AMBIENT: bool = false;
@@ -131,8 +127,7 @@ fn ambient_from_six_way(six_way: SixWay, openness: vec2f) -> vec3f {
         + light.ground * six_way_hemisphere(six_way.positive, six_way.negative, -system.up);
 }
 
-// Sum of all lights through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · color · attenuation. (OTEE
-// "Diffuse lighting")
+// Sum of all lights through the diffuse ramp: response · color · attenuation.
 fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f, shade: Shade) -> vec3f {
     let to_viewer = direction_to_viewer(position, view.orthographic);
     var sum = vec3f(0.0);
@@ -140,14 +135,12 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f, shade: Shad
     for (var i = 0u; i < system.light_count; i++) {
         of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);
         let light = sample_light(lights[i], position);
-        let at = vec2f(diffuse_coordinate(normal, light.direction), covered);
-        var falloff = sample_ramp_2d(diffuse_ramp, linear_sampler, at);
-        if BACKLIGHT == BACKLIGHT_RAMP {
-            let against = sample_ramp_2d(backlight_ramp, linear_sampler, at);
-            falloff = mix(falloff, against, backlight_weight(light.direction, to_viewer));
-        }
+        let against = backlight_weight(light.direction, to_viewer);
+        let response = diffuse_response(
+            diffuse_ramp, backlight_ramp, linear_sampler, normal, light.direction, covered, against,
+        );
         let shadow = shadow_on_light(lights[i].shadow_slot, of_block, light.direction, to_viewer);
-        sum += falloff * lights[i].color * light.attenuation * shadow;
+        sum += response * lights[i].color * light.attenuation * shadow;
     }
     if AMBIENT {
         sum += ambient_from_ramp(normal, covered, shade.openness);
@@ -173,11 +166,13 @@ fn diffuse_from_six_way(six_way: SixWay, position: vec3f, shade: Shade) -> vec3f
     return sum * system.six_way_color;
 }
 
-// Even backlight of smoke by its amount. (OTEE "Soft scattering")
+// Even backlight of smoke by its amount.
 fn soft_scatter(amount: f32) -> vec3f {
     if SOFT_SCATTER_MODE == SOFT_SCATTER_MODE_RAMP {
         return sample_ramp(soft_scatter_ramp, linear_sampler, amount) * system.soft_scatter_intensity;
     }
-    let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
-    return mix(system.scatter_color, system.ambient_color, weight) * system.soft_scatter_intensity;
+    let light = soft_scatter_curve(
+        amount, system.scatter_color, system.ambient_color, system.scatter_amount, system.scatter_smooth,
+    );
+    return light * system.soft_scatter_intensity;
 }

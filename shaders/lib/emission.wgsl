@@ -2,10 +2,9 @@
 
 #import "lib/bindings.wgsl"
 #import "lib/fire.wgsl"
-#import "lib/ramp.wgsl"
+#import "lib/response.wgsl"
 
 // Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from fire_from_moments().
 fn emission(fire: vec2f, amount: f32) -> vec3f {
-    let at = vec2f(fire.x, coverage(amount * fire.y, system.boost));
-    return sample_ramp_2d(fire_ramp, linear_sampler, at) * (system.fire_intensity * fire.y);
+    return fire_response(fire_ramp, linear_sampler, fire, amount, system.boost) * system.fire_intensity;
 }

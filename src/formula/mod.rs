@@ -19,6 +19,7 @@ pub mod noise_volume;
 pub mod normal;
 pub mod order;
 pub mod ramp;
+pub mod response;
 pub mod scene_shadow;
 pub mod screen_shadow;
 pub mod shadow;

@@ -6,7 +6,7 @@ use super::bounds::Bounds;
 use super::particle::Particle;
 use super::sprite_extent::SpriteExtent;
 use crate::formula::curve::{CurvePoints, curve_point};
-use crate::formula::emitter::{birth_delay, drag_integrals, emitted_particle};
+use crate::formula::emitter::{EmittedParticle, birth_delay, drag_integrals, emitted_particle};
 use crate::formula::uniforms::EmitterUniform;
 use crate::settings::MAX_CURVE_POINTS;
 
@@ -59,6 +59,17 @@ impl EmitterSnapshot {
         };
         particles.clear();
         particles.extend((first..self.uniform.count).step_by(step as usize).filter_map(alive));
+    }
+
+    /// Way of each particle of [`evaluate`](Self::evaluate) to where the snapshot `later`, by so many seconds, has it.
+    pub(crate) fn displacements(&self, later: &EmitterUniform, seconds: f32) -> impl Iterator<Item = Vec3> {
+        let position = |particle: &EmittedParticle| particle.position_radius.truncate();
+        (0..self.uniform.count).filter_map(move |number| {
+            let [now, then] = [&self.uniform, later].map(|emitter| emitted_particle(emitter, number));
+            let is_alive = |particle: &EmittedParticle| particle.position_radius.w > 0.0;
+            let way = if is_alive(&then) { position(&then) - position(&now) } else { now.velocity * seconds };
+            (now.rotation_amount_frame_age.y > 0.0).then_some(way)
+        })
     }
 
     /// Box that contains every sprite, from the emitter's settings alone. It is larger than that of the particles.

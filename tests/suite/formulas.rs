@@ -24,6 +24,7 @@ mod noise_volume;
 mod normal;
 mod order;
 mod ramp;
+mod response;
 mod shadow;
 mod six_way;
 mod smoke_extent;
@@ -84,6 +85,7 @@ fn formulas() -> Vec<Formula> {
         normal::formulas(),
         order::formulas(),
         ramp::formulas(),
+        response::formulas(),
         shadow::formulas(),
         six_way::formulas(),
         smoke_extent::formulas(),
@@ -105,7 +107,7 @@ fn formulas() -> Vec<Formula> {
 /// Runs the formula on the GPU. `mutate` is a (text, replacement) pair that is applied to the composed shader first.
 fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
     let mut library = format!("#import \"{}\"\n", formula.file);
-    if !["lib/sprite.wgsl", "lib/ramp.wgsl", "lib/noise_volume.wgsl"].contains(&formula.file) {
+    if !["lib/sprite.wgsl", "lib/ramp.wgsl", "lib/response.wgsl", "lib/noise_volume.wgsl"].contains(&formula.file) {
         library.push_str("#import \"lib/ramp.wgsl\"\n");
     }
     let mut source = shader::compose(&library).unwrap();

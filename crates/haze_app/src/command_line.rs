@@ -13,7 +13,7 @@ use clap::{CommandFactory as _, Parser, Subcommand};
 use haze::error::is_link_loop;
 use haze::{Error, builtin};
 
-use crate::commands::{info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
+use crate::commands::{export, info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
 use crate::output::{Failures, one_line, print_error, write_text};
 use crate::recipe_files::has_extension;
 use crate::{bench, share_link, tweak};
@@ -46,6 +46,8 @@ enum Command {
     Ramp(ramp::RampArguments),
     /// Bake, import, export, light and check sprites.
     Sprite(sprite::SpriteArguments),
+    /// Write looks and images in the forms that engines read.
+    Export(export::Arguments),
     /// Print what this machine renders with: GPU, driver and CPU, and the choices of path auto.
     Info,
 }
@@ -87,6 +89,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Preset(arguments) => preset::run(&arguments),
         Command::Ramp(arguments) => ramp::run(&arguments),
         Command::Sprite(arguments) => sprite::run(&arguments),
+        Command::Export(arguments) => one(export::run(&arguments)),
         Command::Info => one(info::run()),
     })
 }

@@ -6,47 +6,100 @@ use std::path::Path;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage as _,
 };
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{UVec2, Vec4, Vec4Swizzles};
 use half::f16;
 use haze::Error;
 use haze::image::{Image, write_file};
-use haze::settings::DebugView;
+use haze_demo::particle_scalar::ParticleScalar;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::exposure;
 
 use crate::backend::Backend;
-use crate::image_export::Background;
-use crate::smoke_alone::{before_two_skies, separated};
+use crate::frame_range::FrameNames;
+use crate::image_export::{ExportProgress, Frames};
+use crate::image_format::{Background, straight};
+use crate::progress::with_progress;
+use crate::smoke_layers::SmokeLayers;
 
-/// Renders a shot and writes it. With the scene: `R`, `G` and `B`. Alone: premultiplied, with `A`, the accumulated amount
-/// `amount.Y`, and the mean normal of the smoke in view space `normal.X`, `normal.Y` and `normal.Z`.
-pub fn write(backend: &Backend, shot: &Shot, background: Background, path: &Path) -> Result<(), Error> {
+/// Renders a shot and writes it. With the scene: `R`, `G` and `B`. Alone: premultiplied, with `A`, and the layers of the
+/// smoke, below. `seconds`: time to the next frame, of `motion`.
+///
+/// | channels | content |
+/// |---|---|
+/// | `amount.Y` | accumulated amount |
+/// | `normal.X`, `.Y`, `.Z` | mean normal in view space |
+/// | `depth.Z` | mean view depth, metres |
+/// | `motion.X`, `.Y` | mean way until the next frame, pixels: right, up |
+/// | `emission.R`, `.G`, `.B` | light of fire alone, premultiplied; if a system burns |
+pub async fn write(
+    backend: &Backend,
+    shot: &Shot,
+    background: Background,
+    seconds: f32,
+    path: &Path,
+) -> Result<(), Error> {
+    let channels = channels(backend, shot, background, seconds).await?;
+    write_file(path, &encode(shot.size, channels, path)?)
+}
+
+/// Writes every frame to its own file. If it is stopped, the files written so far stay.
+pub async fn write_sequence(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    names: &FrameNames,
+    progress: &ExportProgress<'_>,
+) -> Result<(), Error> {
+    for (done, frame) in (0..).zip(frames.range.clone()) {
+        if !progress.goes_on(done, frames.count()) {
+            return Err(frames.stopped_sequence(names, done));
+        }
+        let (shot, path) = (frames.shot(shot, frame), names.of(frame));
+        let written = write(backend, &shot, frames.format.background, 1.0 / frames.rate, &path);
+        match progress {
+            ExportProgress::Terminal => {
+                with_progress(format!("haze: {}", path.display()), || pollster::block_on(written))?;
+            }
+            ExportProgress::Callback(_) => written.await?,
+        }
+    }
+    Ok(())
+}
+
+/// Renders the channels of a shot.
+async fn channels(backend: &Backend, shot: &Shot, background: Background, seconds: f32) -> Result<Vec<Channel>, Error> {
     let exposure = exposure(shot);
     let lit = |texel: Vec4| (texel.xyz() * if exposure > 0.0 { exposure } else { 1.0 }).extend(texel.w);
     let mut channels = Vec::new();
-    match background {
-        Background::Scene => {
-            let picture = backend.render(shot)?;
-            add(&mut channels, &["R", "G", "B"], &picture, lit);
-        }
-        Background::Transparent => {
-            let [dark, bright] = before_two_skies(shot);
-            let smoke = separated([&backend.render(&dark)?, &backend.render(&bright)?]);
-            add(&mut channels, &["R", "G", "B", "A"], &smoke, lit);
-            let view = |debug_view| backend.render(&Shot { debug_view, ..dark.clone() });
-            let amount = view(DebugView::Amount)?;
-            add(&mut channels, &["amount.Y"], &amount, |texel| texel);
-            let mut normals = view(DebugView::Normals)?;
-            // The view has n/2 + 1/2, and black where there is no smoke.
-            normals.for_each(|at, texel| {
-                let is_smoke = amount.load(at.as_ivec2()).x > 0.0;
-                let normal = if is_smoke { texel.xyz() * 2.0 - 1.0 } else { Vec3::ZERO };
-                *texel = normal.extend(0.0);
-            });
-            add(&mut channels, &["normal.X", "normal.Y", "normal.Z"], &normals, |texel| texel);
-        }
+    if !background.is_transparent(shot) {
+        add(&mut channels, &["R", "G", "B"], &backend.render_async(shot).await?, lit);
+        return Ok(channels);
     }
-    let size = (shot.size.x as usize, shot.size.y as usize);
+    let layers = SmokeLayers::new(backend, shot).await?;
+    add(&mut channels, &["R", "G", "B", "A"], &layers.light, lit);
+    add(&mut channels, &["amount.Y"], &layers.amount().await?, |texel| texel);
+    let normals = straight(&layers.normals().await?);
+    add(&mut channels, &["normal.X", "normal.Y", "normal.Z"], &normals, |texel| texel);
+    let scalars = [
+        ("depth.Z", ParticleScalar::ViewDepth),
+        ("motion.X", ParticleScalar::MotionRight(seconds)),
+        ("motion.Y", ParticleScalar::MotionUp(seconds)),
+    ];
+    for (name, scalar) in scalars {
+        add(&mut channels, &[name], &layers.scalar(scalar).await?, Vec4::splat);
+    }
+    if shot.preset.systems.iter().any(|system| system.settings.burns()) {
+        add(&mut channels, &["emission.R", "emission.G", "emission.B"], &layers.fire().await?, lit);
+    }
+    Ok(channels)
+}
+
+/// Channel of half floats.
+type Channel = AnyChannel<FlatSamples>;
+
+/// Encodes channels as an OpenEXR file. `path` is only named in errors.
+fn encode(size: UVec2, channels: Vec<Channel>, path: &Path) -> Result<Vec<u8>, Error> {
+    let size = (size.x as usize, size.y as usize);
     let attributes = LayerAttributes::default();
     let layer =
         Layer::new(size, attributes, Encoding::SMALL_FAST_LOSSLESS, AnyChannels::sort(SmallVec::from_vec(channels)));
@@ -56,16 +109,11 @@ pub fn write(backend: &Backend, shot: &Shot, background: Background, path: &Path
         path: path.into(),
         reason: format!("{error}; expected an image that OpenEXR can hold"),
     })?;
-    write_file(path, &bytes)
+    Ok(bytes)
 }
 
 /// Adds channels with these names, of the first components of an image.
-fn add(
-    channels: &mut Vec<AnyChannel<FlatSamples>>,
-    names: &[&str],
-    image: &Image<Vec4>,
-    change: impl Fn(Vec4) -> Vec4,
-) {
+fn add<T: Copy>(channels: &mut Vec<Channel>, names: &[&str], image: &Image<T>, change: impl Fn(T) -> Vec4) {
     for (component, name) in names.iter().enumerate() {
         let samples = image.texels.iter().map(|texel| f16::from_f32(change(*texel)[component])).collect();
         channels.push(AnyChannel::new(*name, FlatSamples::F16(samples)));
@@ -79,22 +127,53 @@ mod tests {
 
     use super::*;
 
-    #[test]
-    fn layers_are_read_back() {
+    /// Reads the channels of the smoke of a preset, by name.
+    fn written(preset: &str) -> Vec<(String, Vec<f32>)> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("smoke.exr");
-        let shot = Shot::load("column", UVec2::new(48, 48)).unwrap();
-        write(&Backend::Cpu, &shot, Background::Transparent, &path).unwrap();
+        let shot = Shot::load(preset, UVec2::new(48, 48)).unwrap();
+        let seconds = 1.0 / 24.0;
+        pollster::block_on(write(&Backend::Cpu, &shot, Background::Transparent, seconds, &path)).unwrap();
         let read = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
         let image = read.all_attributes().from_file(&path).unwrap();
-        let channels = &image.layer_data.channel_data.list;
-        let names: Vec<_> = channels.iter().map(|channel| channel.name.to_string()).collect();
-        assert_eq!(names, ["A", "B", "G", "R", "amount.Y", "normal.X", "normal.Y", "normal.Z"]);
-        let values = |index: usize| channels[index].sample_data.values_as_f32().collect::<Vec<_>>();
-        let (alpha, normal_z) = (values(0), values(7));
+        let channels = image.layer_data.channel_data.list;
+        channels
+            .iter()
+            .map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect()))
+            .collect()
+    }
+
+    #[test]
+    fn layers_are_read_back() {
+        let channels = written("column");
+        let names: Vec<_> = channels.iter().map(|(name, _)| name.as_str()).collect();
+        let expected = ["A", "B", "G", "R", "amount.Y", "depth.Z", "motion.X", "motion.Y"];
+        assert_eq!(names, [&expected[..], &["normal.X", "normal.Y", "normal.Z"]].concat());
+        let values = |wanted: &str| &channels.iter().find(|(name, _)| name == wanted).unwrap().1;
+        let (alpha, normal_z, depth) = (values("A"), values("normal.Z"), values("depth.Z"));
         assert!(alpha.iter().any(|a| *a > 0.9) && alpha.contains(&0.0));
-        // Clear pixels have no normal, and most of the smoke faces the viewer.
-        assert!(alpha.iter().zip(&normal_z).all(|(a, z)| *a > 0.0 || *z == 0.0));
+        // Clear pixels have no normal and no depth, and most of the smoke faces the viewer.
+        assert!(alpha.iter().zip(normal_z).all(|(a, z)| *a > 0.0 || *z == 0.0));
         assert!(normal_z.iter().sum::<f32>() > 0.0);
+        let camera = Shot::load("column", UVec2::ONE).unwrap().preset.camera;
+        let away = (camera.target - camera.position).length();
+        for (a, depth) in alpha.iter().zip(depth) {
+            assert!(if *a > 0.01 { (away * 0.5..away * 2.0).contains(depth) } else { *a > 0.0 || *depth == 0.0 });
+        }
+        // The smoke rises.
+        let mean_rise =
+            values("motion.Y").iter().sum::<f32>() / depth.iter().filter(|depth| **depth > 0.0).count() as f32;
+        assert!(mean_rise > 0.05, "{mean_rise}");
+    }
+
+    #[test]
+    fn fire_is_a_part_of_the_light() {
+        let channels = written("campfire");
+        let values = |wanted: &str| &channels.iter().find(|(name, _)| name == wanted).unwrap().1;
+        let (fire, all) = (values("emission.R"), values("R"));
+        assert!(fire.iter().any(|fire| *fire > 1.0));
+        // Half floats have steps of a thousandth.
+        assert!(fire.iter().zip(all).all(|(fire, all)| *fire <= all * 1.002 + 1.0e-3));
+        assert!(fire.iter().sum::<f32>() < 0.99 * all.iter().sum::<f32>());
     }
 }

@@ -9,34 +9,23 @@ use glam::UVec2;
 use haze::image::{CompressionEffort, write_file, write_png};
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::{tonemap, tonemap_straight};
 use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, DynamicImage, Frame, imageops};
+use image::{Delay, DynamicImage, Frame};
 
 use super::backend::Backend;
 use super::contact_sheet::ContactSheet;
 use super::frame_range::FrameNames;
+use super::image_format::{self, Alpha, Background, BitDepth, ImageFormat};
 use super::interrupt;
 use super::memory_check::check_memory;
 use super::progress::with_progress;
-use super::smoke_alone::{before_two_skies, separated};
-
-/// Background of exported images.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Background {
-    /// The scene of the preset.
-    #[default]
-    Scene,
-    /// None: the smoke alone, with its opacity in alpha.
-    Transparent,
-}
 
 /// Range of frames. Frame 0 is at the preset's time.
 pub struct Frames {
     pub range: RangeInclusive<u32>,
     /// Frames per second.
     pub rate: f32,
-    pub background: Background,
+    pub format: ImageFormat,
 }
 
 /// Receiver of the progress, which can stop the work.
@@ -55,37 +44,35 @@ impl ExportProgress<'_> {
         Self::Terminal
     }
 
+    /// Returns false if the work is to stop.
+    pub fn goes_on(&self, done: u32, count: u32) -> bool {
+        match self {
+            Self::Terminal => !interrupt::is_requested(),
+            Self::Callback(go_on) => go_on(done, count),
+        }
+    }
+
     /// Renders an image; `None` if the work is to stop.
     async fn render(
         &self,
         (done, count): (u32, u32),
         backend: &Backend,
         shot: &Shot,
-        background: Background,
+        format: ImageFormat,
     ) -> Result<Option<DynamicImage>, Error> {
-        let goes_on = match self {
-            Self::Terminal => !interrupt::is_requested(),
-            Self::Callback(go_on) => go_on(done, count),
-        };
-        if !goes_on {
+        if !self.goes_on(done, count) {
             return Ok(None);
         }
         let draw = async |shot: &Shot| match self {
             Self::Terminal => with_progress(format!("haze: image {} of {count}", done + 1), || backend.render(shot)),
             Self::Callback(_) => backend.render_async(shot).await,
         };
-        Ok(Some(match background {
-            Background::Scene => tonemap(&draw(shot).await?, shot).into(),
-            Background::Transparent => {
-                let [dark, bright] = before_two_skies(shot);
-                tonemap_straight(&separated([&draw(&dark).await?, &draw(&bright).await?]), shot).into()
-            }
-        }))
+        Ok(Some(format.render(shot, draw).await?))
     }
 }
 
 impl Frames {
-    fn count(&self) -> u32 {
+    pub fn count(&self) -> u32 {
         self.range.end() - self.range.start() + 1
     }
 
@@ -114,7 +101,7 @@ impl Frames {
     ) -> Result<(), Error> {
         for (done, frame) in (0..).zip(self.range.clone()) {
             let (shot, place) = (self.shot(shot, frame), (done, self.count()));
-            let picture = progress.render(place, backend, &shot, self.background).await?;
+            let picture = progress.render(place, backend, &shot, self.format).await?;
             let picture = picture.ok_or_else(|| stopped(done))?;
             take(frame, picture)?;
         }
@@ -127,7 +114,7 @@ fn stopped(path: &Path, what: String) -> Error {
 }
 
 /// Error of a single output file, which is not written if the work is stopped.
-fn stopped_before_writing(path: &Path, done: u32, count: u32) -> Error {
+pub fn stopped_before_writing(path: &Path, done: u32, count: u32) -> Error {
     stopped(path, format!("not written; {done} of {count} images were rendered"))
 }
 
@@ -175,14 +162,11 @@ pub async fn render_flipbook(
 ) -> Result<DynamicImage, Error> {
     let columns = cells.y;
     let size = shot.size * UVec2::new(columns, cells.x);
-    let mut sheet = match frames.background {
-        Background::Scene => DynamicImage::new_rgb8(size.x, size.y),
-        Background::Transparent => DynamicImage::new_rgba8(size.x, size.y),
-    };
+    let mut sheet = frames.format.blank(shot, size);
     let mut index = 0;
     let place = |_, picture: DynamicImage| {
         let corner = UVec2::new(index % columns, index / columns) * shot.size;
-        imageops::replace(&mut sheet, &picture, i64::from(corner.x), i64::from(corner.y));
+        image_format::place(&mut sheet, &picture, corner);
         index += 1;
         Ok(())
     };
@@ -221,6 +205,10 @@ pub async fn write_gif(
     write_file(path, &bytes)
 }
 
+/// Images on labelled sheets, and frames of a GIF, which has no partial opacity.
+pub const SCENE: ImageFormat =
+    ImageFormat { background: Background::Scene, alpha: Alpha::Straight, bits: BitDepth::Eight };
+
 /// Most images on a labelled sheet.
 pub const MAX_SHEET_CELLS: usize = 64;
 
@@ -236,7 +224,7 @@ pub async fn render_sheet(
     let size = cells.first().map_or(UVec2::ONE, |(_, shot)| shot.size);
     let mut sheet = ContactSheet::new(size, columns, count);
     for (index, (label, shot)) in (0..).zip(cells) {
-        let picture = progress.render((index, count), backend, shot, Background::Scene).await?;
+        let picture = progress.render((index, count), backend, shot, SCENE).await?;
         let picture = picture.ok_or_else(|| stopped_before_writing(path, index, count))?;
         sheet.place(index, label, &picture.into_rgb8());
     }

@@ -13,6 +13,7 @@ mod command_line;
 mod commands;
 mod contact_sheet;
 mod debug_view_sheet;
+mod engine;
 #[cfg(not(target_arch = "wasm32"))]
 mod exr_export;
 mod file_kind;
@@ -22,12 +23,17 @@ mod file_watcher;
 mod findings;
 #[cfg(not(target_arch = "wasm32"))]
 mod flip;
+#[cfg(not(target_arch = "wasm32"))]
+mod flipbook_export;
 mod frame_range;
 #[cfg(not(target_arch = "wasm32"))]
 mod frame_timer;
 mod image_export;
+mod image_format;
 mod inputs;
 mod interrupt;
+#[cfg(not(target_arch = "wasm32"))]
+mod material_export;
 #[cfg(not(target_arch = "wasm32"))]
 mod medium_options;
 mod memory_check;
@@ -46,6 +52,8 @@ mod puff_sheet;
 mod recipe_files;
 mod share_link;
 mod smoke_alone;
+#[cfg(not(target_arch = "wasm32"))]
+mod smoke_layers;
 mod sprite_by_name;
 #[cfg(not(target_arch = "wasm32"))]
 mod startup;

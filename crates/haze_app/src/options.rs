@@ -124,6 +124,12 @@ impl ShotArguments {
 
     /// Like [`Self::load`], with `outputs` in place of `--output`; their names end in `kind`.
     pub fn load_for(&self, outputs: &[(&str, PathBuf)], kind: &str) -> Result<Shot, Error> {
+        let outputs: Vec<_> = outputs.iter().map(|(option, path)| (*option, path.clone(), kind)).collect();
+        self.load_outputs(&outputs)
+    }
+
+    /// Like [`Self::load_for`], with the ending of each output.
+    pub fn load_outputs(&self, outputs: &[(&str, PathBuf, &str)]) -> Result<Shot, Error> {
         let mut preset = Preset::load(&self.preset)?;
         for system in &mut preset.systems {
             system.emitter.seed = self.seed.unwrap_or(system.emitter.seed);
@@ -138,7 +144,7 @@ impl ShotArguments {
         let shot = self.shot(preset)?;
         let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
         let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
-        outputs.iter().try_for_each(|(option, path)| files.check_output(option, path, kind))?;
+        outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))?;
         Ok(shot)
     }
 

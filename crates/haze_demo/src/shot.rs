@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 
+use super::particle_scalar::ShownScalar;
 use super::scene::Scene;
 use super::shadow_views::{ShadowView, shadow_views};
 use haze::assets::material_assets::MaterialAssets;
@@ -36,6 +37,8 @@ pub struct Shot {
     pub materials: Vec<MaterialAssets>,
     /// Particle files, one entry per system. `None` if the system uses its emitter.
     pub caches: Vec<Option<ParticleFrames>>,
+    /// Number that takes the place of the particles' tints; see [`Shot::showing`].
+    pub shown_scalar: Option<ShownScalar>,
 }
 
 impl Shot {
@@ -67,7 +70,7 @@ impl Shot {
             fits.map_err(|error| Error::JsonField { path: path.into(), error })?;
         }
         let caches = load_particle_files(&preset, path, folders)?;
-        Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches })
+        Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches, shown_scalar: None })
     }
 
     /// True if both give the same image before tonemapping; exposure is ignored. Cheap: images and particles from files
@@ -80,7 +83,7 @@ impl Shot {
             preset == self.preset
         };
         let has_same_exposure = self.preset.camera.exposure.to_bits() == other.preset.camera.exposure.to_bits();
-        (self.size, self.debug_view) == (other.size, other.debug_view)
+        (self.size, self.debug_view, self.shown_scalar) == (other.size, other.debug_view, other.shown_scalar)
             && (self.preset == other.preset || !has_same_exposure && differs_only_in_exposure())
             && self.materials.len() == other.materials.len()
             && self.materials.iter().zip(&other.materials).all(shares)
@@ -135,7 +138,7 @@ impl Shot {
     pub(super) fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
         self.each_system(|system, cache| {
             let mut particles = Vec::new();
-            particle_files::particles(system, cache, self.preset.time, &mut particles);
+            self.evaluate(system, cache, &mut particles);
             particles
         })
     }
@@ -144,13 +147,39 @@ impl Shot {
     /// evaluated here but on the GPU.
     pub(super) fn sources(&self) -> Vec<(ParticleSource, Settings)> {
         self.each_system(|system, cache| match particle_files::emission(system, cache, self.preset.time) {
-            Some(emission) if emission.count() > MAX_CPU_BIRTHS => ParticleSource::EmitterSnapshot(Box::new(emission)),
+            Some(emission) if emission.count() > MAX_CPU_BIRTHS && self.shown_scalar.is_none() => {
+                ParticleSource::EmitterSnapshot(Box::new(emission))
+            }
             _ => {
                 let mut particles = Vec::new();
-                particle_files::particles(system, cache, self.preset.time, &mut particles);
+                self.evaluate(system, cache, &mut particles);
                 ParticleSource::Particles(particles)
             }
         })
+    }
+
+    fn evaluate(&self, system: &PresetSystem, cache: Option<&ParticleFrames>, particles: &mut Vec<Particle>) {
+        particle_files::particles(system, cache, self.preset.time, particles);
+        if let Some(shown) = &self.shown_scalar {
+            let displacements = self.displacements(system, cache, particles, shown.scalar.seconds());
+            shown.apply(particles, &displacements, &self.preset.camera.view(self.size));
+        }
+    }
+
+    /// Ways of the particles of a system in the next `seconds`, metres. Those of files follow their velocities.
+    pub(super) fn displacements(
+        &self,
+        system: &PresetSystem,
+        cache: Option<&ParticleFrames>,
+        particles: &[Particle],
+        seconds: f32,
+    ) -> Vec<Vec3> {
+        if cache.is_some() && system.cache.is_used() {
+            return particles.iter().map(|particle| particle.velocity * seconds).collect();
+        }
+        let mut displacements = Vec::new();
+        system.emitter.displacements(self.preset.time, seconds, &mut displacements);
+        displacements
     }
 
     fn each_system<T>(&self, source: impl Fn(&PresetSystem, Option<&ParticleFrames>) -> T) -> Vec<(T, Settings)> {

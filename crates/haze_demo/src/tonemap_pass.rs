@@ -12,29 +12,35 @@ use haze::shader;
 /// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colors, unchanged values for
 /// data.
 pub fn tonemap(image: &Image<Vec4>, shot: &Shot) -> RgbImage {
-    let exposure = exposure(shot);
     let mut rounded = Image::new(image.size, [0_u8; 3]);
-    rounded.for_each(|at, out| {
-        let color = image.load(at.as_ivec2()).xyz();
-        *out = quantise(if exposure == 0.0 { color } else { tonemapped(color, exposure) }, at);
-    });
+    let encoded = encoded(image, shot);
+    rounded.for_each(|at, out| *out = quantise(encoded.load(at.as_ivec2()).xyz(), at));
     // Never the default: there is one texel per pixel.
     RgbImage::from_raw(image.size.x, image.size.y, rounded.texels.into_flattened()).unwrap_or_default()
 }
 
-/// Converts smoke on a transparent background to 8-bit sRGB as [`tonemap`] does, not premultiplied, with the opacity in alpha.
-/// `smoke` is linear and premultiplied.
-pub fn tonemap_straight(smoke: &Image<Vec4>, shot: &Shot) -> RgbaImage {
+/// As [`tonemap`], but not rounded. Alpha stays.
+pub fn encoded(image: &Image<Vec4>, shot: &Shot) -> Image<Vec4> {
     let exposure = exposure(shot);
-    let mut rounded = Image::new(smoke.size, [0_u8; 4]);
+    let encode = |color: Vec3| if exposure == 0.0 { color } else { tonemapped(color, exposure) };
+    let mut encoded = Image::new(image.size, Vec4::ZERO);
+    encoded.for_each(|at, out| {
+        let texel = image.load(at.as_ivec2());
+        *out = encode(texel.xyz()).extend(texel.w);
+    });
+    encoded
+}
+
+/// Rounds an encoded image with alpha to 8 bits, with dithering.
+pub fn rgba8(encoded: &Image<Vec4>) -> RgbaImage {
+    let mut rounded = Image::new(encoded.size, [0_u8; 4]);
     rounded.for_each(|at, out| {
-        let texel = smoke.load(at.as_ivec2());
-        let color = texel.xyz() / texel.w.max(1.0e-4);
-        let [r, g, b] = quantise(if exposure == 0.0 { color } else { tonemapped(color, exposure) }, at);
+        let texel = encoded.load(at.as_ivec2());
+        let [r, g, b] = quantise(texel.xyz(), at);
         *out = [r, g, b, (texel.w * 255.0 + 0.5) as u8];
     });
     // Never the default: there is one texel per pixel.
-    RgbaImage::from_raw(smoke.size.x, smoke.size.y, rounded.texels.into_flattened()).unwrap_or_default()
+    RgbaImage::from_raw(encoded.size.x, encoded.size.y, rounded.texels.into_flattened()).unwrap_or_default()
 }
 
 /// Returns the exposure factor of a shot; 0 if its debug view shows data.

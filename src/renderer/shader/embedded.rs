@@ -70,6 +70,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/order.wgsl",
     "lib/particle.wgsl",
     "lib/ramp.wgsl",
+    "lib/response.wgsl",
     "lib/scan.wgsl",
     "lib/scene_shadow.wgsl",
     "lib/screen_shadow.wgsl",

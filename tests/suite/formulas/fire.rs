@@ -51,9 +51,8 @@ pub fn formulas() -> Vec<Formula> {
             cases: random(100, &[SHARE, SHARE, SHARE]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("coverage(amount * fire.y, system.boost)", "coverage(amount, system.boost)"),
-                ("system.fire_intensity * fire.y", "system.fire_intensity"),
-                ("vec2f(fire.x,", "vec2f(fire.y,"),
+                ("amount, system.boost) * system.fire_intensity", "amount, system.boost)"),
+                ("amount, system.boost)", "amount, 1.0)"),
             ],
         },
     ]

@@ -257,13 +257,10 @@ fn diffuse() -> Vec<Formula> {
             mutants: &[
                 ("lights[i].color * light.attenuation * shadow;", "lights[i].color * shadow;"),
                 ("lights[i].color * light.attenuation * shadow;", "lights[i].color * light.attenuation;"),
+                ("light.direction, covered, against", "light.direction, 0.5, against"),
                 (
-                    "diffuse_coordinate(normal, light.direction), covered",
-                    "diffuse_coordinate(normal, light.direction), 0.5",
-                ),
-                (
-                    "for (var i = 0u; i < system.light_count; i++) {\n        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);\n        let light = sample_light(lights[i], position);\n        let at",
-                    "for (var i = 0u; i < 1u; i++) {\n        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);\n        let light = sample_light(lights[i], position);\n        let at",
+                    "for (var i = 0u; i < system.light_count; i++) {\n        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);\n        let light = sample_light(lights[i], position);\n        let against",
+                    "for (var i = 0u; i < 1u; i++) {\n        of_block = shade_of_block(lights[i].shadow_slot, shade, of_block);\n        let light = sample_light(lights[i], position);\n        let against",
                 ),
             ],
         },
@@ -378,10 +375,7 @@ fn diffuse() -> Vec<Formula> {
             cases: with_choices(count(SoftScatterMode::ALL), &[(0.0, 1.0)]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                (
-                    "mix(system.scatter_color, system.ambient_color, weight)",
-                    "mix(system.ambient_color, system.scatter_color, weight)",
-                ),
+                ("system.scatter_color, system.ambient_color,", "system.ambient_color, system.scatter_color,"),
                 ("linear_sampler, amount) * system.soft_scatter_intensity", "linear_sampler, amount)"),
             ],
         },

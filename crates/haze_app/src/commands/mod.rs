@@ -1,5 +1,6 @@
 //! Subcommands of the program, one file each under the name of the subcommand.
 
+pub mod export;
 pub mod info;
 pub mod preset;
 pub mod ramp;

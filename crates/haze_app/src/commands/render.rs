@@ -11,11 +11,10 @@ use pollster::block_on;
 
 use crate::exr_export;
 use crate::frame_range::{FrameNames, parse_frames, parse_rate, parse_sheet};
-use crate::image_export::{self, Background, ExportProgress, Frames};
-use crate::interrupt;
+use crate::image_export::{self, ExportProgress, Frames, SCENE};
+use crate::image_format::{Alpha, Background, BitDepth, ImageFormat};
 use crate::options::{ShotArguments, choices};
 use crate::output::print_line;
-use crate::progress::with_progress;
 use crate::recipe_files::has_extension;
 
 #[derive(Args)]
@@ -35,25 +34,31 @@ pub struct Arguments {
     /// Put all frames on one sheet of R rows and C columns, a flipbook; --size is the size of a frame.
     #[arg(long, value_name = "RxC", value_parser = parse_sheet, requires = "frames")]
     sheet: Option<UVec2>,
-    /// Leave the scene out: the smoke alone, with its opacity in alpha. PNG is not premultiplied; a name that ends in .exr is
-    /// linear, premultiplied, and has layers for amount and normals.
-    #[arg(long)]
+    /// Background of the image: `auto` leaves it out if the scene is `empty`. Without it, the smoke is alone, with its
+    /// opacity in alpha; a name that ends in .exr is linear, premultiplied, and has layers.
+    #[arg(long, value_enum, default_value_t)]
+    background: Background,
+    /// The same as `--background transparent`.
+    #[arg(long, conflicts_with = "background")]
     transparent: bool,
+    /// Color of a PNG without background: the smoke's own, or multiplied by alpha.
+    #[arg(long, value_enum, default_value_t)]
+    alpha: Alpha,
+    /// Bits per channel of a PNG.
+    #[arg(long, value_enum, default_value_t)]
+    bits: BitDepth,
 }
+
+/// Frames per second if none are given.
+const USUAL_RATE: f32 = 60.0;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let is_gif = has_extension(&arguments.shot.output, "gif");
     let frames = arguments.frames.clone().map(|range| {
-        let usual = if is_gif { 25.0 } else { 60.0 };
-        Frames { range, rate: arguments.rate.unwrap_or(usual), background: arguments.background() }
+        let usual = if is_gif { 25.0 } else { USUAL_RATE };
+        Frames { range, rate: arguments.rate.unwrap_or(usual), format: arguments.format() }
     });
-    if is_gif && arguments.transparent {
-        return Err(FieldError::from_problem("--transparent", "a GIF has no partial opacity", "a PNG or EXR").into());
-    }
-    if arguments.transparent && arguments.view != DebugView::Final {
-        let problem = format!("--view {} shows no scene", arguments.view.name());
-        return Err(FieldError::from_problem("--transparent", problem, "--view final").into());
-    }
+    arguments.check_format(is_gif)?;
     match (&frames, arguments.sheet) {
         (Some(frames), None) if is_gif => gif(arguments, frames),
         (Some(frames), None) => sequence(arguments, frames),
@@ -63,8 +68,31 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 }
 
 impl Arguments {
-    fn background(&self) -> Background {
-        if self.transparent { Background::Transparent } else { Background::Scene }
+    fn format(&self) -> ImageFormat {
+        let background = if self.transparent { Background::Transparent } else { self.background };
+        ImageFormat { background, alpha: self.alpha, bits: self.bits }
+    }
+
+    /// Refuses choices that the kind of file or the view does not have.
+    fn check_format(&self, is_gif: bool) -> Result<(), FieldError> {
+        let format = self.format();
+        let option = if self.transparent { "--transparent" } else { "--background" };
+        if format.background == Background::Transparent && is_gif {
+            return Err(FieldError::from_problem(option, "a GIF has no partial opacity", "a PNG or EXR"));
+        }
+        if format.background == Background::Transparent && self.view != DebugView::Final {
+            let problem = format!("--view {} shows no scene", self.view.name());
+            return Err(FieldError::from_problem(option, problem, "--view final"));
+        }
+        if format.bits == BitDepth::Sixteen && (is_gif || self.kind() == "exr") {
+            let problem = format!("{} is no PNG", self.shot.output.display());
+            return Err(FieldError::from_problem("--bits", problem, "a name that ends in .png"));
+        }
+        if format.alpha == Alpha::Premultiplied && (is_gif || self.kind() == "exr") {
+            let problem = format!("{} is no PNG", self.shot.output.display());
+            return Err(FieldError::from_problem("--alpha", problem, "a name that ends in .png; EXR is premultiplied"));
+        }
+        Ok(())
     }
 
     /// Returns the kind of file to write.
@@ -79,10 +107,10 @@ fn image(arguments: &Arguments) -> Result<(), Error> {
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, arguments.kind())? };
     let backend = arguments.shot.run.backend()?;
     if arguments.kind() == "exr" {
-        exr_export::write(&backend, &shot, arguments.background(), path)?;
+        block_on(exr_export::write(&backend, &shot, arguments.format().background, 1.0 / USUAL_RATE, path))?;
         return print_line!("{}: {} on {}", path.display(), shot.preset.name, backend.description());
     }
-    let one = Frames { range: 0..=0, rate: 1.0, background: arguments.background() };
+    let one = Frames { range: 0..=0, rate: 1.0, format: arguments.format() };
     let progress = ExportProgress::Callback(&|_, _| true);
     let picture = block_on(image_export::render_flipbook(&backend, &shot, &one, UVec2::ONE, path, &progress))?;
     arguments.shot.write(picture, &shot, &backend)
@@ -95,15 +123,7 @@ fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     let backend = arguments.shot.run.backend()?;
     let (effort, progress) = (arguments.shot.effort(), ExportProgress::terminal());
     if arguments.kind() == "exr" {
-        for (done, frame) in (0..).zip(frames.range.clone()) {
-            if interrupt::is_requested() {
-                return Err(frames.stopped_sequence(&names, done));
-            }
-            let (shot, path) = (frames.shot(&shot, frame), names.of(frame));
-            with_progress(format!("haze: {}", path.display()), || {
-                exr_export::write(&backend, &shot, frames.background, &path)
-            })?;
-        }
+        block_on(exr_export::write_sequence(&backend, &shot, frames, &names, &progress))?;
     } else {
         block_on(image_export::write_sequence(&backend, &shot, frames, &names, effort, &progress))?;
     }
@@ -125,6 +145,8 @@ fn gif(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
         let expected = format!("at most {} frames per second for a GIF", image_export::MAX_GIF_RATE);
         return Err(FieldError::new("--rate", frames.rate, expected).into());
     }
+    // An empty scene shows its sky.
+    let frames = &Frames { range: frames.range.clone(), rate: frames.rate, format: SCENE };
     let path = &arguments.shot.output;
     let outputs = [("--output", path.clone())];
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, "gif")? };

@@ -6,6 +6,8 @@
 mod bench;
 #[path = "cli/drivers.rs"]
 mod drivers;
+#[path = "cli/exports.rs"]
+mod exports;
 #[cfg(target_os = "linux")]
 #[path = "cli/limits.rs"]
 mod limits;

@@ -12,10 +12,9 @@ use haze::formula::ambient::{hemisphere_coordinate, openness_position, six_way_h
 use haze::formula::color::bounded_light;
 use haze::formula::depth_moments::{DEPTH_SAMPLES, depth_of_sample};
 use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
-use haze::formula::lighting::{
-    backlight_weight, coverage, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
-};
+use haze::formula::lighting::{backlight_weight, coverage, direction_to_viewer, sample_light};
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
 use haze::formula::saturate;
 use haze::formula::shadow::{
     LIGHT_BLOCKS, block_of_slot, foreign_optical_depths, of_slot, own_at_mean_depth, shadow_position,
@@ -127,14 +126,11 @@ impl VisibleSystem<'_> {
         shade: &Shade,
     ) -> Vec3 {
         let sample = sample_light(light, position);
-        let at = Vec2::new(diffuse_coordinate(normal, sample.direction), covered);
-        let look_up = |ramp| sample_ramp_2d(ramp, self.settings.ramp_filter, at);
-        let mut falloff = look_up(&self.material.diffuse_ramp);
-        let backlight = self.backlight_share(sample.direction, position);
-        if backlight > 0.0 {
-            falloff = falloff.lerp(look_up(&self.material.backlight_ramp), backlight);
-        }
-        falloff * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, shade)
+        let ramps = [&self.material.diffuse_ramp, &self.material.backlight_ramp];
+        let against = self.backlight_share(sample.direction, position);
+        let filter = self.settings.ramp_filter;
+        let response = diffuse_response(ramps, filter, (normal, sample.direction), covered, against);
+        response * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, shade)
     }
 
     /// Share of the backlight ramp in a light, 0 to 1; the rest comes from the diffuse ramp.
@@ -189,9 +185,8 @@ impl VisibleSystem<'_> {
     /// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from
     /// [`fire_from_moments`](haze::formula::fire::fire_from_moments).
     pub fn emission(&self, fire: Vec2, amount: f32) -> Vec3 {
-        let system = &self.system;
-        let at = self.fire_place(fire, amount);
-        sample_ramp_2d(&self.material.fire_ramp, self.settings.ramp_filter, at) * (system.fire_intensity * fire.y)
+        let (system, ramp) = (&self.system, &self.material.fire_ramp);
+        fire_response(ramp, self.settings.ramp_filter, fire, amount, system.boost) * system.fire_intensity
     }
 
     /// Even backlight of smoke by its amount.
@@ -199,10 +194,13 @@ impl VisibleSystem<'_> {
         let system = &self.system;
         let color = match self.settings.soft_scatter.mode {
             SoftScatterMode::Ramp => self.sample_ramp(&self.material.soft_scatter_ramp, amount),
-            SoftScatterMode::Smoothstep => {
-                let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
-                system.scatter_color.lerp(system.ambient_color, weight)
-            }
+            SoftScatterMode::Smoothstep => soft_scatter_curve(
+                amount,
+                system.scatter_color,
+                system.ambient_color,
+                system.scatter_amount,
+                system.scatter_smooth,
+            ),
         };
         color * system.soft_scatter_intensity
     }

@@ -18,7 +18,7 @@ use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
-use crate::tweak::platform::render_job::{Background, ExportProgress, Frames};
+use crate::tweak::platform::render_job::{Engine, ExportProgress, Frames, ImageFormat, SCENE};
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::platform::{IS_PAGE, file_io, render_job};
 use crate::tweak::session::Session;
@@ -31,6 +31,8 @@ pub enum ExportKind {
     Sequence,
     Flipbook,
     Gif,
+    /// Ramps and lighting formula of the selected system, for an engine. Not on a page.
+    Material,
     DebugView,
     /// Sheet of nine seeds.
     Seeds,
@@ -45,15 +47,34 @@ impl ExportKind {
     }
 
     /// Returns what the name of the file says about its content, and the ending.
-    fn file_ending(&self) -> (&str, &'static str) {
+    fn file_ending(&self, file: FileKind) -> (&str, &'static str) {
         match self {
-            Self::Image => ("", ".png"),
+            Self::Image => ("", file.ending()),
             Self::Sequence => ("frames", ""),
             Self::Flipbook => ("flipbook", ".png"),
             Self::Gif => ("", ".gif"),
+            Self::Material => ("material", ""),
             Self::DebugView => ("debug_views", ".png"),
             Self::Seeds => ("seeds", ".png"),
             Self::Values(path) => (path.rsplit('.').next().unwrap_or(path), ".png"),
+        }
+    }
+}
+
+/// Kind of the files of images and sequences.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FileKind {
+    #[default]
+    Png,
+    /// Not on a page.
+    Exr,
+}
+
+impl FileKind {
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Png => ".png",
+            Self::Exr => ".exr",
         }
     }
 }
@@ -69,13 +90,27 @@ pub struct ExportOptions {
     pub rate: f32,
     /// Rows (`x`) and columns (`y`) of a flipbook.
     pub cells: UVec2,
-    pub background: Background,
+    pub file: FileKind,
+    pub format: ImageFormat,
+    /// Of a material.
+    pub engine: Engine,
+    /// System of a material. The selected one, when the export begins.
+    pub system: usize,
 }
 
 impl Default for ExportOptions {
     fn default() -> Self {
-        let background = Background::Scene;
-        Self { size: UVec2::new(1280, 720), first: 0, last: 31, rate: 25.0, cells: UVec2::new(4, 8), background }
+        Self {
+            size: UVec2::new(1280, 720),
+            first: 0,
+            last: 31,
+            rate: 25.0,
+            cells: UVec2::new(4, 8),
+            file: FileKind::default(),
+            format: ImageFormat::default(),
+            engine: Engine::default(),
+            system: 0,
+        }
     }
 }
 
@@ -187,7 +222,7 @@ impl ExportJob {
             (Waiting::Sheet, Some(sheet)) => &sheet.kind,
             (Waiting::Sheet, None) => return,
         };
-        let suggested = free_path(self.folder.as_deref(), session, kind);
+        let suggested = free_path(self.folder.as_deref(), session, kind.file_ending(self.options.file));
         self.waiting = Some(waiting);
         if IS_PAGE {
             self.answer(Some(suggested), session);
@@ -207,7 +242,7 @@ impl ExportJob {
         self.folder = path.parent().map(Path::to_owned);
         match waiting {
             Waiting::Export(kind) => {
-                let path = with_ending(path, kind.file_ending().1);
+                let path = with_ending(path, kind.file_ending(self.options.file).1);
                 self.begin(kind, path, session);
             }
             Waiting::Sheet => {
@@ -229,6 +264,7 @@ impl ExportJob {
         let target = Target { path, title: session.document.title() };
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
+        self.options.system = session.view.system;
         let (options, shaders) = (self.options.clone(), session.shaders.clone());
         self.worker.submit_async(async move |ticket: Ticket| {
             let go_on = |done, count| {
@@ -274,12 +310,11 @@ struct Target {
 
 /// Returns a path that does not exist yet: in the folder of the last export or of the document, with the name of the
 /// document and the time.
-fn free_path(folder: Option<&Path>, session: &Session, kind: &ExportKind) -> PathBuf {
+fn free_path(folder: Option<&Path>, session: &Session, (what, end): (&str, &str)) -> PathBuf {
     let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
     let title: String = session.document.title().chars().map(plain).take(60).collect();
     let stem = format!("{title}_{:.2}s", session.playback.time);
     let folder = folder.or(session.document.path().parent()).unwrap_or(Path::new(""));
-    let (what, end) = kind.file_ending();
     let what = if what.is_empty() { String::new() } else { format!("_{what}") };
     let name = |number| match number {
         1 => format!("{stem}{what}{end}"),
@@ -311,17 +346,25 @@ async fn make(
     Target { path, title }: &Target,
     watch: &ExportProgress<'_>,
 ) -> Result<ExportResult, Error> {
-    let background = options.background;
-    let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate, background };
+    let format = options.format;
+    let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate, format };
     let cells = match &product {
+        ExportKind::Image if options.file == FileKind::Exr => {
+            render_job::write_exr(backend, shot, format.background, 1.0 / options.rate, path).await?;
+            return Ok(ExportResult::Written(path.clone()));
+        }
         ExportKind::Image => {
-            let one = Frames { range: 0..=0, rate: 1.0, background };
+            let one = Frames { range: 0..=0, rate: 1.0, format };
             let picture = render_job::render_flipbook(backend, shot, &one, UVec2::ONE, path, watch).await?;
             return write(path.clone(), picture);
         }
         ExportKind::Sequence => {
             file_io::make_folder(path)?;
-            let names = FrameNames::parse(&path.join("%04d.png"))?;
+            let names = FrameNames::parse(&path.join(format!("%04d{}", options.file.ending())))?;
+            if options.file == FileKind::Exr {
+                render_job::write_exr_sequence(backend, shot, &frames, &names, watch).await?;
+                return Ok(ExportResult::Written(path.clone()));
+            }
             render_job::write_sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch).await?;
             return Ok(ExportResult::Written(path.clone()));
         }
@@ -331,9 +374,12 @@ async fn make(
             return write(path.clone(), picture);
         }
         ExportKind::Gif => {
-            // A GIF has no partial opacity.
-            let frames = Frames { background: Background::Scene, ..frames };
+            let frames = Frames { format: SCENE, ..frames };
             render_job::write_gif(backend, shot, &frames, path, watch).await?;
+            return Ok(ExportResult::Written(path.clone()));
+        }
+        ExportKind::Material => {
+            render_job::write_material(shot, options.system, options.engine, path)?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::DebugView => debug_view_sheet::stages(shot),
@@ -346,7 +392,7 @@ async fn make(
             cells
         }
     };
-    let name = product.file_ending().0.to_owned();
+    let name = product.file_ending(FileKind::Png).0.to_owned();
     let columns = render_job::column_count(cells.len());
     let size = (shot.size / columns).max(UVec2::ONE);
     let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });

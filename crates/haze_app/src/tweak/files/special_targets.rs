@@ -26,7 +26,7 @@ use crate::tweak::document::{Document, ramp_edits};
 use crate::tweak::platform::file_io::CompressionEffort;
 use crate::tweak::platform::json_store;
 use crate::tweak::platform::lock_file::Lock;
-use crate::tweak::platform::render_job::{Background, ExportProgress, Frames, write_gif, write_sequence};
+use crate::tweak::platform::render_job::{ExportProgress, Frames, SCENE, write_gif, write_sequence};
 
 /// Origin of a file's name.
 #[derive(Clone, Copy, PartialEq)]
@@ -114,7 +114,7 @@ fn copy(path: &Path) -> Result<(), Error> {
 }
 
 fn frames() -> Frames {
-    Frames { range: 0..=0, rate: 1.0, background: Background::Scene }
+    Frames { range: 0..=0, rate: 1.0, format: SCENE }
 }
 
 fn sequence(path: &Path) -> Result<(), Error> {

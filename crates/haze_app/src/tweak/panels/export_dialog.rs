@@ -2,9 +2,10 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::tweak::files::export_job::{ExportJob, ExportKind, MAX_PIXELS, Sheet};
+use crate::tweak::files::export_job::{ExportJob, ExportKind, FileKind, MAX_PIXELS, Sheet};
+use crate::tweak::platform::IS_PAGE;
 use crate::tweak::platform::clock::Duration;
-use crate::tweak::platform::render_job::Background;
+use crate::tweak::platform::render_job::{Alpha, Background, BitDepth, Engine};
 use crate::tweak::session::Session;
 use crate::tweak::session::setting_search::matches;
 
@@ -39,13 +40,42 @@ pub fn panel(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
 }
 
 const BACKGROUNDS: [(&str, Background, &str); 2] = [
-    ("Scene", Background::Scene, "The scene of the preset"),
+    ("Scene", Background::Auto, "The scene of the preset; transparent if that is empty"),
+    ("Transparent", Background::Transparent, "The smoke alone, with its opacity in the alpha channel"),
+];
+
+const ALPHAS: [(&str, Alpha, &str); 2] = [
+    ("Straight", Alpha::Straight, "The smoke's own color, not multiplied by alpha"),
+    ("Premultiplied", Alpha::Premultiplied, "The smoke as before black: keeps the glow of fire where alpha is low"),
+];
+
+const FILES: [(&str, (FileKind, BitDepth), &str); 3] = [
+    ("PNG", (FileKind::Png, BitDepth::Eight), "8 bits per channel, dithered"),
+    ("PNG 16", (FileKind::Png, BitDepth::Sixteen), "16 bits per channel"),
     (
-        "Transparent",
-        Background::Transparent,
-        "The smoke alone, with its opacity in the alpha channel, not premultiplied",
+        "EXR",
+        (FileKind::Exr, BitDepth::Eight),
+        "Linear half floats, premultiplied. Without background: layers for amount, normals, depth, motion and fire",
     ),
 ];
+
+const ENGINES: [(&str, Engine, &str); 4] = [
+    ("Unreal", Engine::Unreal, "Ramps, and HLSL for a Custom node"),
+    ("Unity", Engine::Unity, "Ramps, and HLSL for a Custom Function node of Shader Graph"),
+    ("Godot", Engine::Godot, "Ramps, and a spatial shader"),
+    ("WGSL", Engine::Wgsl, "Ramps, and functions for wgpu and Bevy"),
+];
+
+/// Draws a row of choices.
+fn choices<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, choices: &[(&str, T, &str)]) {
+    ui.label(name);
+    ui.horizontal(|ui| {
+        for (name, choice, tooltip) in choices {
+            ui.selectable_value(value, *choice, *name).on_hover_text(*tooltip);
+        }
+    });
+    ui.end_row();
+}
 
 fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     let values = match &export_job.product {
@@ -57,18 +87,24 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
         ("Sequence", ExportKind::Sequence),
         ("Flipbook", ExportKind::Flipbook),
         ("GIF", ExportKind::Gif),
+        ("Material", ExportKind::Material),
         ("Debug Views", ExportKind::DebugView),
         ("Nine Seeds", ExportKind::Seeds),
         ("Values of a Setting", ExportKind::Values(values)),
     ];
     ui.horizontal_wrapped(|ui| {
-        for (name, product) in products {
+        let is_offered = |product: &ExportKind| !IS_PAGE || *product != ExportKind::Material;
+        for (name, product) in products.into_iter().filter(|(_, product)| is_offered(product)) {
             ui.selectable_value(&mut export_job.product, product, name);
         }
     });
     let (product, options) = (&mut export_job.product, &mut export_job.options);
     let is_moving = matches!(product, ExportKind::Sequence | ExportKind::Flipbook | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
+        if *product == ExportKind::Material {
+            choices(ui, "Engine", &mut options.engine, &ENGINES);
+            return;
+        }
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
             let label = ui.label(name).id;
             ui.horizontal(|ui| {
@@ -91,14 +127,19 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
             ui.end_row();
         }
         if matches!(product, ExportKind::Image | ExportKind::Sequence | ExportKind::Flipbook) {
-            let label = ui.label("Background").id;
-            ui.horizontal(|ui| {
-                for (name, background, tooltip) in BACKGROUNDS {
-                    let choice = ui.selectable_value(&mut options.background, background, name);
-                    choice.on_hover_text(tooltip).labelled_by(label);
-                }
-            });
-            ui.end_row();
+            let has_exr = !IS_PAGE && *product != ExportKind::Flipbook;
+            let files = if has_exr { &FILES[..] } else { &FILES[..2] };
+            // A flipbook is one PNG.
+            let mut file = (if has_exr { options.file } else { FileKind::Png }, options.format.bits);
+            choices(ui, "File", &mut file, files);
+            if has_exr {
+                options.file = file.0;
+            }
+            options.format.bits = file.1;
+            choices(ui, "Background", &mut options.format.background, &BACKGROUNDS);
+            if file.0 == FileKind::Png && options.format.background == Background::Transparent {
+                choices(ui, "Alpha", &mut options.format.alpha, &ALPHAS);
+            }
         }
     });
     if let ExportKind::Values(path) = product {

@@ -1,17 +1,29 @@
 //! Renders and writes images as the command line does.
 
+use std::path::Path;
+
 use haze::Error;
+#[cfg(not(target_arch = "wasm32"))]
+use haze::FieldError;
 use haze::shader::Sources;
+use haze_demo::shot::Shot;
 
 use super::IS_PAGE;
+#[cfg(not(target_arch = "wasm32"))]
+use super::file_io::make_folder;
 use crate::backend::Backend;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::material_export::MaterialExport;
 #[cfg(target_arch = "wasm32")]
 use crate::page_renderer::PageRenderer;
 
 pub use crate::image_export::{
-    Background, ExportProgress, Frames, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
+    ExportProgress, Frames, SCENE, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
     write_sequence,
 };
+
+pub use crate::engine::Engine;
+pub use crate::image_format::{Alpha, Background, BitDepth, ImageFormat};
 
 /// Opens the renderer of exported images: the GPU, which on a page is that of the canvas.
 #[cfg(not(target_arch = "wasm32"))]
@@ -23,6 +35,45 @@ pub fn open_backend(sources: Option<&Sources>) -> Result<Backend, Error> {
 #[cfg(target_arch = "wasm32")]
 pub fn open_backend(_: Option<&Sources>) -> Result<Backend, Error> {
     Ok(Backend::Page(Box::new(PageRenderer::open()?)))
+}
+
+/// Writes an OpenEXR file; see `exr_export`.
+#[cfg(not(target_arch = "wasm32"))]
+pub use crate::exr_export::{write as write_exr, write_sequence as write_exr_sequence};
+
+/// A page offers no OpenEXR files.
+#[cfg(target_arch = "wasm32")]
+pub async fn write_exr(_: &Backend, _: &Shot, _: Background, _: f32, path: &Path) -> Result<(), Error> {
+    Err(Error::Io { path: path.into(), error: std::io::ErrorKind::Unsupported.into() })
+}
+
+/// A page offers no OpenEXR files.
+#[cfg(target_arch = "wasm32")]
+pub async fn write_exr_sequence(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    names: &crate::frame_range::FrameNames,
+    _: &ExportProgress<'_>,
+) -> Result<(), Error> {
+    write_exr(backend, shot, frames.format.background, 1.0, &names.of(0)).await
+}
+
+/// Writes the material of a system into a folder.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn write_material(shot: &Shot, system: usize, engine: Engine, folder: &Path) -> Result<(), Error> {
+    let Some((found, images)) = shot.preset.systems.get(system).zip(shot.materials.get(system)) else {
+        return Err(FieldError::new("export", "a material", "a preset with a system").into());
+    };
+    let export = MaterialExport::new(&shot.preset.name, (system, found), images, engine)?;
+    make_folder(folder)?;
+    export.write(folder)
+}
+
+/// A page offers no materials.
+#[cfg(target_arch = "wasm32")]
+pub fn write_material(_: &Shot, _: usize, _: Engine, folder: &Path) -> Result<(), Error> {
+    Err(Error::Io { path: folder.into(), error: std::io::ErrorKind::Unsupported.into() })
 }
 
 /// Opens the renderer of thumbnails: the CPU, so that the GPU is left to the viewport; on a page, the GPU.

@@ -193,7 +193,7 @@ impl Session {
         preset.time = self.playback.time;
         preset.lights = self.view.lights.shown(&preset.lights);
         let (materials, caches) = (self.materials(), self.particle_frames());
-        Shot { preset, size, debug_view: self.view.debug_view, materials, caches }
+        Shot { preset, size, debug_view: self.view.debug_view, materials, caches, shown_scalar: None }
     }
 
     /// Returns the images of every system, with edits.

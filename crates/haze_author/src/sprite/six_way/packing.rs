@@ -32,7 +32,7 @@ impl Packing {
     }
 
     /// Packs the six sides into two texels.
-    fn texels(self, SixWay { positive: p, negative: n }: SixWay) -> [Vec3; 2] {
+    pub fn texels(self, SixWay { positive: p, negative: n }: SixWay) -> [Vec3; 2] {
         match self {
             Self::Unity => [Vec3::new(p.x, p.y, n.z), Vec3::new(n.x, n.y, p.z)],
             Self::RltBbf => [Vec3::new(p.x, n.x, p.y), Vec3::new(n.y, n.z, p.z)],

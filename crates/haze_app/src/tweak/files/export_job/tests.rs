@@ -108,6 +108,48 @@ fn frames_are_written_as_sequence_flipbook_and_gif() {
 }
 
 #[test]
+fn files_and_alpha_are_chosen_in_the_dialog() {
+    let mut bench = bench();
+    bench.window.state_mut().export_job.product = ExportKind::Image;
+    bench.window.state_mut().export_job.is_open = true;
+    bench.window.run_steps(2);
+    let choose = |bench: &mut Bench, name: &str| {
+        bench.window.get_by_label(name).click();
+        bench.window.run_steps(2);
+    };
+    choose(&mut bench, "Transparent");
+    choose(&mut bench, "Premultiplied");
+    choose(&mut bench, "PNG 16");
+    let names = bench.make(ExportKind::Image);
+    let picture = haze::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
+    assert_eq!(picture.color(), image::ColorType::Rgba16);
+    let format = bench.window.state().export_job.options.format;
+    assert_eq!(format.alpha, render_job::Alpha::Premultiplied);
+    choose(&mut bench, "EXR");
+    assert!(bench.window.query_by_label("Premultiplied").is_none(), "EXR has no other");
+    let names = bench.make(ExportKind::Image);
+    let exr = names.iter().find(|name| name.ends_with(".exr")).unwrap();
+    assert!(fs::read(bench.folder.path().join(exr)).unwrap().starts_with(&[0x76, 0x2f, 0x31, 0x01]));
+    let names = bench.make(ExportKind::Sequence);
+    let folder = names.iter().find(|name| name.contains("frames")).unwrap();
+    let files = fs::read_dir(bench.folder.path().join(folder)).unwrap().map(|entry| entry.unwrap().path());
+    assert_eq!(files.filter(|file| file.extension().is_some_and(|ending| ending == "exr")).count(), 4);
+}
+
+#[test]
+fn the_material_of_the_selected_system_is_written() {
+    let mut bench = bench();
+    bench.window.state_mut().export_job.options.engine = Engine::Godot;
+    let names = bench.make(ExportKind::Material);
+    let folder = names.iter().find(|name| name.ends_with("_material")).unwrap();
+    let files = bench.folder.path().join(folder);
+    let text = fs::read_to_string(files.join("haze_material.gdshader")).unwrap();
+    let boost = bench.window.state().session.document.preset.systems[0].settings.boost;
+    assert!(text.contains(&format!("HAZE_BOOST = {boost:?};")), "{text}");
+    assert!(files.join("diffuse_ramp.png").is_file() && files.join("README.md").is_file());
+}
+
+#[test]
 fn a_long_export_shows_progress_and_stops_and_a_new_sheet_replaces_the_old() {
     let mut bench = bench();
     let seeds = |bench: &mut Bench, size: UVec2| {
@@ -200,7 +242,7 @@ fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
     bench.window.run_steps(2);
     bench.until(|window| window.export_job.sheet.is_some());
     let Sheet { kind, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
-    assert_eq!(kind.file_ending().0, "thickness");
+    assert_eq!(kind.file_ending(FileKind::Png).0, "thickness");
 }
 
 #[test]
@@ -224,7 +266,7 @@ fn the_button_beside_a_name_makes_a_sheet() {
         bench.window.run_steps(2);
         let window = bench.window.state();
         assert!(window.export_job.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
-        kind.file_ending().0.to_owned()
+        kind.file_ending(FileKind::Png).0.to_owned()
     };
     assert!(made("Look", "Thickness", "Five values side by side: Thickness").contains("thickness"));
     assert!(made("Advanced", "Coverage", "All values side by side: Coverage").contains("coverage"));

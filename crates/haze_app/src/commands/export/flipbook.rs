@@ -1,0 +1,64 @@
+//! `haze export flipbook`: sheets of color, normals, motion vectors, fire and six-way light, for an engine.
+
+use std::ops::RangeInclusive;
+
+use clap::Args;
+use glam::UVec2;
+use haze::Error;
+use pollster::block_on;
+
+use crate::engine::Engine;
+use crate::flipbook_export::{FILES, FlipbookExport, FlipbookOptions};
+use crate::frame_range::{parse_frames, parse_rate, parse_sheet};
+use crate::image_export::{ExportProgress, Frames, check_flipbook};
+use crate::image_format::ImageFormat;
+use crate::options::{ShotArguments, whole_number};
+use crate::output::print_line;
+
+#[derive(Args)]
+#[command(
+    mut_arg("size", |size| size.help("Size of a frame in pixels").default_value("256x256")),
+    mut_arg("output", |output| output.help("Folder to write into; it is made if it does not exist").value_name("FOLDER")),
+)]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// Engine to write for.
+    #[arg(long, value_enum)]
+    engine: Engine,
+    /// Frames A to B, both included. Frame 0 is at the preset's time, or at --time.
+    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
+    frames: RangeInclusive<u32>,
+    /// Frames per second.
+    #[arg(long, value_name = "N", value_parser = parse_rate, default_value = "24")]
+    rate: f32,
+    /// Rows and columns of the sheets.
+    #[arg(long, value_name = "RxC", value_parser = parse_sheet)]
+    sheet: UVec2,
+    /// Fade as many frames after the last into the first ones, so that the flipbook loops.
+    #[arg(long = "loop", value_name = "N", value_parser = whole_number(0..=1000), default_value = "0")]
+    loop_fade: u32,
+    /// Add two maps of the smoke's light from six sides.
+    #[arg(long)]
+    six_way: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let folder = &arguments.shot.output;
+    std::fs::create_dir_all(folder).map_err(|error| Error::Io { path: folder.into(), error })?;
+    let outputs = FILES.map(|name| ("--output", folder.join(name), name.rsplit('.').next().unwrap_or_default()));
+    let shot = arguments.shot.load_outputs(&outputs)?;
+    let frames = Frames { range: arguments.frames.clone(), rate: arguments.rate, format: ImageFormat::default() };
+    check_flipbook(shot.size, &frames, arguments.sheet)?;
+    let backend = arguments.shot.run.backend()?;
+    let options = FlipbookOptions {
+        engine: arguments.engine,
+        cells: arguments.sheet,
+        loop_fade: arguments.loop_fade,
+        has_six_way: arguments.six_way,
+    };
+    let progress = ExportProgress::terminal();
+    let export = block_on(FlipbookExport::render(&backend, &shot, &frames, options, &progress, folder))?;
+    export.write(folder, arguments.shot.effort())?;
+    export.files().try_for_each(|name| print_line!("{}", folder.join(name).display()))
+}

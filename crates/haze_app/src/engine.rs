@@ -1,0 +1,38 @@
+//! Engines that looks and images are exported for, and their conventions.
+
+use haze_author::sprite::six_way::Packing;
+
+/// Engine to export for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(not(target_arch = "wasm32"), derive(clap::ValueEnum))]
+pub enum Engine {
+    /// Unreal Engine.
+    #[default]
+    Unreal,
+    /// Unity.
+    Unity,
+    /// Godot 4.
+    Godot,
+    /// WGSL, for wgpu and Bevy.
+    Wgsl,
+}
+
+impl Engine {
+    /// Returns true if the first row of an image has the texture coordinate 0. Unity flips images when it imports them.
+    pub fn first_row_is_at_the_top(self) -> bool {
+        self != Self::Unity
+    }
+
+    /// Returns true if green of a normal map points up, as in OpenGL; in Unreal Engine it points down.
+    pub fn normals_point_up(self) -> bool {
+        self != Self::Unreal
+    }
+
+    /// Order of the sides in two maps of six-way light.
+    pub fn six_way_packing(self) -> Packing {
+        match self {
+            Self::Unity => Packing::Unity,
+            Self::Unreal | Self::Godot | Self::Wgsl => Packing::RltBbf,
+        }
+    }
+}

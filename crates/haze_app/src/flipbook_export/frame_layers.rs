@@ -1,0 +1,60 @@
+//! Layers of one frame of a flipbook.
+
+use glam::Vec4;
+use haze::Error;
+use haze::image::Image;
+use haze_demo::shot::Shot;
+
+use crate::backend::Backend;
+use crate::smoke_layers::SmokeLayers;
+
+/// Layers of one frame, all multiplied by the opacity of the smoke, which is in alpha.
+pub struct FrameLayers {
+    pub light: Image<Vec4>,
+    /// View space.
+    pub normals: Image<Vec4>,
+    /// Way until the next frame: x to the right, y up, shares of the frame's width and height.
+    pub motion: Image<Vec4>,
+    pub fire: Option<Image<Vec4>>,
+    /// From right, top and front; from left, bottom and back.
+    pub six_way: Option<[Image<Vec4>; 2]>,
+}
+
+impl FrameLayers {
+    /// `seconds`: time to the next frame.
+    pub async fn render(
+        backend: &Backend,
+        shot: &Shot,
+        seconds: f32,
+        burns: bool,
+        has_six_way: bool,
+    ) -> Result<Self, Error> {
+        let layers = SmokeLayers::new(backend, shot).await?;
+        let (width, height) = (shot.size.x as f32, shot.size.y as f32);
+        let mut motion = layers.motion(seconds).await?;
+        motion.texels.iter_mut().for_each(|texel| *texel /= Vec4::new(width, height, 1.0, 1.0));
+        Ok(Self {
+            normals: layers.normals().await?,
+            motion,
+            fire: if burns { Some(layers.fire().await?) } else { None },
+            six_way: if has_six_way { Some(layers.six_way().await?) } else { None },
+            light: layers.light,
+        })
+    }
+
+    /// Mixes two frames. `share`: of `other`, 0 to 1.
+    pub fn mixed(self, other: &Self, share: f32) -> Self {
+        let mix = |mut image: Image<Vec4>, other: &Image<Vec4>| {
+            let pairs = image.texels.iter_mut().zip(&other.texels);
+            pairs.for_each(|(texel, other)| *texel = texel.lerp(*other, share));
+            image
+        };
+        Self {
+            light: mix(self.light, &other.light),
+            normals: mix(self.normals, &other.normals),
+            motion: mix(self.motion, &other.motion),
+            fire: self.fire.zip(other.fire.as_ref()).map(|(fire, other)| mix(fire, other)),
+            six_way: self.six_way.zip(other.six_way.as_ref()).map(|([a, b], [c, d])| [mix(a, c), mix(b, d)]),
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Numbers that programs need to show a flipbook.
+
+/// Numbers of a flipbook, for programs: `flipbook.json`.
+#[derive(serde::Serialize)]
+#[cfg_attr(test, derive(serde::Deserialize))]
+pub struct FlipbookNumbers {
+    pub columns: u32,
+    pub rows: u32,
+    pub frames: u32,
+    /// Frames per second.
+    pub rate: f32,
+    /// Way that full red or green stands for, as a share of a frame's width or height.
+    pub motion_scale: f32,
+    /// Intensity of a light under which the six-way maps have the brightness of the preset's smoke; absent without them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub six_way_intensity: Option<f32>,
+}

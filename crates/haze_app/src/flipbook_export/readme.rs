@@ -1,0 +1,90 @@
+//! Page that goes with a flipbook: its files, and how to use them.
+
+use image::DynamicImage;
+
+use super::numbers::FlipbookNumbers;
+use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
+use crate::engine::Engine;
+
+pub fn readme(
+    engine: Engine,
+    title: &str,
+    numbers: &FlipbookNumbers,
+    images: &[(&'static str, DynamicImage)],
+) -> String {
+    let FlipbookNumbers { columns, rows, frames, rate, motion_scale, six_way_intensity } = numbers;
+    let mut text = format!(
+        "# {title}: flipbook\n\n{frames} frames in {columns} columns and {rows} rows, left to right, then down; {rate} frames \
+         per second. `flipbook.json` has the numbers.\n\n| file | color space | content |\n|---|---|---|\n",
+    );
+    let packing = match engine {
+        Engine::Unity => ["right, top, back", "left, bottom, front"],
+        _ => ["right, left, top", "bottom, back, front"],
+    };
+    let green = if engine.normals_point_up() { "up (OpenGL)" } else { "down (DirectX)" };
+    let motion_down = if engine.first_row_is_at_the_top() { "down" } else { "up" };
+    for (name, _) in images {
+        let (space, content) = match *name {
+            COLOR => ("sRGB", "light, exposed and tonemapped, **not premultiplied**; a: opacity".to_owned()),
+            NORMALS => ("linear", format!("n/2 + 1/2 in view space: right, {green}, to the viewer")),
+            MOTION => {
+                let half = "0.5 is rest, 0 and 1 the scale below";
+                ("linear", format!("rg: way until the next frame, right and {motion_down}; {half}"))
+            }
+            EMISSION => ("sRGB", "light of fire alone, which is in `color.png` too; to be added".to_owned()),
+            name if name == SIX_WAY[0] => ("linear", format!("light from {}; a: opacity", packing[0])),
+            _ => ("linear", format!("light from {}; a: opacity", packing[1])),
+        };
+        text += &format!("| `{name}` | {space} | {content} |\n");
+    }
+    text += &format!(
+        "\nClear texels continue the smoke beside them, so that filtered edges stay bright.\n\n**Motion**: full red or green is \
+         a way of {motion_scale:.5} of a frame's width or height. Between frames n and n + 1, at a share t of the time, mix both \
+         by t, the first sampled at uv − m·t and the second at uv + m·(1 − t), with m = (2·rg − 1) · {motion_scale:.5} of the \
+         respective frame, in coordinates of one frame.\n\n",
+    );
+    if let Some(intensity) = six_way_intensity {
+        text += &format!(
+            "**Six-way light**: white is {intensity:.3} of the light. Multiply by {intensity:.3}, and by the smoke's color, \
+             for the brightness of the preset.\n\n",
+        );
+    }
+    text + &steps(engine, numbers)
+}
+
+fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
+    let FlipbookNumbers { columns, rows, frames, rate, motion_scale, .. } = numbers;
+    match engine {
+        Engine::Unreal => format!(
+            "## In Unreal Engine\n\n\
+             1. Import the sheets: *sRGB* on for `color.png` and `emission.png`, off for all others; *Compression Settings* \
+             `Normalmap` for `normals.png`, `BC7` or `VectorDisplacementmap` for `motion.png`.\n\
+             2. In Niagara, *Sub Image Size* {columns} × {rows} in the sprite renderer, *Sub UV Animation* with {frames} frames \
+             at {rate} per second, *Sub UV Blending* on.\n\
+             3. In the material, *Particle Sub UV* reads `color.png`; for motion vectors the function *FlipBook\\_MotionVectors* \
+             takes `motion.png` and a strength of {motion_scale:.5}.\n",
+        ),
+        Engine::Unity => format!(
+            "## In Unity\n\n\
+             1. Import the sheets: *sRGB* on for `color.png` and `emission.png`, off for all others; *Alpha Is Transparency* off; \
+             *Texture Type* `Normal map` for `normals.png`; no compression for `motion.png`.\n\
+             2. In VFX Graph, *Uv Mode* `Flipbook Motion Blend`, *Flip Book Size* {columns} × {rows}, *Motion Vector Map* \
+             `motion.png`, *Motion Vector Scale* {motion_scale:.5}, and *Flipbook Player* at {rate} frames per second.\n\
+             3. For six-way light, *Material Type* `Six Way Smoke Lit`: *Positive Axes Lightmap* `six_way_1.png`, *Negative Axes \
+             Lightmap* `six_way_2.png`.\n",
+        ),
+        Engine::Godot => format!(
+            "## In Godot 4\n\n\
+             1. Import the sheets with *Compress Mode* `Lossless` and mipmaps.\n\
+             2. In a *StandardMaterial3D*: *Transparency* `Alpha`, *Shading Mode* `Unshaded`, *Albedo* `color.png`, *Billboard \
+             Mode* `Particle Billboard`, *H Frames* {columns}, *V Frames* {rows}.\n\
+             3. In the process material, *Animation Speed* 1 plays all {frames} frames in a particle's life.\n\
+             4. Motion vectors need a shader: the formula above, in `fragment()`.\n",
+        ),
+        Engine::Wgsl => {
+            "## In WGSL\n\nUpload `color.png` as `Rgba8UnormSrgb`, the others as `Rgba8Unorm`, and sample them as \
+                         above.\n"
+                .to_owned()
+        }
+    }
+}

@@ -1,0 +1,214 @@
+use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use haze::image::read_png;
+use image::RgbaImage;
+use pollster::block_on;
+
+use super::*;
+use crate::image_format::{Background, ImageFormat};
+use crate::smoke_layers::SmokeLayers;
+
+const ENGINES: [Engine; 4] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl];
+const SIDE: u32 = 64;
+const GO_ON: ExportProgress<'_> = ExportProgress::Callback(&|_, _| true);
+
+fn shot(name: &str) -> Shot {
+    Shot::load(name, UVec2::splat(SIDE)).unwrap()
+}
+
+fn frames(count: u32, rate: f32) -> Frames {
+    Frames { range: 0..=count - 1, rate, format: ImageFormat::default() }
+}
+
+/// A flipbook, read back from its files.
+struct Flipbook {
+    folder: tempfile::TempDir,
+    numbers: FlipbookNumbers,
+}
+
+impl Flipbook {
+    fn new(shot: &Shot, frames: &Frames, engine: Engine, loop_fade: u32, has_six_way: bool) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let options = FlipbookOptions { engine, cells: UVec2::new(2, 2), loop_fade, has_six_way };
+        let export = block_on(FlipbookExport::render(&Backend::Cpu, shot, frames, options, &GO_ON, folder.path()));
+        let export = export.unwrap();
+        export.write(folder.path(), CompressionEffort::Quick).unwrap();
+        assert!(export.files().all(|name| folder.path().join(name).is_file() && FILES.contains(&name)));
+        let numbers = std::fs::read(folder.path().join(NUMBERS)).unwrap();
+        Self { folder, numbers: serde_json::from_slice(&numbers).unwrap() }
+    }
+
+    /// Cuts a frame out of a sheet, as an engine does.
+    fn frame(&self, name: &str, index: u32) -> RgbaImage {
+        let sheet = read_png(&self.folder.path().join(name)).unwrap().into_rgba8();
+        let FlipbookNumbers { columns, rows, .. } = self.numbers;
+        let size = UVec2::new(sheet.width() / columns, sheet.height() / rows);
+        let at = UVec2::new(index % columns, index / columns) * size;
+        image::imageops::crop_imm(&sheet, at.x, at.y, size.x, size.y).to_image()
+    }
+}
+
+fn texel(image: &RgbaImage, at: IVec2) -> Vec4 {
+    let at = at.clamp(IVec2::ZERO, IVec2::splat(SIDE as i32 - 1)).as_uvec2();
+    Vec4::from(image.get_pixel(at.x, at.y).0.map(f32::from)) / 255.0
+}
+
+/// Bilinear filter; `uv` of one frame, from the upper left corner.
+fn sample(image: &RgbaImage, uv: Vec2) -> Vec4 {
+    let place = uv * SIDE as f32 - 0.5;
+    let (low, share) = (place.floor().as_ivec2(), place - place.floor());
+    let row = |y: i32| texel(image, low + IVec2::new(0, y)).lerp(texel(image, low + IVec2::new(1, y)), share.x);
+    row(0).lerp(row(1), share.y)
+}
+
+fn pixels() -> impl Iterator<Item = UVec2> {
+    (0..SIDE * SIDE).map(|index| UVec2::new(index % SIDE, index / SIDE))
+}
+
+/// Mean squared difference of premultiplied images.
+fn difference(a: impl Fn(UVec2) -> Vec4, b: impl Fn(UVec2) -> Vec4) -> f32 {
+    let premultiplied = |texel: Vec4| (texel.xyz() * texel.w).extend(texel.w);
+    pixels().map(|at| (premultiplied(a(at)) - premultiplied(b(at))).length_squared()).sum::<f32>()
+        / (SIDE * SIDE) as f32
+}
+
+#[test]
+fn frames_of_the_sheets_are_those_of_the_renderer() {
+    for (name, engine) in [("column", Engine::Unreal), ("campfire", Engine::Unity), ("column", Engine::Godot)] {
+        let (shot, frames) = (shot(name), frames(3, 8.0));
+        let flipbook = Flipbook::new(&shot, &frames, engine, 0, false);
+        let now = frames.shot(&shot, 2);
+        let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
+        let direct = block_on(format.render(&now, async |shot| shot.render_on_cpu())).unwrap().into_rgba8();
+        let layers = block_on(SmokeLayers::new(&Backend::Cpu, &now)).unwrap();
+        let normals = block_on(layers.normals()).unwrap();
+        let (color, normal) = (flipbook.frame(sheets::COLOR, 2), flipbook.frame(sheets::NORMALS, 2));
+        let mut compared = 0;
+        for at in pixels() {
+            let [found, expected] = [&color, &direct].map(|image| image.get_pixel(at.x, at.y).0);
+            assert_eq!(found[3], expected[3], "{name} {at}");
+            if found[3] < 8 {
+                continue;
+            }
+            compared += 1;
+            // Dithering depends on the place on the sheet, and moves either value by up to a step.
+            let apart = found.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max();
+            assert!(apart <= Some(2), "{name} {at}: {found:?}, not {expected:?}");
+            let mean = normals.load(at.as_ivec2()).xyz().normalize_or(Vec3::Z);
+            let green = if engine == Engine::Unreal { -1.0 } else { 1.0 };
+            let decoded = (texel(&normal, at.as_ivec2()).xyz() * 2.0 - 1.0) * Vec3::new(1.0, green, 1.0);
+            // Half a step of 8 bits in each component.
+            assert!((decoded - mean).length() < 0.01, "{name} {at}: {decoded}, not {mean}");
+        }
+        assert!(compared > 200, "{name}: {compared}");
+        // Unused cells are clear.
+        assert!(flipbook.frame(sheets::COLOR, 3).pixels().all(|pixel| pixel.0[3] == 0));
+        assert_eq!(flipbook.folder.path().join(sheets::EMISSION).exists(), name == "campfire");
+    }
+}
+
+#[test]
+fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() {
+    // Eight frames per second: smoke moves by some pixels.
+    let (shot, frames) = (shot("spell"), frames(2, 8.0));
+    let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
+    let mut between = frames.shot(&shot, 0);
+    between.preset.time += 0.5 / frames.rate;
+    let between = block_on(format.render(&between, async |shot| shot.render_on_cpu())).unwrap().into_rgba8();
+    for engine in ENGINES {
+        let flipbook = Flipbook::new(&shot, &frames, engine, 0, false);
+        let [first, second] = [0, 1].map(|index| flipbook.frame(sheets::COLOR, index));
+        let motions = [0, 1].map(|index| flipbook.frame(sheets::MOTION, index));
+        // Texture coordinates count from the bottom in Unity.
+        let up = if engine == Engine::Unity { -1.0 } else { 1.0 };
+        let scale = flipbook.numbers.motion_scale;
+        let motion =
+            |index: usize, uv: Vec2| (sample(&motions[index], uv).xy() * 2.0 - 1.0) * scale * Vec2::new(1.0, up);
+        let uv = |at: UVec2| (at.as_vec2() + 0.5) / SIDE as f32;
+        let blended = |at: UVec2, share: f32, strength: f32| {
+            let at = uv(at);
+            let a = sample(&first, at - motion(0, at) * share * strength);
+            let b = sample(&second, at + motion(1, at) * (1.0 - share) * strength);
+            let mixed = (a.xyz() * a.w).lerp(b.xyz() * b.w, share);
+            let alpha = a.w + (b.w - a.w) * share;
+            (mixed / alpha.max(1.0e-4)).extend(alpha)
+        };
+        let half = |strength: f32| difference(|at| blended(at, 0.5, strength), |at| texel(&between, at.as_ivec2()));
+        assert!(half(1.0) < 0.95 * half(0.0), "{engine:?}: {} with, {} without", half(1.0), half(0.0));
+        assert!(half(-1.0) > 1.1 * half(0.0), "{engine:?}: vectors of the opposite sign are as good");
+        let next = |strength: f32| {
+            let warped = |at: UVec2| sample(&first, uv(at) - motion(0, uv(at)) * strength);
+            difference(warped, |at| texel(&second, at.as_ivec2()))
+        };
+        assert!(next(1.0) < 0.7 * next(0.0), "{engine:?}: {} with, {} without", next(1.0), next(0.0));
+    }
+}
+
+#[test]
+fn faded_flipbooks_loop() {
+    let (shot, frames) = (shot("column"), frames(4, 4.0));
+    let gap = |fade: u32| {
+        let flipbook = Flipbook::new(&shot, &frames, Engine::Godot, fade, false);
+        let image = |index| flipbook.frame(sheets::COLOR, index);
+        let (first, last, second) = (image(0), image(3), image(2));
+        let apart =
+            |a: &RgbaImage, b: &RgbaImage| difference(|at| texel(a, at.as_ivec2()), |at| texel(b, at.as_ivec2()));
+        (apart(&last, &first), apart(&second, &last))
+    };
+    let ((open, _), (closed, usual)) = (gap(0), gap(2));
+    // The first frame follows the last as the last follows the one before.
+    assert!(
+        closed < 1.5 * usual && closed < 0.8 * open,
+        "{open} without a fade, {closed} with, {usual} between frames"
+    );
+    let options = FlipbookOptions { engine: Engine::Godot, cells: UVec2::new(2, 2), loop_fade: 4, has_six_way: false };
+    let refused = block_on(FlipbookExport::render(&Backend::Cpu, &shot, &frames, options, &GO_ON, "x".as_ref()));
+    assert_eq!(
+        refused.err().unwrap().to_string(),
+        "--loop: 4 is not valid; expected less than the number of frames, 4"
+    );
+}
+
+#[test]
+fn six_way_maps_are_the_smoke_under_each_light() {
+    for engine in [Engine::Unity, Engine::Unreal] {
+        let (shot, frames) = (shot("column"), frames(1, 8.0));
+        let flipbook = Flipbook::new(&shot, &frames, engine, 0, true);
+        let layers = block_on(SmokeLayers::new(&Backend::Cpu, &shot)).unwrap();
+        let [positive, negative] = block_on(layers.six_way()).unwrap();
+        let maps = sheets::SIX_WAY.map(|name| flipbook.frame(name, 0));
+        let intensity = flipbook.numbers.six_way_intensity.unwrap();
+        let mut compared = 0;
+        let mut means = [Vec3::ZERO; 2];
+        for at in pixels().map(|at| IVec2::new(at.x as i32, at.y as i32)) {
+            let opacity = layers.light.load(at).w;
+            if opacity < 0.05 {
+                continue;
+            }
+            compared += 1;
+            let [first, second] = maps.each_ref().map(|map| texel(map, at).xyz());
+            let found = engine.six_way_packing().six_way(first, second);
+            let sides = [(found.positive, &positive), (found.negative, &negative)];
+            for ((found, expected), mean) in sides.into_iter().zip(&mut means) {
+                let expected = expected.load(at).xyz() / opacity;
+                // Half a step of 8 bits.
+                assert!((found * intensity - expected).abs().max_element() < 0.003 * intensity, "{engine:?} {at}");
+                *mean += expected;
+            }
+        }
+        assert!(compared > 200);
+        // Light from the viewer's side is brighter than light from behind.
+        assert!(means[0].z > 1.2 * means[1].z, "{means:?}");
+    }
+}
+
+#[test]
+fn stopped_flipbooks_leave_no_file() {
+    let (shot, frames) = (shot("column"), frames(3, 8.0));
+    let folder = tempfile::tempdir().unwrap();
+    let options = FlipbookOptions { engine: Engine::Unity, cells: UVec2::new(2, 2), loop_fade: 1, has_six_way: false };
+    let stop = ExportProgress::Callback(&|done, _| done < 2);
+    let stopped = block_on(FlipbookExport::render(&Backend::Cpu, &shot, &frames, options, &stop, folder.path()));
+    let said = stopped.err().unwrap().to_string();
+    assert!(said.contains("stopped: not written; 2 of 4 images were rendered"), "{said}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}

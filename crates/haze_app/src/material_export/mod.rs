@@ -1,0 +1,96 @@
+//! Material of a system for other engines: its ramps as textures, and the formula of its lighting as source code with the
+//! preset's numbers.
+
+mod readme;
+mod snippet;
+mod sources;
+mod translation;
+
+use std::path::Path;
+
+use glam::UVec2;
+use haze::formula::color::srgb_from_linear;
+use haze::image::{CompressionEffort, write_file, write_png};
+use haze::preset::PresetSystem;
+use haze::ramp::Ramp;
+use haze::settings::DiffuseMode;
+use haze::{Error, FieldError, MaterialAssets};
+use image::{Rgb, RgbImage};
+
+use crate::engine::Engine;
+use snippet::Snippet;
+
+/// Files of a material.
+pub struct MaterialExport {
+    /// File names and texts.
+    pub texts: Vec<(&'static str, String)>,
+    /// File names and images, in sRGB.
+    pub textures: Vec<(String, RgbImage)>,
+}
+
+impl MaterialExport {
+    /// Makes the files of one system. `title`: of the preset; `assets`: the system's images.
+    ///
+    /// # Errors
+    /// [`Error::Field`] if its light does not come from ramps.
+    pub fn new(
+        title: &str,
+        (index, system): (usize, &PresetSystem),
+        assets: &MaterialAssets,
+        engine: Engine,
+    ) -> Result<Self, Error> {
+        let settings = &system.settings;
+        let refuse = |name: &str, value: &str, expected: &str| {
+            let field = format!("systems[{index}].settings.{name}");
+            Err(FieldError::new(field, format!("{value:?}"), expected).into())
+        };
+        if settings.is_six_way() {
+            let expected = "\"normals\"; `haze sprite export` writes the six-way maps for engines";
+            return refuse("lighting", "six_way", expected);
+        }
+        if settings.diffuse.mode == DiffuseMode::PaintedMotif {
+            let expected = "another mode: an engine's lights do not light a painted motif";
+            return refuse("diffuse.mode", "painted_motif", expected);
+        }
+        let snippet = Snippet::new(settings);
+        let mut texts = sources::sources(engine, &snippet)?;
+        texts.push(("README.md", readme::readme(engine, title, system, &snippet)));
+        let textures = snippet
+            .ramps
+            .iter()
+            .map(|ramp| (ramp.file(), picture((ramp.of)(assets), engine.first_row_is_at_the_top())));
+        Ok(Self { texts, textures: textures.collect() })
+    }
+
+    /// Returns the names of all files.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.texts.iter().map(|(name, _)| *name).chain(self.textures.iter().map(|(name, _)| name.as_str()))
+    }
+
+    /// Writes the files into a folder.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for the first file that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), Error> {
+        for (name, text) in &self.texts {
+            write_file(&folder.join(name), text.as_bytes())?;
+        }
+        for (name, texture) in &self.textures {
+            write_png(&folder.join(name), &texture.clone().into(), CompressionEffort::Small)?;
+        }
+        Ok(())
+    }
+}
+
+/// Image of a ramp, sRGB.
+fn picture(ramp: &Ramp, first_row_is_at_the_top: bool) -> RgbImage {
+    let size = ramp.size();
+    RgbImage::from_fn(size.x, size.y, |x, y| {
+        let row = if first_row_is_at_the_top { y } else { size.y - 1 - y };
+        let color = ramp.texel(UVec2::new(x, row)).to_array();
+        Rgb(color.map(|channel| (srgb_from_linear(channel.clamp(0.0, 1.0)) * 255.0).round() as u8))
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,114 @@
+//! Page that goes with a material: its files, and how to use them.
+
+use haze::preset::PresetSystem;
+use haze::settings::RampFilter;
+
+use super::snippet::{Function, Snippet};
+use crate::engine::Engine;
+
+pub fn readme(engine: Engine, title: &str, system: &PresetSystem, snippet: &Snippet) -> String {
+    let part = &system.name;
+    let intro = format!(
+        "# {title}: {part}\n\nThe light of this smoke, exported from haze: the ramps as textures, and the formula with the \
+         preset's numbers. It is the formula of haze's own shaders.\n\nIt takes the **normal** and the **amount** of smoke \
+         at a point: for one sprite, rgb (n/2 + 1/2) and alpha of its texture. Particles, blending of sprites before they \
+         are lit, shadow, and ambient light are those of the engine: overlapping sprites look denser and less even than \
+         in haze.\n\n",
+    );
+    intro + &textures(engine, system, snippet) + &functions(snippet) + &steps(engine, snippet)
+}
+
+fn textures(engine: Engine, system: &PresetSystem, snippet: &Snippet) -> String {
+    let mut text = "## Textures\n\n| file | axes |\n|---|---|\n".to_owned();
+    for ramp in &snippet.ramps {
+        text += &format!("| `{}` | {} |\n", ramp.file(), ramp.axes);
+    }
+    let row = if engine.first_row_is_at_the_top() { "first (top)" } else { "bottom" };
+    let filter = match system.settings.ramp_filter {
+        RampFilter::Bilinear => "linear",
+        RampFilter::Nearest => "nearest",
+    };
+    text + &format!(
+        "\nColor is **sRGB**, 8 bits. Rows count from the {row} row of the image. Import without mipmaps, without lossy \
+         compression, without resizing; filter {filter}; the edges are clamped by the formula itself.\n\n"
+    )
+}
+
+fn functions(snippet: &Snippet) -> String {
+    let row = |function: &Function| {
+        let doc = function.doc.replace('\n', " ");
+        let inputs: Vec<_> = function.inputs.iter().map(|(name, _)| *name).collect();
+        format!("| `{}` | {} | {doc} |\n", function.name, inputs.join(", "))
+    };
+    let rows: String = snippet.functions.iter().map(row).collect();
+    format!(
+        "## Functions\n\n| function | of | result |\n|---|---|---|\n{rows}\nLight is linear. Color over the background: \
+         `light * opacity + background * (1 - opacity)`.\n\n",
+    )
+}
+
+fn steps(engine: Engine, snippet: &Snippet) -> String {
+    let names = |prefix: &str| {
+        let names: Vec<_> = snippet.ramps.iter().map(|ramp| format!("{prefix}`{}`", ramp.name)).collect();
+        names.join(", ")
+    };
+    let burns = snippet.functions.iter().any(|function| function.name == "haze_emission");
+    let heat = if burns { ", `heat` (0 to 1, for example by a particle's age)" } else { "" };
+    match engine {
+        Engine::Unreal => format!(
+            "## In Unreal Engine\n\n\
+             1. Import the textures: *sRGB* on, *Compression Settings* `UserInterface2D (RGBA)`, *Mip Gen Settings* \
+             `NoMipmaps`.\n\
+             2. Make a material: *Blend Mode* `Translucent`, *Shading Model* `Unlit`.\n\
+             3. Add a **Custom** node, *Output Type* `CMOT Float 4`, and paste `custom_node.hlsl` as its code.\n\
+             4. Name its inputs: {} (each a *Texture Object*), `normal`, `to_light`, `to_viewer`, `light_color`, \
+             `amount`{heat}.\n\
+             5. Connect `to_viewer` with *Camera Vector WS*; `to_light` and `light_color` with the light, for example \
+             *SkyAtmosphereLightDirection* and *SkyAtmosphereLightIlluminance*, or a parameter collection; `normal` \
+             with the sprite's normal in world space; `amount` with its alpha times *Particle Color* alpha.\n\
+             6. Connect rgb with *Emissive Color* and a with *Opacity*.\n\n\
+             `haze_material.ush` has the same functions for a plugin's shader folder: *Include File Paths* of the node, and \
+             only the last lines of `custom_node.hlsl` as its code, without `haze.`\n",
+            names(""),
+        ),
+        Engine::Unity => format!(
+            "## In Unity\n\n\
+             1. Import the textures: *sRGB (Color Texture)* on, *Generate Mip Maps* off, *Non-Power of 2* `None`, \
+             *Compression* `None`, *Wrap Mode* `Clamp`.\n\
+             2. Make an unlit, transparent Shader Graph and add a **Custom Function** node: *Type* `File`, *Source* \
+             `haze_material.hlsl`, *Name* `HazeSmoke`, precision `Single`.\n\
+             3. Give it these inputs, in this order: {} (each `Texture2D`), `normal`, `to_light`, `to_viewer`, \
+             `light_color` (each `Vector3`), `amount`{} (`Float`); and the outputs `color` (`Vector3`), `opacity` \
+             (`Float`).\n\
+             4. Connect the vectors in one space, for example *View Direction* in world space; `amount` with alpha of the \
+             sprite times that of the vertex color. `to_light` and `light_color` are those of the main light, from \
+             *Main Light Direction* (negated) or `GetMainLight()`.\n",
+            names(""),
+            if burns { ", `heat`" } else { "" },
+        ),
+        Engine::Godot => format!(
+            "## In Godot 4\n\n\
+             1. Import the textures with *Compress Mode* `Lossless` and *Mipmaps* off. Import the sprite (a PNG of haze, for \
+             example from its folder `sprites/`) in the same way, with mipmaps.\n\
+             2. Make a *ShaderMaterial* with `haze_material.gdshader`; set the sprite with its columns and rows \
+             (`sprite_cells`), and {}.\n\
+             3. Use it on quads, such as the draw pass of `GPUParticles3D`: the shader turns them towards the camera. The \
+             color's alpha multiplies the amount.\n\n\
+             All lights of the scene light the smoke, by `light()`.\n",
+            names("the texture of "),
+        ),
+        Engine::Wgsl => format!(
+            "## In WGSL\n\n\
+             Put `haze_material.wgsl` before your own shader: it declares functions and constants alone, no bindings. Bind {} \
+             as `texture_2d<f32>` of a format such as `Rgba8UnormSrgb`, with a linear sampler.\n\n\
+             ```wgsl\n\
+             var light = haze_soft_scatter(amount);\n\
+             light += haze_diffuse(diffuse_ramp, ramp_sampler, normal, to_light, to_viewer, amount) * light_color;\n\
+             let opacity = haze_coverage(amount);\n\
+             return vec4f(light * opacity, opacity); // premultiplied\n\
+             ```\n\n\
+             Functions with further ramps take them before the sampler.\n",
+            names(""),
+        ),
+    }
+}

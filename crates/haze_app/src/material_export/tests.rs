@@ -1,0 +1,389 @@
+use std::io::Write as _;
+use std::process::{Command, Stdio};
+
+use glam::{Vec2, Vec3, Vec4, vec3};
+use haze::formula::lighting::{backlight_weight, coverage, painted_share};
+use haze::formula::ramp::sample_ramp;
+use haze::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
+use haze::settings::{Backlight, CoverageMode, RampFilter, SoftScatterMode};
+use haze::{Settings, wgpu};
+use haze_demo::headless::Headless;
+
+use haze::preset::Preset;
+
+use super::*;
+
+const ENGINES: [Engine; 4] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl];
+
+/// Settings that use every ramp, as far as they choose, with numbers that differ from each other.
+fn settings(has_ramps: bool, ramp_filter: RampFilter) -> Settings {
+    let mut settings = Settings { ramp_filter, boost: 1.7, ..Settings::default() };
+    (settings.diffuse.intensity, settings.soft_scatter.intensity) = (0.8, 1.3);
+    let scatter = &mut settings.soft_scatter;
+    (scatter.scatter_amount, scatter.scatter_smooth) = (0.1, 0.5);
+    (scatter.scatter_color, scatter.ambient_color) = (vec3(0.6, 0.5, 0.2), vec3(0.1, 0.2, 0.4));
+    if has_ramps {
+        settings.diffuse.backlight = Backlight::Ramp;
+        settings.soft_scatter.mode = SoftScatterMode::Ramp;
+        settings.coverage = CoverageMode::Ramp;
+        settings.fire.intensity = 2.5;
+    }
+    settings
+}
+
+fn all_settings() -> [Settings; 3] {
+    [settings(false, RampFilter::Bilinear), settings(true, RampFilter::Bilinear), settings(true, RampFilter::Nearest)]
+}
+
+fn assets() -> MaterialAssets {
+    let names = haze::preset::MaterialNames {
+        diffuse_ramp: "diffuse_soft_toon".into(),
+        backlight_ramp: "backlight_traced_steam".into(),
+        ..haze::preset::MaterialNames::default()
+    };
+    names.load("".as_ref()).unwrap()
+}
+
+/// Normal, vectors to light and viewer, amount and heat.
+struct Case {
+    vectors: [Vec3; 3],
+    amount: f32,
+    heat: f32,
+}
+
+fn cases() -> Vec<Case> {
+    let case = |index: u32| {
+        let random = |channel: u32| haze::noise::unit(haze::noise::pcg3d(glam::UVec3::new(index, channel, 5)).x);
+        let vector = |first| vec3(random(first), random(first + 1), random(first + 2)) * 2.0 - 1.0;
+        let vectors = [0, 3, 6].map(|first| vector(first).normalize_or(Vec3::Z));
+        Case { vectors, amount: random(9), heat: random(10) }
+    };
+    (0..512).map(case).collect()
+}
+
+/// Diffuse response and coverage, soft scatter, and emission, from `formula/`.
+fn expected(settings: &Settings, assets: &MaterialAssets, case: &Case) -> [Vec4; 3] {
+    let ([normal, to_light, to_viewer], amount) = (case.vectors, case.amount);
+    let (filter, covered) = (settings.ramp_filter, coverage(amount, settings.boost));
+    let against = match settings.diffuse.backlight {
+        Backlight::Ramp => backlight_weight(to_light, to_viewer),
+        Backlight::Same => 0.0,
+    };
+    let ramps = [&assets.diffuse_ramp, &assets.backlight_ramp];
+    let diffuse = diffuse_response(ramps, filter, (normal, to_light), covered, against);
+    let opacity = match settings.coverage {
+        CoverageMode::Linear => covered,
+        CoverageMode::Ramp => painted_share(sample_ramp(&assets.coverage_ramp, filter, covered)),
+    };
+    let curve = &settings.soft_scatter;
+    let scatter = match curve.mode {
+        SoftScatterMode::Ramp => sample_ramp(&assets.soft_scatter_ramp, filter, amount),
+        SoftScatterMode::Smoothstep => soft_scatter_curve(
+            amount,
+            curve.scatter_color,
+            curve.ambient_color,
+            curve.scatter_amount,
+            curve.scatter_smooth,
+        ),
+    };
+    let fire = match settings.burns() {
+        true => fire_response(&assets.fire_ramp, filter, Vec2::new(case.heat, 1.0), amount, settings.boost),
+        false => Vec3::ZERO,
+    };
+    [
+        (diffuse * settings.diffuse.intensity).extend(opacity),
+        (scatter * curve.intensity).extend(0.0),
+        (fire * settings.fire.intensity).extend(0.0),
+    ]
+}
+
+/// Runs the functions of a snippet on the GPU.
+fn run(gpu: &Headless, snippet: &Snippet, text: &str, assets: &MaterialAssets, cases: &[Case]) -> Vec<[Vec4; 3]> {
+    let call = |name: &str| {
+        let function = snippet.functions.iter().find(|function| function.name == name)?;
+        let ramps = function.ramps.iter().map(|ramp| format!("{ramp}_bound"));
+        let sampler = (!function.ramps.is_empty()).then(|| "bound_sampler".to_owned());
+        let inputs = function.inputs.iter().map(|(name, _)| match *name {
+            "normal" => "a.xyz".to_owned(),
+            "to_light" => "b.xyz".to_owned(),
+            "to_viewer" => "c.xyz".to_owned(),
+            "heat" => "b.w".to_owned(),
+            _ => "a.w".to_owned(),
+        });
+        Some(format!("{name}({})", ramps.chain(sampler).chain(inputs).collect::<Vec<_>>().join(", ")))
+    };
+    let bindings: String = (3..).zip(&snippet.ramps).fold(String::new(), |text, (index, ramp)| {
+        text + &format!("@group(0) @binding({index}) var {}_bound: texture_2d<f32>;\n", ramp.name)
+    });
+    let source = format!(
+        "{text}
+         @group(0) @binding(0) var<storage, read> cases: array<vec4f>;
+         @group(0) @binding(1) var<storage, read_write> results: array<vec4f>;
+         @group(0) @binding(2) var bound_sampler: sampler;
+         {bindings}
+         @compute @workgroup_size(1) fn main(@builtin(workgroup_id) id: vec3u) {{
+             let a = cases[id.x * 3u];
+             let b = cases[id.x * 3u + 1u];
+             let c = cases[id.x * 3u + 2u];
+             results[id.x * 3u] = vec4f({}, {});
+             results[id.x * 3u + 1u] = vec4f({}, 0.0);
+             results[id.x * 3u + 2u] = vec4f({}, 0.0);
+         }}",
+        call("haze_diffuse").unwrap(),
+        call("haze_coverage").unwrap(),
+        call("haze_soft_scatter").unwrap(),
+        call("haze_emission").unwrap_or_else(|| "vec3f(0.0)".into()),
+    );
+    let inputs: Vec<f32> = cases
+        .iter()
+        .flat_map(|case| {
+            let [a, b, c] = case.vectors;
+            [a.extend(case.amount), b.extend(case.heat), c.extend(0.0)].map(|v| v.to_array()).concat()
+        })
+        .collect();
+    let size = (inputs.len() * 4) as u64;
+    let device = &gpu.device;
+    let buffer = |usage| {
+        device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size,
+            usage: wgpu::BufferUsages::STORAGE | usage,
+            mapped_at_creation: false,
+        })
+    };
+    let (input, output) = (buffer(wgpu::BufferUsages::COPY_DST), buffer(wgpu::BufferUsages::COPY_SRC));
+    gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&inputs));
+    let textures: Vec<_> = snippet.ramps.iter().map(|ramp| upload(gpu, (ramp.of)(assets))).collect();
+    let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..wgpu::SamplerDescriptor::default()
+    });
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("material"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("material"),
+        layout: None,
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let fixed = [input.as_entire_binding(), output.as_entire_binding(), wgpu::BindingResource::Sampler(&sampler)];
+    let resources = fixed.into_iter().chain(textures.iter().map(wgpu::BindingResource::TextureView));
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    let layout = pipeline.get_bind_group_layout(0);
+    let group =
+        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(cases.len() as u32, 1, 1);
+    }
+    gpu.submit(encoder).unwrap();
+    let results: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&output).unwrap());
+    let vectors = |row: &[f32; 12]| [0, 4, 8].map(|at| Vec4::from_slice(&row[at..]));
+    results.iter().map(vectors).collect()
+}
+
+fn upload(gpu: &Headless, ramp: &Ramp) -> wgpu::TextureView {
+    let size = wgpu::Extent3d { width: ramp.size().x, height: ramp.size().y, depth_or_array_layers: 1 };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("ramp"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * size.width), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), &ramp.bytes(), layout, size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Largest difference from `formula/`, relative to max(1, |expected|).
+fn error(settings: &Settings, assets: &MaterialAssets, cases: &[Case], found: &[[Vec4; 3]]) -> f32 {
+    let difference = |(case, found): (&Case, &[Vec4; 3])| {
+        let pairs = expected(settings, assets, case).into_iter().zip(found);
+        pairs
+            .map(|(expected, found)| ((expected - *found).abs() / expected.abs().max(Vec4::ONE)).max_element())
+            .fold(0.0, f32::max)
+    };
+    cases.iter().zip(found).map(difference).fold(0.0, f32::max)
+}
+
+#[test]
+fn wgsl_computes_what_the_renderers_compute() {
+    let gpu = Headless::new().unwrap();
+    let (assets, cases) = (assets(), cases());
+    for settings in all_settings() {
+        let snippet = Snippet::new(&settings);
+        let exact = snippet.wgsl.replace("EXACT_FILTERING: bool = false", "EXACT_FILTERING: bool = true");
+        let worst = |text: &str| error(&settings, &assets, &cases, &run(&gpu, &snippet, text, &assets, &cases));
+        // The precision that Vulkan allows `pow`.
+        assert!(worst(&exact) < 2.0e-4, "{}", worst(&exact));
+        // Samplers filter with weights of 8 bits; one step of the toon ramp is nearly the whole range.
+        assert!(worst(&snippet.wgsl) < 1.0 / 128.0, "{}", worst(&snippet.wgsl));
+        // The comparison finds a wrong number, and a swapped vector.
+        for (from, to) in [
+            ("HAZE_BOOST: f32 = 1.7", "HAZE_BOOST: f32 = 1.6"),
+            ("HAZE_DIFFUSE_INTENSITY: f32 = 0.8", "HAZE_DIFFUSE_INTENSITY: f32 = 0.9"),
+            ("HAZE_SOFT_SCATTER_INTENSITY: f32 = 1.3", "HAZE_SOFT_SCATTER_INTENSITY: f32 = 1.4"),
+            ("diffuse_coordinate(normal, to_light)", "diffuse_coordinate(normal, -to_light)"),
+        ] {
+            let mutant = exact.replace(from, to);
+            assert!(mutant != exact && worst(&mutant) > 2.0e-3, "{to}: {}", worst(&mutant));
+        }
+    }
+}
+
+/// Compiles a source by glslang; `None` without glslang.
+fn glslang(arguments: &[&str], source: &str) -> Option<Result<(), String>> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("source.frag");
+    std::fs::File::create(&path).unwrap().write_all(source.as_bytes()).unwrap();
+    let run = Command::new("glslangValidator").args(arguments).arg(&path).stderr(Stdio::piped()).output().ok()?;
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    Some(if run.status.success() { Ok(()) } else { Err(format!("{said}\n{source}")) })
+}
+
+const HLSL: [&str; 8] = ["-D", "-V", "-e", "main", "-S", "frag", "-o", "/dev/null"];
+const GLSL: [&str; 2] = ["-S", "frag"];
+
+/// A pixel shader around one source of an engine, with stand-ins for what the engine declares.
+fn shader_around(file: &str, text: &str, snippet: &Snippet) -> String {
+    let ramps =
+        |declare: &dyn Fn(&str) -> String| -> String { snippet.ramps.iter().map(|ramp| declare(ramp.name)).collect() };
+    let heat = if snippet.functions.len() > 3 { "float heat = 0.5;" } else { "" };
+    let inputs = format!(
+        "float3 normal = float3(0, 0, 1); float3 to_light = normal; float3 to_viewer = normal; \
+         float3 light_color = normal; float amount = uv.x; {heat}"
+    );
+    match file {
+        "custom_node.hlsl" => {
+            let textures = ramps(&|name| format!("Texture2D {name}; SamplerState {name}Sampler;\n"));
+            // Unreal makes a function of the node's text. glslang crashes at a struct with functions in a function, which
+            // Microsoft's compilers accept: the struct stands before it.
+            let (declared, body) = text.split_once("HazeMaterial haze;").unwrap();
+            format!(
+                "{textures}{declared}float4 node(float2 uv) {{\n{inputs}\nHazeMaterial haze;{body}\n}}\n\
+                 float4 main(float2 uv : TEXCOORD0) : SV_Target {{ return node(uv); }}\n"
+            )
+        }
+        "haze_material.ush" => {
+            format!("{text}\nfloat4 main(float2 uv : TEXCOORD0) : SV_Target {{ return float4(uv, 0, 1); }}\n")
+        }
+        "haze_material.hlsl" => {
+            let textures = ramps(&|name| format!("Texture2D {name}_texture; SamplerState {name}_sampler;\n"));
+            let arguments = ramps(&|name| {
+                format!("UnityTexture2D {name}; {name}.tex = {name}_texture; {name}.samplerstate = {name}_sampler;\n")
+            });
+            let names = ramps(&|name| format!("{name}, "));
+            let heat = if heat.is_empty() { "" } else { ", heat" };
+            format!(
+                "struct UnityTexture2D {{ Texture2D tex; SamplerState samplerstate; }};\n{text}\n{textures}\
+                 float4 main(float2 uv : TEXCOORD0) : SV_Target {{\n{inputs}\n{arguments}float3 color; float opacity;\n\
+                 HazeSmoke_float({names}normal, to_light, to_viewer, light_color, amount{heat}, color, opacity);\n\
+                 return float4(color, opacity);\n}}\n"
+            )
+        }
+        _ => {
+            let line = |line: &str| {
+                let declared = line.split([':', '=']).next().unwrap_or_default().trim_end().trim_end_matches(';');
+                match line.split(' ').next() {
+                    Some("shader_type" | "render_mode") => String::new(),
+                    Some("uniform") => format!("{declared};\n"),
+                    Some("varying") => format!("{};\n", declared.trim_start_matches("varying ")),
+                    _ => format!("{line}\n"),
+                }
+            };
+            let text: String = text.lines().map(line).collect();
+            format!(
+                "#version 300 es\nprecision highp float;\nprecision highp int;\n\
+                 const float PI = 3.14159265;\nvec2 UV;\nvec4 COLOR;\nvec3 NORMAL, ALBEDO, EMISSION, VIEW;\nfloat ALPHA;\n\
+                 vec3 LIGHT, LIGHT_COLOR, DIFFUSE_LIGHT;\nfloat ATTENUATION;\n\
+                 mat4 MODEL_MATRIX, VIEW_MATRIX, INV_VIEW_MATRIX, MODELVIEW_MATRIX;\nout vec4 result;\n\
+                 {text}\nvoid main() {{\n    vertex();\n    fragment();\n    light();\n    \
+                 result = vec4(DIFFUSE_LIGHT + EMISSION, ALPHA);\n}}\n"
+            )
+        }
+    }
+}
+
+#[test]
+fn sources_for_engines_compile() {
+    for settings in all_settings() {
+        let snippet = Snippet::new(&settings);
+        for engine in ENGINES {
+            for (file, text) in sources::sources(engine, &snippet).unwrap() {
+                if file.ends_with(".wgsl") {
+                    // The comparison with the renderers compiles it; here, that it needs nothing else.
+                    naga::front::wgsl::parse_str(&text).unwrap();
+                    continue;
+                }
+                let is_glsl = file.ends_with(".gdshader");
+                let arguments: &[&str] = if is_glsl { &GLSL } else { &HLSL };
+                let source = shader_around(file, &text, &snippet);
+                let Some(compiled) = glslang(arguments, &source) else {
+                    let required = std::env::var("HAZE_REQUIRE").unwrap_or_default();
+                    assert!(!required.contains("glslang"), "glslangValidator is not installed");
+                    println!("skipped: glslangValidator is not installed");
+                    return;
+                };
+                compiled.unwrap_or_else(|error| panic!("{file}: {error}"));
+                // A call of a missing function is an error: the formula was compiled.
+                let broken = source.replacen("clamp(", "no_function(", 1).replacen("saturate(", "no_function(", 1);
+                assert!(glslang(arguments, &broken).is_some_and(|compiled| compiled.is_err()), "{file}");
+            }
+        }
+    }
+}
+
+#[test]
+fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
+    let preset = Preset::load("wildfire_sky").unwrap();
+    let assets = preset.load_materials("wildfire_sky".as_ref()).unwrap();
+    for engine in ENGINES {
+        let export = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets[0], engine).unwrap();
+        let names: Vec<_> = export.textures.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["diffuse_ramp.png", "backlight_ramp.png"], "{engine:?}");
+        // Images of ramps have row 0 at the bottom.
+        let mut picture = export.textures[0].1.clone();
+        if engine != Engine::Unity {
+            image::imageops::flip_vertical_in_place(&mut picture);
+        }
+        let read = Ramp::from_image(&picture.into());
+        let ramp = &assets[0].diffuse_ramp;
+        assert_eq!(read.size(), ramp.size());
+        for y in 0..ramp.size().y {
+            for x in 0..ramp.size().x {
+                let at = UVec2::new(x, y);
+                // Half a code of 8 bits: 1/510 in sRGB is at most 0.0045 in linear light.
+                let error = (read.texel(at) - ramp.texel(at)).abs().max_element();
+                assert!(error < 0.005, "{engine:?} {at}: {error}");
+            }
+        }
+        assert!(ramp.size().y == 1 || ramp.texel(UVec2::ZERO) != ramp.texel(UVec2::new(0, ramp.size().y - 1)));
+    }
+}
+
+#[test]
+fn light_that_comes_from_no_ramp_is_refused() {
+    let mut preset = Preset::load("column").unwrap();
+    let assets = assets();
+    let refused = |preset: &Preset| {
+        let made = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets, Engine::Wgsl);
+        made.err().unwrap().to_string()
+    };
+    preset.systems[0].settings.diffuse.mode = DiffuseMode::PaintedMotif;
+    assert!(refused(&preset).starts_with("systems[0].settings.diffuse.mode: \"painted_motif\" is not valid; expected"));
+    preset.systems[0].settings.lighting = haze::settings::Lighting::SixWay;
+    assert!(refused(&preset).contains("`haze sprite export` writes the six-way maps"));
+}
