@@ -49,7 +49,7 @@ slint::slint! {
             VerticalLayout {
                 padding: 12px;
                 Text { text: "Lamp"; color: white; }
-                lamp-slider := Slider { minimum: 0; maximum: 60; value: 25; }
+                lamp-slider := Slider { minimum: 0; maximum: 40; value: 16; }
                 Text { text: "Thickness of the smoke"; color: white; }
                 thickness-slider := Slider { minimum: 0.2; maximum: 4; value: 1.5; }
             }

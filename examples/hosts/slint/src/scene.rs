@@ -31,7 +31,7 @@ const SHADER: &str = "
     @fragment fn fragment(vertex: Vertex) -> @location(0) vec4f {
         let normal = normalize(cross(dpdy(vertex.world), dpdx(vertex.world)));
         let to_lamp = scene.lamp.xyz - vertex.world;
-        let falloff = abs(dot(normal, normalize(to_lamp))) / max(dot(to_lamp, to_lamp), 0.1);
+        let falloff = max(dot(normal, normalize(to_lamp)), 0.0) / max(dot(to_lamp, to_lamp), 0.1);
         return vec4f(vec3f(0.3, 0.32, 0.35) * (scene.light.rgb * falloff + 0.03), 1.0);
     }
 ";
