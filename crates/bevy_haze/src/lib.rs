@@ -18,11 +18,13 @@
 //!
 //! # A frame
 //! ```text
-//! ExtractSchedule   extract_smoke     entities with Smoke ─► render world
-//! Queue             queue_smoke       an item for each entity in each view's transparent phase
-//! PrepareResources  prepare_targets   copy of the depth; light of the smoke, for views without Hdr
+//! ExtractSchedule   extract_smoke          entities with Smoke ─► render world
+//!                   extract_environments   environment maps, reflection probes
+//! Queue             queue_smoke            an item for each entity in each view's transparent phase
+//! PrepareResources  measure_maps           light of environment maps from above and below, read some frames later
+//!                   prepare_targets        copy of the depth; light of the smoke, for views without Hdr
 //! Core3d            opaque and transmissive passes (Bevy)
-//!                   prepare_smoke     depth copy, lights, accumulation (haze's `prepare`)
+//!                   prepare_smoke          depth copy, lights, accumulation (haze's `prepare`)
 //!                   transparent pass (Bevy): DrawSmoke lights each pixel (haze's `render_system`), or composites
 //! ```
 //!
@@ -35,10 +37,12 @@ mod asset;
 mod component;
 mod composite;
 mod convert;
+mod environment;
 mod extract;
 mod fire_light;
 mod gpu_asset;
 mod lights;
+mod map_light;
 mod prepare;
 mod queue;
 mod renderers;
@@ -64,8 +68,10 @@ use bevy::render::render_resource::SpecializedRenderPipelines;
 use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
 
 use composite::CompositePipeline;
+use environment::ExtractedEnvironments;
 use extract::ExtractedSmokes;
 use gpu_asset::GpuSmoke;
+use map_light::MapLights;
 use renderers::SmokeRenderers;
 
 /// Draws entities with [`Smoke`] in every 3D camera. Add it after `DefaultPlugins`; without them, it logs an error and does
@@ -94,9 +100,11 @@ impl Plugin for SmokePlugin {
         render_app
             .init_resource::<ExtractedSmokes>()
             .init_resource::<SpecializedRenderPipelines<CompositePipeline>>()
+            .init_resource::<ExtractedEnvironments>()
             .init_gpu_resource::<SmokeRenderers>()
+            .init_gpu_resource::<MapLights>()
             .init_gpu_resource::<CompositePipeline>()
-            .add_systems(ExtractSchedule, extract::extract_smoke)
+            .add_systems(ExtractSchedule, (extract::extract_smoke, environment::extract_environments))
             .add_systems(
                 Render,
                 (
@@ -104,6 +112,7 @@ impl Plugin for SmokePlugin {
                     targets::allow_depth_reads
                         .in_set(RenderSystems::PrepareResources)
                         .before(prepare_core_3d_depth_textures),
+                    map_light::measure_maps.in_set(RenderSystems::PrepareResources),
                     targets::prepare_targets.in_set(RenderSystems::PrepareResources),
                     renderers::drop_renderers.in_set(RenderSystems::Cleanup),
                 ),

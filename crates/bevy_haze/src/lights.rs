@@ -14,9 +14,11 @@ use bevy::math::Vec3;
 use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight};
 use bevy::transform::components::GlobalTransform;
 use haze::frame::MAX_LIGHTS;
+use haze::settings::Ambient;
 use haze::{Light, LightKind, glam};
 
 use crate::convert;
+use crate::environment::HemisphereLight;
 
 /// Largest coordinate of a light that haze accepts, metres.
 pub(crate) const MAX_POSITION: f32 = 1.0e5;
@@ -24,6 +26,8 @@ pub(crate) const MAX_POSITION: f32 = 1.0e5;
 pub(crate) const MAX_INTENSITY: f32 = 1.0e9;
 /// Largest radius of a light that haze accepts, metres.
 pub(crate) const MAX_RADIUS: f32 = 1.0e4;
+/// Largest ambient light that haze accepts.
+const MAX_AMBIENT: f32 = 100.0;
 /// Largest half angle of a spot light that haze accepts, degrees, and of its core.
 const MAX_ANGLES: [f32; 2] = [89.9, 89.0];
 
@@ -104,12 +108,23 @@ fn light(transform: &GlobalTransform, color: LinearRgba, intensity: f32) -> Opti
     })
 }
 
-/// Exposed ambient light of a view: that of its camera, or the global one.
-pub(crate) fn ambient_light(own: Option<&AmbientLight>, global: &GlobalAmbientLight, exposure: f32) -> glam::Vec3 {
+/// Ambient light of a view, that of its camera or the global one, cd/m².
+pub(crate) fn ambient_light(own: Option<&AmbientLight>, global: &GlobalAmbientLight) -> Vec3 {
     let (color, brightness): (Color, f32) = match own {
         Some(own) => (own.color, own.brightness),
         None => (global.color, global.brightness),
     };
-    let light = color.to_linear().to_vec3() * (brightness * exposure);
-    if light.is_finite() { convert::vec3(light.clamp(Vec3::ZERO, Vec3::splat(100.0))) } else { glam::Vec3::ZERO }
+    let light = color.to_linear().to_vec3() * brightness;
+    if light.is_finite() { light.max(Vec3::ZERO) } else { Vec3::ZERO }
+}
+
+/// Exposed light of both hemispheres as haze takes it.
+pub(crate) fn haze_ambient(light: HemisphereLight) -> Ambient {
+    let color = |light: Vec3| {
+        let light = if light.is_finite() { light } else { Vec3::ZERO };
+        convert::vec3(light.clamp(Vec3::ZERO, Vec3::splat(MAX_AMBIENT)))
+    };
+    let (sky_color, ground_color) = (color(light.sky), color(light.ground));
+    let is_dark = sky_color == glam::Vec3::ZERO && ground_color == glam::Vec3::ZERO;
+    Ambient { intensity: if is_dark { 0.0 } else { 1.0 }, sky_color, ground_color }
 }

@@ -9,7 +9,7 @@ use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
 use bevy::light::{AmbientLight, GlobalAmbientLight};
 use bevy::log::error_once;
-use bevy::math::Vec2;
+use bevy::math::{Vec2, Vec3};
 use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight, ViewLightEntities, ViewShadowBindings};
 use bevy::render::camera::{ExtractedCamera, TemporalJitter};
 use bevy::render::diagnostic::RecordDiagnostics;
@@ -27,9 +27,11 @@ use haze::{Error, FrameInput, SceneDepth, View, glam, wgpu};
 
 use crate::composite::CompositeResources;
 use crate::convert;
+use crate::environment::{ExtractedEnvironments, HemisphereLight};
 use crate::extract::ExtractedSmokes;
 use crate::gpu_asset::GpuSmoke;
 use crate::lights::{ambient_light, scene_lights};
+use crate::map_light::MapLights;
 use crate::renderers::{PassFormat, SmokeRenderers, ViewRenderer, smokes_in_view};
 use crate::shadow_maps::{LightShadow, ShadowViews};
 use crate::targets::{LIGHT_FORMAT, LightTarget, SmokeTargets, draws_directly};
@@ -59,6 +61,8 @@ pub(crate) struct LightSources<'w, 's> {
     points: Query<'w, 's, (Entity, &'static ExtractedPointLight, Option<&'static RenderLayers>)>,
     suns: Query<'w, 's, (Entity, &'static ExtractedDirectionalLight, Option<&'static RenderLayers>)>,
     ambient: Option<Res<'w, GlobalAmbientLight>>,
+    environments: Res<'w, ExtractedEnvironments>,
+    maps: Res<'w, MapLights>,
     shadow_views: ShadowViews<'w, 's>,
 }
 
@@ -80,11 +84,9 @@ pub(crate) fn prepare_smoke(
 ) {
     let entity = view.entity();
     let view = view.into_inner();
-    let global_ambient = sources.ambient.as_deref().cloned().unwrap_or_default();
-    let ambient = ambient_light(view.ambient, &global_ambient, view.camera.exposure);
     let systems: Vec<_> = smokes_in_view(&smokes, view.layers)
         .filter_map(|smoke| Some((smoke, presets.get(smoke.asset)?)))
-        .flat_map(|(smoke, preset)| view_systems(smoke, preset, &buffers, ambient))
+        .flat_map(|(smoke, preset)| view_systems(smoke, preset, &buffers, sources.ambient_at(smoke.origin, &view)))
         .collect();
     if systems.is_empty() {
         renderers.clear_drawn(entity);
@@ -104,9 +106,10 @@ pub(crate) fn prepare_smoke(
     let span = recorder.time_span(encoder, "smoke");
     let frame_lights = sources.of_frame(&view, &systems);
     let shadow_maps: Vec<_> = frame_lights.shadows.iter().map(LightShadow::map).collect();
-    let shades_meshes = systems.iter().any(ViewSystem::shades_meshes);
+    let shading = systems.iter().find(|system| system.shades_meshes());
+    let shades_meshes = shading.is_some();
     let frame = FrameInput {
-        scene_ambient: shades_meshes.then_some(ambient),
+        scene_ambient: shading.map(ViewSystem::mean_ambient),
         lights: &frame_lights.lights,
         shadow_maps: &shadow_maps,
         time: smokes.seconds as f32,
@@ -125,6 +128,14 @@ pub(crate) fn prepare_smoke(
 }
 
 impl LightSources<'_, '_> {
+    /// Exposed ambient light and light of environment maps at a point.
+    fn ambient_at(&self, point: Vec3, view: &CameraViewItem<'_, '_>) -> HemisphereLight {
+        let global = self.ambient.as_deref().cloned().unwrap_or_default();
+        let even = HemisphereLight::even(ambient_light(view.ambient, &global));
+        let maps = self.environments.light_at(point, (*view.camera_entity, view.layers), &self.maps);
+        even.plus(maps, 1.0).scaled(view.camera.exposure)
+    }
+
     /// Lights of fires, which are not exposed, and those of the scene.
     fn of_frame<'a>(&self, view: &CameraViewItem<'a, '_>, systems: &[ViewSystem<'_>]) -> FrameLights<'a> {
         let origins: Vec<_> = systems.iter().map(|system| system.smoke.origin).collect();

@@ -2,12 +2,13 @@
 
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::storage::GpuShaderBuffer;
-use haze::settings::{Ambient, Shadow};
+use haze::settings::Shadow;
 use haze::{EmitterSnapshot, ParticleBuffer, ParticleSystem, Particles, Settings, glam, wgpu};
 
+use crate::environment::HemisphereLight;
 use crate::extract::{ExtractedSmoke, Source};
 use crate::gpu_asset::{GpuSmoke, GpuSystem};
-use crate::lights::{MAX_INTENSITY, MAX_POSITION, MAX_RADIUS};
+use crate::lights::{MAX_INTENSITY, MAX_POSITION, MAX_RADIUS, haze_ambient};
 use crate::renderers::system_key;
 
 /// One particle system of one entity.
@@ -24,12 +25,12 @@ pub(crate) struct ViewSystem<'a> {
 }
 
 /// Systems of an entity. Particles of its own replace the emitter of the first and hide the others; a buffer that is not
-/// there yet shows nothing.
+/// there yet shows nothing. `ambient`: exposed light at the entity.
 pub(crate) fn view_systems<'a>(
     smoke: &'a ExtractedSmoke,
     preset: &'a GpuSmoke,
     buffers: &'a RenderAssets<GpuShaderBuffer>,
-    ambient: glam::Vec3,
+    ambient: HemisphereLight,
 ) -> impl Iterator<Item = ViewSystem<'a>> {
     let (count, buffer) = match &smoke.source {
         Source::Preset => (preset.systems.len(), None),
@@ -40,18 +41,15 @@ pub(crate) fn view_systems<'a>(
         }
     };
     preset.systems.iter().take(count).enumerate().map(move |(index, system)| {
-        // Up and down are alike: Bevy's ambient light has no direction.
-        let intensity = if ambient == glam::Vec3::ZERO { 0.0 } else { 1.0 };
         let scene = if smoke.shades_meshes { system.preset.settings.shadow.scene } else { 0.0 };
         let shadow = Shadow { scene, ..system.preset.settings.shadow };
-        let ambient = Ambient { intensity, sky_color: ambient, ground_color: ambient };
         ViewSystem {
             smoke,
             system,
             key: system_key(smoke.entity, index),
             snapshot: system.preset.emitter_snapshot(smoke.seconds as f32),
             buffer,
-            settings: Settings { ambient, shadow, ..system.preset.settings },
+            settings: Settings { ambient: haze_ambient(ambient), shadow, ..system.preset.settings },
         }
     })
 }
@@ -60,6 +58,12 @@ impl ViewSystem<'_> {
     /// True if its shadow falls on meshes.
     pub fn shades_meshes(&self) -> bool {
         self.settings.receives_shadow() && self.settings.shadow.scene > 0.0
+    }
+
+    /// Ambient light, averaged over all directions.
+    pub fn mean_ambient(&self) -> glam::Vec3 {
+        let ambient = self.settings.ambient;
+        0.5 * (ambient.sky_color + ambient.ground_color)
     }
 
     /// The system as haze takes it.

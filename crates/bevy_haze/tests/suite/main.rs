@@ -5,6 +5,7 @@
 mod alone;
 mod cost;
 mod entities;
+mod environment;
 mod host;
 mod parity;
 mod picture;
