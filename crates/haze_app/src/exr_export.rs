@@ -21,6 +21,7 @@ use crate::smoke_alone::{before_two_skies, separated};
 /// Renders a shot and writes it. With the scene: `R`, `G` and `B`. Alone: premultiplied, with `A`, the accumulated amount
 /// `amount.Y`, and the mean normal of the smoke in view space `normal.X`, `normal.Y` and `normal.Z`.
 pub fn write(backend: &Backend, shot: &Shot, background: Background, path: &Path) -> Result<(), Error> {
+    let shot = &*shot.at_its_time();
     let exposure = exposure(shot);
     let lit = |texel: Vec4| (texel.xyz() * if exposure > 0.0 { exposure } else { 1.0 }).extend(texel.w);
     let mut channels = Vec::new();

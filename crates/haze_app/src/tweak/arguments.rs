@@ -6,7 +6,6 @@ use clap::Args;
 use eframe::egui;
 use glam::UVec2;
 use haze::Error;
-use haze::settings::set_field;
 
 use super::files::hot_reload::ShaderFolder;
 use super::files::persistence::{Layout, Persistence};
@@ -63,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         None => Session::open(&arguments.preset, arguments.assets.folder()?)?,
     };
     for (field, value) in &arguments.set {
-        set_field(&mut session.document.preset, field, value).map_err(|error| with_option("--set", error))?;
+        session.document.preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
     }
     session.document.preset.validate()?;
     session.screenshot = arguments.screenshot.clone();
