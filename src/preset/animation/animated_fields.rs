@@ -40,11 +40,12 @@ impl AnimatedField<'_> {
 
     /// True for a value of this field's type.
     pub(super) fn accepts(&self, value: &KeyValue) -> bool {
-        match (self, value) {
-            (Self::Number(..) | Self::Whole(..), KeyValue::Number(_)) | (Self::Flag(_), KeyValue::Flag(_)) => true,
-            (Self::Vector(..) | Self::Direction(..) | Self::Color(..), KeyValue::Vector(_)) => true,
-            (Self::Choice(choice), KeyValue::Choice(name)) => choice.names().contains(&name.as_str()),
-            _ => false,
+        match self {
+            Self::Number(..) | Self::Whole(..) => matches!(value, KeyValue::Number(_)),
+            Self::Vector(..) | Self::Direction(..) | Self::Color(..) => matches!(value, KeyValue::Vector(_)),
+            Self::Flag(_) => matches!(value, KeyValue::Flag(_)),
+            Self::Choice(choice) => matches!(value, KeyValue::Choice(name) if choice.names().contains(&name.as_str())),
+            Self::Other => false,
         }
     }
 

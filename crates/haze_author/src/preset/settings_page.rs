@@ -66,30 +66,22 @@ impl Page {
     /// Adds the sections of tracks, which are no settings of the preset.
     fn animation(&mut self) {
         let description = |page: &Self, path: &str| page.tooltips.field(path).unwrap_or_default().replace('\n', " ");
-        let fields: [(&str, &[(&str, String, &str)]); 2] = [
-            (
-                "animation",
-                &[
-                    ("setting", "the full name of a number, vector, color, switch or choice".into(), ""),
-                    ("keys", format!("at most {MAX_KEYFRAMES} in a preset"), "none"),
-                    ("period", "0 to 100000 s".into(), "0"),
-                ],
-            ),
-            (
-                "animation.keys",
-                &[
-                    ("time", "-100000 to 100000 s".into(), ""),
-                    ("value", "that of the setting".into(), ""),
-                    ("ease", self.eases(), "`smooth`"),
-                ],
-            ),
+        let tracks = [
+            ("setting", "the full name of a number, vector, color, switch or choice".into(), ""),
+            ("keys", format!("at most {MAX_KEYFRAMES} in a preset"), "none"),
+            ("period", "0 to 100000 s".into(), "0"),
         ];
-        for (title, rows) in fields {
-            let row = |(name, range, default): &(&str, String, &str)| {
+        let keys = [
+            ("time", "-100000 to 100000 s".into(), ""),
+            ("value", "that of the setting".into(), ""),
+            ("ease", self.eases(), "`smooth`"),
+        ];
+        for (title, rows) in [("animation", tracks), ("animation.keys", keys)] {
+            let row = |(name, range, default): (&str, String, &str)| {
                 let description = description(self, &format!("{title}.{name}"));
                 format!("| `{name}` | {description} | {range} | {default} |\n")
             };
-            let rows = rows.iter().map(row).collect();
+            let rows = rows.into_iter().map(row).collect();
             let description = description(self, title);
             self.sections.push(Section { title: title.to_owned(), description, rows });
         }
