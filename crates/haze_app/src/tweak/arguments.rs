@@ -13,6 +13,7 @@ use super::files::shared_look;
 use super::platform::file_dialog::Dialogs;
 use super::platform::{asset_loading, file_io, state_folder};
 use super::session::Session;
+use super::session::playback::Playback;
 use super::window::Start;
 use super::window::open::open;
 use crate::options::{AssetsArguments, parse_assignment, parse_size, with_option};
@@ -65,6 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         session.document.preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
     }
     session.document.preset.validate()?;
+    session.playback = Playback::of(&session.document.preset);
     session.screenshot = arguments.screenshot.clone();
     let shaders = match &arguments.shaders {
         Some(folder) => asset_loading::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,

@@ -144,7 +144,7 @@ impl Session {
         let (materials, caches) = asset_loading::all(preset, source, &folders)?;
         Ok(Self {
             assets,
-            playback: Playback::at(preset.time),
+            playback: Playback::of(preset),
             view: ViewOptions::default(),
             compare: CompareState::default(),
             psnr_job: PsnrJob::default(),
@@ -421,7 +421,7 @@ impl Session {
     pub fn replace_document(&mut self, document: Document, (materials, caches): LoadedAssets) {
         self.loaded_materials = LoadedMaterials::new(&document.preset, materials);
         self.particle_files = LoadedParticles::new(&document.preset, caches);
-        self.playback = Playback::at(document.preset.time);
+        self.playback = Playback::of(&document.preset);
         (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
         self.ramps = RampEdits::default();
         self.copy_request = None;
