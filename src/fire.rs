@@ -13,8 +13,10 @@ use crate::formula::ramp::{sample_ramp, sample_ramp_2d};
 use crate::frame::{Light, LightKind, Particle};
 use crate::settings::Settings;
 
-/// Changes of brightness per second, slow and fast.
-const FLICKER_RATES: [f32; 2] = [5.0, 13.0];
+/// Slow changes of brightness per second.
+const FLICKER_RATE: f32 = 5.0;
+/// Rates of the flicker's two waves, relative to the slow one.
+const FLICKER_WAVES: [f64; 2] = [1.0, 2.6];
 /// Brightness at which a fire's light ends.
 const FAINTEST: f32 = 0.004;
 
@@ -48,7 +50,8 @@ pub fn light(
     let share = 1.0 - (-area / (reach * reach)).exp();
     let color = sum.light / sum.weight;
     let brightest = color.max_element();
-    let intensity = brightest * fire.intensity * fire.light * share * reach * reach * flicker(fire.flicker, time, seed);
+    let brightness = brightest * fire.intensity * fire.light * share * reach * reach;
+    let intensity = brightness * flicker(fire.flicker, FLICKER_RATE, time, seed);
     // Within the ranges of a light.
     let (intensity, reach) = (intensity.min(1.0e9), reach.min(1.0e4));
     (intensity > FAINTEST).then(|| Light {
@@ -129,16 +132,16 @@ impl Flames {
     }
 }
 
-/// Brightness at a time: 1 on average. `depth`: 0 is steady.
-fn flicker(depth: f32, time: f32, seed: u32) -> f32 {
-    let wave = |octave: u32, rate: f32| {
-        let at = f64::from(time) * f64::from(rate);
+/// Brightness at a time: 1 on average. `depth`: 0 is steady. `rate`: slow changes per second.
+pub(crate) fn flicker(depth: f32, rate: f32, time: f32, seed: u32) -> f32 {
+    let wave = |octave: u32, relative: f64| {
+        let at = f64::from(time) * (f64::from(rate) * relative);
         let value = |step: i64| unit(pcg3d(UVec3::new(step as u32, octave, seed)).x) * 2.0 - 1.0;
         let first = at.floor() as i64;
         let blend = (at - at.floor()) as f32;
         value(first) + (value(first.wrapping_add(1)) - value(first)) * smoothstep_unit(blend)
     };
-    let sum: f32 = (0..).zip(FLICKER_RATES).map(|(octave, rate)| wave(octave, rate)).sum();
+    let sum: f32 = (0..).zip(FLICKER_WAVES).map(|(octave, relative)| wave(octave, relative)).sum();
     (1.0 + 0.5 * depth * sum).max(0.0)
 }
 
@@ -196,7 +199,7 @@ mod tests {
 
     #[test]
     fn flicker_is_seekable_continuous_and_different_for_each_seed() {
-        let at = |time, seed| flicker(0.8, time, seed);
+        let at = |time, seed| flicker(0.8, FLICKER_RATE, time, seed);
         let times = || (0..4000).map(|step| step as f32 * 0.005);
         // A hundred turns of the slow wave do not average out entirely.
         let mean = times().map(|time| at(time, 1)).sum::<f32>() / 4000.0;
@@ -204,6 +207,6 @@ mod tests {
         assert!(times().all(|time| (at(time, 1) - at(time + 0.001, 1)).abs() < 0.05));
         assert!(times().any(|time| (at(time, 1) - at(time, 2)).abs() > 0.3));
         assert_eq!(at(77.3, 5).to_bits(), at(77.3, 5).to_bits());
-        assert!((flicker(0.0, 3.0, 9) - 1.0).abs() < 1e-6);
+        assert!((flicker(0.0, FLICKER_RATE, 3.0, 9) - 1.0).abs() < 1e-6);
     }
 }

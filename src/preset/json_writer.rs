@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use serde::{Serialize, Serializer};
 
+use super::animation::Track;
 use super::preset_file::{Preset, PresetSystem};
 use crate::frame::Light;
 use crate::settings::{FieldValue, PathStep, for_each_field};
@@ -33,6 +34,9 @@ impl Preset {
                 insert(&mut root, path, finite(value));
             }
         });
+        if !self.animation.is_empty() {
+            root.push(("animation", Node::Tracks(self.animation.clone())));
+        }
         // A tree of numbers and texts with texts as names: serialisation cannot fail.
         serde_json::to_string_pretty(&Node::Object(root)).unwrap_or_default() + "\n"
     }
@@ -66,6 +70,7 @@ enum Node {
     FieldValue(FieldValue),
     Object(Vec<(&'static str, Node)>),
     List(Vec<Node>),
+    Tracks(Vec<Track>),
 }
 
 impl Serialize for Node {
@@ -74,6 +79,7 @@ impl Serialize for Node {
             Self::FieldValue(value) => value.serialize(serializer),
             Self::Object(fields) => serializer.collect_map(fields.iter().map(|(name, node)| (name, node))),
             Self::List(nodes) => serializer.collect_seq(nodes),
+            Self::Tracks(tracks) => tracks.serialize(serializer),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Presets: a camera, lights and particle systems in a JSON file.
 
+mod animated_preset;
+mod animation;
 mod asset_folders;
 mod camera;
 mod environment;
@@ -11,6 +13,8 @@ mod particle_source;
 mod preset_file;
 mod sequence;
 
+pub use animated_preset::AnimatedPreset;
+pub use animation::{Ease, Flicker, KeyValue, Keyframe, MAX_KEYFRAMES, Track};
 pub use asset_folders::AssetFolders;
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};

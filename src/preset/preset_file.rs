@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use super::animation::{Track, validate_tracks};
 use super::asset_folders::AssetFolders;
 use super::camera::Camera;
 use super::environment::Environment;
@@ -52,6 +53,9 @@ pub struct Preset {
     /// Particle systems: the smoke.
     #[serde(default)]
     pub systems: Vec<PresetSystem>,
+    /// Settings that change over time, by keyframes and flicker: at most one track for each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub animation: Vec<Track>,
 }
 
 /// One particle system.
@@ -87,6 +91,7 @@ impl Default for Preset {
             environment: Environment::default(),
             lights: Vec::new(),
             systems: Vec::new(),
+            animation: Vec::new(),
         }
     }
 }
@@ -207,11 +212,21 @@ impl Preset {
         self.systems.iter().enumerate().map(load).collect()
     }
 
-    /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once.
+    /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once; also with the values of each keyframe.
     ///
     /// # Errors
     /// The first field that is not valid.
     pub fn validate(&self) -> Result<(), FieldError> {
+        self.validate_settings()?;
+        if self.animation.is_empty() {
+            return Ok(());
+        }
+        let still = Self { animation: Vec::new(), ..self.clone() };
+        validate_tracks(&self.animation, &still, Self::validate_settings)
+    }
+
+    /// Checks everything but the animation.
+    fn validate_settings(&self) -> Result<(), FieldError> {
         validate(self, String::new)?;
         if self.camera.position.distance(self.camera.target) < 1.0e-3 {
             return Err(FieldError::new("camera.target", self.camera.target, "a point other than camera.position"));

@@ -39,6 +39,12 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
     }
 }
 
+/// True for the full path of a field that [`set_field`] sets, if `path` was given and `name` returned.
+pub(crate) fn is_field_named(field: &str, path: &str, name: &str) -> bool {
+    let steps = (parse_path(field), parse_path(path));
+    matches!(steps, (Ok(field), Ok(path)) if is_wanted(&field, &path) && names_without_indices(&field) == name)
+}
+
 fn parse_path(path: &str) -> Result<Vec<PathStep<'_>>, FieldError> {
     let step = |text| match str::strip_suffix(text, ']') {
         None => Some((text, None)),

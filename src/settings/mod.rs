@@ -23,6 +23,7 @@ pub use accumulate::{
     Accumulate, AccumulationFormat, BlendOrder, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
     NormalEncoding, Upsample,
 };
+pub(crate) use assign::is_field_named;
 pub use assign::set_field;
 #[doc(hidden)]
 pub use choice::choice;

@@ -31,6 +31,7 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
     match kind {
         "preset" => {
             let preset = Preset::load(path.to_str().unwrap())?;
+            let preset = preset.at(preset.time);
             preset.load_materials(path)?;
             let caches = particle_files::load_particle_files(&preset, path, &AssetFolders::beside(path))?;
             let mut particles = Vec::new();

@@ -68,6 +68,7 @@ pub async fn write_sequence(
 
 /// Renders the channels of a shot.
 async fn channels(backend: &Backend, shot: &Shot, background: Background, seconds: f32) -> Result<Vec<Channel>, Error> {
+    let shot = &*shot.at_its_time();
     let exposure = exposure(shot);
     let lit = |texel: Vec4| (texel.xyz() * if exposure > 0.0 { exposure } else { 1.0 }).extend(texel.w);
     let mut channels = Vec::new();

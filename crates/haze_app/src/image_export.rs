@@ -76,11 +76,11 @@ impl Frames {
         self.range.end() - self.range.start() + 1
     }
 
-    /// Returns the shot at the time of a frame.
+    /// Returns the shot at the time of a frame, with the values that its settings have then.
     pub fn shot(&self, shot: &Shot, frame: u32) -> Shot {
         let mut shot = shot.clone();
         shot.preset.time += frame as f32 / self.rate;
-        shot
+        shot.at_its_time().into_owned()
     }
 
     /// Returns the error of a sequence that was stopped after so many frames.

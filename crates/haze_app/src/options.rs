@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use glam::UVec2;
 use haze::image::{CompressionEffort, write_png};
 use haze::preset::{AssetFolders, Preset};
-use haze::settings::{Choice, RenderPath, Technique, UnknownChoice, set_field};
+use haze::settings::{Choice, RenderPath, Technique, UnknownChoice};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_demo::headless::Headless;
@@ -59,7 +59,7 @@ pub struct ShotArguments {
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_hyphen_values = true)]
     seed: Option<u32>,
     /// Set a field of the preset, named by its path or the end of it: `accumulate.scale=4`, `lights[0].intensity=30`.
-    /// May be given more than once.
+    /// It replaces keyframes. May be given more than once.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
     set: Vec<(String, String)>,
     /// PNG to write.
@@ -131,15 +131,19 @@ impl ShotArguments {
     /// Like [`Self::load_for`], with the ending of each output.
     pub fn load_outputs(&self, outputs: &[(&str, PathBuf, &str)]) -> Result<Shot, Error> {
         let mut preset = Preset::load(&self.preset)?;
-        for system in &mut preset.systems {
-            system.emitter.seed = self.seed.unwrap_or(system.emitter.seed);
-            system.settings.accumulate.scale = self.scale.unwrap_or(system.settings.accumulate.scale);
-            system.settings.path = self.run.path.unwrap_or(system.settings.path);
-            system.settings.technique = self.technique.unwrap_or(system.settings.technique);
+        let of_systems = [
+            ("systems.emitter.seed", self.seed.map(|seed| seed.to_string())),
+            ("systems.settings.accumulate.scale", self.scale.map(|scale| scale.to_string())),
+            ("systems.settings.path", self.run.path.map(|path| path.name().into())),
+            ("systems.settings.technique", self.technique.map(|technique| technique.name().into())),
+        ];
+        let has_systems = !preset.systems.is_empty();
+        for (field, value) in of_systems.into_iter().filter(|_| has_systems) {
+            value.map_or(Ok(String::new()), |value| preset.set_field(field, &value))?;
         }
         preset.time = self.time.unwrap_or(preset.time);
         for (field, value) in &self.set {
-            set_field(&mut preset, field, value).map_err(|error| with_option("--set", error))?;
+            preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
         }
         let shot = self.shot(preset)?;
         let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);

@@ -111,6 +111,7 @@ fn rgb(image: &Image<Vec4>) -> Image<Vec3> {
 impl CapturedFrame {
     /// Combines the targets with the captured shot. Evaluates the shot's particles once for all pixels.
     pub fn with_shot(self, shot: Shot) -> ProbeInputs {
+        let shot = shot.at_its_time().into_owned();
         ProbeInputs { captured: self, systems: shot.systems(), shot }
     }
 }

@@ -19,6 +19,10 @@ impl Shot {
     /// # Errors
     /// [`Error::Field`] if the preset was changed to invalid values.
     pub fn render_on_cpu(&self) -> Result<Image<Vec4>, Error> {
+        self.at_its_time().render_still()
+    }
+
+    fn render_still(&self) -> Result<Image<Vec4>, Error> {
         let view = self.preset.camera.view(self.size);
         let scene = self.scene();
         let depth = ray_caster::render_depth(&scene, &view);

@@ -142,6 +142,7 @@ impl OffscreenRenderer {
         shot: &Shot,
         stages: &[DebugView],
     ) -> Result<(), Error> {
+        let shot = &*shot.at_its_time();
         shot.preset.validate()?;
         self.upload(&shot.materials)?;
         let OffscreenContext { device, scene, attaches_depth, .. } = &self.context;
@@ -254,6 +255,7 @@ impl OffscreenRenderer {
     /// # Errors
     /// [`Error::Shader`] with the name of the pass, if custom shaders cannot be compiled.
     pub fn warm_up(&self, shot: &Shot) -> Result<(), Error> {
+        let shot = shot.at_its_time();
         let settings: Vec<_> = shot.preset.systems.iter().map(|system| system.settings).collect();
         self.renderer.warm_up(&WarmUp {
             view: shot.preset.camera.view(shot.size),

@@ -1,5 +1,6 @@
 //! A preset with its images and particle files loaded, independent of the renderer.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use glam::{UVec2, Vec3};
@@ -71,6 +72,15 @@ impl Shot {
         }
         let caches = load_particle_files(&preset, path, folders)?;
         Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches, shown_scalar: None })
+    }
+
+    /// The shot at the time of its preset: its settings have the values of their tracks. Drawing does so by itself; do it before
+    /// settings are changed for one image, because tracks replace them.
+    pub fn at_its_time(&self) -> Cow<'_, Self> {
+        if self.preset.animation.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { preset: self.preset.at(self.preset.time), ..self.clone() })
     }
 
     /// True if both give the same image before tonemapping; exposure is ignored. Cheap: images and particles from files

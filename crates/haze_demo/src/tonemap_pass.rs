@@ -45,7 +45,7 @@ pub fn rgba8(encoded: &Image<Vec4>) -> RgbaImage {
 
 /// Returns the exposure factor of a shot; 0 if its debug view shows data.
 pub fn exposure(shot: &Shot) -> f32 {
-    if shot.debug_view.is_data() { 0.0 } else { shot.preset.camera.exposure.exp2() }
+    if shot.debug_view.is_data() { 0.0 } else { shot.at_its_time().preset.camera.exposure.exp2() }
 }
 
 /// Dithers and rounds to 8 bits.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use glam::UVec2;
 use haze::image::write_file;
-use haze::preset::{Preset, PresetSystem};
+use haze::preset::{Preset, PresetSystem, Track};
 use haze::settings::{FieldValue, field_values};
 use haze::{Error, FieldError, Light, builtin};
 use haze_author::preset::{check_files, no_effect_reason};
@@ -93,7 +93,7 @@ fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<Strin
     let preset = Preset::load(path).map_err(|error| explain_wrong_kind(error, path, "preset", "a preset"))?;
     let (wrong, mut notes) = check_files(&preset, path, &assets.folders(path)?);
     let settings = settings(&preset);
-    let changed = settings.iter().filter(|setting| !setting.is_default());
+    let changed = settings.iter().filter(|setting| !setting.is_default() || setting.track.is_some());
     let note = |setting: &Setting| Some(format!("{} has no effect: {}", setting.path, setting.no_effect_reason?));
     notes.extend(changed.filter_map(note));
     Ok((wrong, notes))
@@ -104,8 +104,9 @@ struct Setting {
     path: String,
     value: FieldValue,
     default: FieldValue,
-    /// Reason why it has no effect.
+    /// Reason why it has no effect, at any time.
     no_effect_reason: Option<&'static str>,
+    track: Option<Track>,
 }
 
 impl Setting {
@@ -120,18 +121,37 @@ fn settings(preset: &Preset) -> Vec<Setting> {
         systems: vec![PresetSystem::default(); preset.systems.len()],
         ..Preset::default()
     };
+    let (moments, size) = (moments(preset), SIZE);
     let pairs = field_values(preset).into_iter().zip(field_values(&plain));
     let setting = |((path, value), (_, default)): ((String, FieldValue), (String, FieldValue))| {
-        let no_effect_reason = no_effect_reason(preset, &path, SIZE);
-        Setting { path, value, default, no_effect_reason }
+        let reasons = moments.iter().map(|moment| no_effect_reason(moment, &path, size));
+        let no_effect_reason = reasons.collect::<Option<Vec<_>>>().and_then(|reasons| reasons.first().copied());
+        let track = preset.animation.iter().find(|track| track.setting == path).cloned();
+        Setting { path, value, default, no_effect_reason, track }
     };
     pairs.map(setting).collect()
+}
+
+/// Returns the preset at its own time and at those of its keyframes.
+fn moments(preset: &Preset) -> Vec<Preset> {
+    let mut times: Vec<_> = preset.animation.iter().flat_map(|track| &track.keys).map(|key| key.time).collect();
+    times.push(preset.time);
+    times.sort_by(f32::total_cmp);
+    times.dedup();
+    times.into_iter().map(|time| preset.at(time)).collect()
+}
+
+/// Describes a track: `keyframes at 0, 2.5 s; flickers`.
+fn described(track: &Track) -> String {
+    let times: Vec<_> = track.keys.iter().map(|key| key.time.to_string()).collect();
+    let keys = if times.is_empty() { String::new() } else { format!("; keyframes at {} s", times.join(", ")) };
+    keys + if track.flicker.amount > 0.0 { "; flickers" } else { "" }
 }
 
 fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
     let settings = settings(preset);
     let wide = settings.iter().map(|setting| setting.path.len()).max().unwrap_or_default();
-    for setting in settings.iter().filter(|setting| !(changed && setting.is_default())) {
+    for setting in settings.iter().filter(|setting| !(changed && setting.is_default() && setting.track.is_none())) {
         let text = |value: &FieldValue| match value {
             // JSON has no infinity.
             FieldValue::Number(number) if !number.is_finite() => number.to_string(),
@@ -139,7 +159,8 @@ fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
         };
         let mark = if setting.is_default() { "default".into() } else { format!("default {}", text(&setting.default)) };
         let no_effect = setting.no_effect_reason.map(|reason| format!("; no effect: {reason}")).unwrap_or_default();
-        print_line!("{:<wide$}  {:<22} {mark}{no_effect}", setting.path, text(&setting.value))?;
+        let track = setting.track.as_ref().map(described).unwrap_or_default();
+        print_line!("{:<wide$}  {:<22} {mark}{track}{no_effect}", setting.path, text(&setting.value))?;
     }
     Ok(())
 }

@@ -2,7 +2,6 @@
 
 use clap::Args;
 use glam::UVec2;
-use haze::settings::set_field;
 use haze::{Error, FieldError};
 use pollster::block_on;
 
@@ -39,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut cells = Vec::new();
     for value in values {
         let mut preset = base.preset.clone();
-        let set = set_field(&mut preset, field, value).map_err(|error: FieldError| with_option("--vary", error));
+        let set = preset.set_field(field, value).map_err(|error: FieldError| with_option("--vary", error));
         name = set?;
         let mut shot = arguments.shot.shot(preset)?;
         shot.size = size;

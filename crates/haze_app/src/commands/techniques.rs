@@ -107,7 +107,7 @@ struct Cell {
 fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
     let mut cells = Vec::new();
     for variant in variants() {
-        let mut shot = shot.clone();
+        let mut shot = shot.at_its_time().into_owned();
         for system in &mut shot.preset.systems {
             system.settings.technique = variant.technique;
             if variant.always {

@@ -1,6 +1,7 @@
 //! Tests of links: looks are restored, old links open for ever, hostile ones are refused.
 
 use haze::Light;
+use haze::preset::{Ease, KeyValue, Keyframe, Track};
 use haze::settings::set_field;
 use haze_author::ramp::{HexColor, RampRow, RampStop};
 
@@ -22,6 +23,9 @@ fn changed_look() -> Look {
     ] {
         set_field(&mut look.preset, field, value).unwrap();
     }
+    let key = |time, value| Keyframe { time, value: KeyValue::Number(value), ease: Ease::Linear };
+    let keys = vec![key(0.0, 2.0), key(1.5, 9.0)];
+    look.preset.animation = vec![Track { setting: "lights[0].intensity".into(), keys, ..Track::default() }];
     look.preset.lights.push(Light { intensity: 33.3, ..Light::default() });
     let stops = (0..8).map(|at| RampStop::new(at as f32 / 7.0, HexColor([30 * at, 100, 255 - 30 * at]))).collect();
     let recipe = RampRecipe { rows: vec![RampRow { stops, ..RampRow::default() }], ..RampRecipe::default() };

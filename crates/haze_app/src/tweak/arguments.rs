@@ -6,7 +6,6 @@ use clap::Args;
 use eframe::egui;
 use glam::UVec2;
 use haze::Error;
-use haze::settings::set_field;
 
 use super::files::hot_reload::ShaderFolder;
 use super::files::persistence::{Layout, Persistence};
@@ -14,6 +13,7 @@ use super::files::shared_look;
 use super::platform::file_dialog::Dialogs;
 use super::platform::{asset_loading, file_io, state_folder};
 use super::session::Session;
+use super::session::playback::Playback;
 use super::window::Start;
 use super::window::open::open;
 use crate::options::{AssetsArguments, parse_assignment, parse_size, with_option};
@@ -63,9 +63,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         None => Session::open(&arguments.preset, arguments.assets.folder()?)?,
     };
     for (field, value) in &arguments.set {
-        set_field(&mut session.document.preset, field, value).map_err(|error| with_option("--set", error))?;
+        session.document.preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
     }
     session.document.preset.validate()?;
+    session.playback = Playback::of(&session.document.preset);
     session.screenshot = arguments.screenshot.clone();
     let shaders = match &arguments.shaders {
         Some(folder) => asset_loading::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,

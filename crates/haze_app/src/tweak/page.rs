@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use haze::Error;
-use haze::settings::set_field;
 use wasm_bindgen_futures::spawn_local;
 
 use super::document::Document;
@@ -68,7 +67,7 @@ fn open_fragment(fragment: &str) -> Result<Session, Error> {
     let mut document = Document::open(Path::new(name))?;
     for assignment in parts {
         let (field, value) = assignment.split_once('=').unwrap_or((assignment, ""));
-        set_field(&mut document.preset, field, value)?;
+        document.preset.set_field(field, value)?;
     }
     document.preset.validate()?;
     Session::show(document, None)

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+#[path = "cli/animation.rs"]
+mod animation;
 #[path = "cli/bench.rs"]
 mod bench;
 #[path = "cli/drivers.rs"]

@@ -6,7 +6,7 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use haze::frame::Light;
-use haze::preset::{Camera, Preset, PresetSystem};
+use haze::preset::{Camera, Flicker, Preset, PresetSystem};
 use haze::settings::{Curve, FieldVisitor, Fields, MAX_CURVE_POINTS};
 
 /// Returns the JSON schema of preset files.
@@ -14,6 +14,8 @@ pub fn schema() -> String {
     let mut schema = schemars::schema_for!(Preset).to_value();
     let mut preset = preset_with_widest_ranges();
     preset.visit(&mut RangeWriter { schema: &mut schema, definition: String::new() });
+    // Tracks are no settings of the preset, and are not visited with them.
+    Flicker::default().visit(&mut RangeWriter { schema: &mut schema, definition: "/$defs/Flicker".into() });
     write_floats_as_f32(&mut schema);
     serde_json::to_string_pretty(&schema).unwrap_or_default()
 }
@@ -118,6 +120,9 @@ mod tests {
         assert_eq!(property("Accumulate/properties/scale")["maximum"], 16);
         assert_eq!(property("Light/properties/color/items")["maximum"], 100.0);
         assert_eq!(property("Light/properties/outer_angle")["minimum"], 0.0);
+        assert_eq!(property("Flicker/properties/rate")["maximum"], 60.0);
+        assert_eq!(property("Track/properties/period")["maximum"], 1.0e5);
+        assert_eq!(property("KeyValue")["anyOf"].as_array().map(Vec::len), Some(4));
         assert!(property("Upsample").to_string().contains("nearest_depth"));
     }
 }

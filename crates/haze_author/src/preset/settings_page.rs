@@ -11,7 +11,7 @@ use super::schema::preset_with_widest_ranges;
 use super::tooltips::Tooltips;
 use haze::assets::builtin;
 use haze::frame::Light;
-use haze::preset::{Preset, PresetSystem};
+use haze::preset::{Ease, Flicker, MAX_KEYFRAMES, Preset, PresetSystem};
 use haze::settings::{Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, MAX_CURVE_POINTS, field_values};
 
 const HEAD: &str = "\
@@ -30,6 +30,7 @@ pub fn settings_page() -> String {
     let defaults = field_values(&plain).into_iter().map(|(path, value)| (path.replace("[0]", ""), value)).collect();
     let mut page = Page { tooltips: Tooltips::of::<Preset>(), defaults, path: Vec::new(), sections: Vec::new() };
     page.section("preset", "Contents of a preset file.".into(), &mut preset);
+    page.animation();
     let mut text = HEAD.to_owned();
     for Section { title, description, rows } in page.sections.iter().filter(|section| !section.rows.is_empty()) {
         let head = "| field | what it does | range | default |\n|---|---|---|---|";
@@ -58,6 +59,44 @@ impl Page {
     fn section(&mut self, title: &str, description: String, fields: &mut dyn Fields) {
         self.sections.push(Section { title: title.to_owned(), description, rows: String::new() });
         fields.visit(&mut SectionWriter { section: self.sections.len() - 1, page: self });
+    }
+}
+
+impl Page {
+    /// Adds the sections of tracks, which are no settings of the preset.
+    fn animation(&mut self) {
+        let description = |page: &Self, path: &str| page.tooltips.field(path).unwrap_or_default().replace('\n', " ");
+        let tracks = [
+            ("setting", "the full name of a number, vector, color, switch or choice".into(), ""),
+            ("keys", format!("at most {MAX_KEYFRAMES} in a preset"), "none"),
+            ("period", "0 to 100000 s".into(), "0"),
+        ];
+        let keys = [
+            ("time", "-100000 to 100000 s".into(), ""),
+            ("value", "that of the setting".into(), ""),
+            ("ease", self.eases(), "`smooth`"),
+        ];
+        for (title, rows) in [("animation", tracks), ("animation.keys", keys)] {
+            let row = |(name, range, default): (&str, String, &str)| {
+                let description = description(self, &format!("{title}.{name}"));
+                format!("| `{name}` | {description} | {range} | {default} |\n")
+            };
+            let rows = rows.into_iter().map(row).collect();
+            let description = description(self, title);
+            self.sections.push(Section { title: title.to_owned(), description, rows });
+        }
+        let (title, mut flicker) = ("animation.flicker", Flicker::default());
+        let defaults = field_values(&flicker).into_iter().map(|(name, value)| (format!("{title}.{name}"), value));
+        self.defaults.extend(defaults);
+        self.path = vec!["animation", "flicker"];
+        self.section(title, description(self, title), &mut flicker);
+    }
+
+    fn eases(&self) -> String {
+        let ease = |name: &&str| {
+            format!("`{name}`: {}", self.tooltips.choice("animation.keys.ease", name).unwrap_or_default())
+        };
+        Ease::NAMES.iter().map(ease).collect::<Vec<_>>().join("<br>")
     }
 }
 

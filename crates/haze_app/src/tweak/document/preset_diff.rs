@@ -1,23 +1,31 @@
 //! Differences between two presets: names of undo steps, marks of changed fields, and copies of fields.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use haze::preset::Preset;
+use haze::preset::{Preset, Track};
 use haze::settings::{FieldValue, field_path, field_values, for_each_field};
 
 use super::display_names::{display_name, sentence_case};
+use super::keyframes::track;
 use super::light_defaults::light_name;
 
-/// Returns the paths of the fields that differ, such as `systems[0].settings.boost`. A list whose length differs counts
-/// as one field, such as `lights`.
+/// Returns the paths of the fields that differ, or whose tracks do, such as `systems[0].settings.boost`. A list whose length
+/// differs counts as one field, such as `lights`.
 pub fn changed_fields(before: &Preset, after: &Preset) -> Vec<String> {
     let pairs = lists(before).into_iter().zip(lists(after));
     let lists: Vec<_> = pairs.filter(|(before, after)| before != after).map(|((list, _), _)| list).collect();
     let is_whole = |path: &str| !lists.iter().any(|list| is_below(path, list));
     let fields = |preset| field_values(preset).into_iter().filter(|(path, _)| is_whole(path)).collect::<Vec<_>>();
     let pairs = fields(before).into_iter().zip(fields(after));
-    let changed = pairs.filter(|(before, after)| before != after).map(|((path, _), _)| path);
-    changed.chain(lists.iter().map(|&list| list.to_owned())).collect()
+    let mut changed: Vec<_> = pairs.filter(|(before, after)| before != after).map(|((path, _), _)| path).collect();
+    changed.extend(lists.iter().map(|&list| list.to_owned()));
+    let tracks = before.animation.iter().chain(&after.animation);
+    for path in tracks.map(|track| &track.setting).filter(|path| is_whole(path)) {
+        if track(before, path) != track(after, path) && !changed.contains(path) {
+            changed.push(path.clone());
+        }
+    }
+    changed
 }
 
 /// Returns the lists of a preset and their lengths.
@@ -30,9 +38,26 @@ fn is_below(path: &str, above: &str) -> bool {
     path.strip_prefix(above).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// Copies the values at a path: a field, a group, an item of a list, or a whole list. Fields that only one preset has
-/// are skipped.
+/// Copies the values and the tracks at a path: a field, a group, an item of a list, or a whole list. Fields that only one
+/// preset has are skipped.
 pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
+    copy_values(from, to, path);
+    copy_tracks(from, to, path);
+}
+
+fn copy_tracks(from: &Preset, to: &mut Preset, path: &str) {
+    let has_field: HashSet<_> = field_values(to).into_iter().map(|(path, _)| path).collect();
+    let at_path = |track: &&Track| is_below(&track.setting, path) && has_field.contains(&track.setting);
+    to.animation.retain(|track| !is_below(&track.setting, path));
+    to.animation.extend(from.animation.iter().filter(at_path).cloned());
+    // With the same tracks, their order is the same too.
+    let is_same = from.animation.iter().all(|its| track(to, &its.setting) == Some(its));
+    if is_same && from.animation.len() == to.animation.len() {
+        to.animation.clone_from(&from.animation);
+    }
+}
+
+fn copy_values(from: &Preset, to: &mut Preset, path: &str) {
     match path {
         "lights" => to.lights.clone_from(&from.lights),
         "systems" => to.systems.clone_from(&from.systems),
@@ -56,13 +81,7 @@ const MOVES: [&str; 2] = ["camera.position", "camera.target"];
 pub fn step_name(before: &Preset, after: &Preset) -> String {
     let changed = changed_fields(before, after);
     let Some(first) = changed.first() else { return "Change".into() };
-    let owner = owner_of(first);
-    let of = owner.map(|(list, index)| match (list, after.systems.get(index), after.lights.get(index)) {
-        ("systems", Some(system), _) if !system.name.is_empty() => format!(" of {}", system.name),
-        ("lights", _, Some(light)) => format!(" of {}", light_name(index, light)),
-        _ => format!(" of {} {}", singular(list), index + 1),
-    });
-    let of = of.unwrap_or_default();
+    let (owner, of) = (owner_of(first), of_owner(after, first));
     let length = |preset| lists(preset).into_iter().find(|(list, _)| list == first).map(|(_, length)| length);
     match changed.as_slice() {
         [list] if length(before) < length(after) => format!("{} added", sentence_case(singular(list))),
@@ -72,6 +91,25 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
         fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} settings{of}", fields.len()),
         fields => format!("{} settings", fields.len()),
     }
+}
+
+/// Returns the name of a setting with that of its light or system: "Boost of smoke", "Shadow: Strength of smoke".
+pub fn setting_title(preset: &Preset, path: &str) -> String {
+    let mut names = path.rsplit('.');
+    let (name, group) = (names.next().unwrap_or(path), names.next().unwrap_or_default());
+    let is_plain = group.contains('[') || ["", "settings", "emitter", "camera"].contains(&group);
+    let group = if is_plain { String::new() } else { format!("{}: ", display_name(group)) };
+    format!("{group}{}{}", display_name(name), of_owner(preset, path))
+}
+
+/// Returns " of " and the name of the light or system that a field belongs to.
+fn of_owner(preset: &Preset, path: &str) -> String {
+    let of = owner_of(path).map(|(list, index)| match (list, preset.systems.get(index), preset.lights.get(index)) {
+        ("systems", Some(system), _) if !system.name.is_empty() => format!(" of {}", system.name),
+        ("lights", _, Some(light)) => format!(" of {}", light_name(index, light)),
+        _ => format!(" of {} {}", singular(list), index + 1),
+    });
+    of.unwrap_or_default()
 }
 
 /// Returns the list and the index that a field belongs to: `systems[1].name` gives `systems` and 1.
@@ -91,6 +129,7 @@ mod tests {
     use haze::{Light, Settings};
 
     use super::*;
+    use crate::tweak::document::keyframes::add_key;
 
     fn changed_by(change: impl Fn(&mut Preset)) -> (Vec<String>, String) {
         let before = Preset::load("column").unwrap();
@@ -141,6 +180,22 @@ mod tests {
             1
         );
         assert_eq!(changed_fields(&preset, &preset), [""; 0]);
+    }
+
+    #[test]
+    fn a_change_of_keyframes_is_a_change_of_their_setting() {
+        let change = |preset: &mut Preset| {
+            add_key(preset, "lights[1].color", 1.0);
+            add_key(preset, "camera.exposure", 1.0);
+        };
+        let (mut changed, name) = changed_by(change);
+        changed.sort_unstable();
+        assert_eq!((changed.join(" ").as_str(), name.as_str()), ("camera.exposure lights[1].color", "2 settings"));
+        let (_, name) = changed_by(|preset| add_key(preset, "lights[1].color", 1.0));
+        assert_eq!(name, "Color of Fill (Sun 2)");
+        let preset = Preset::load("column").unwrap();
+        assert_eq!(setting_title(&preset, "systems[0].settings.shadow.strength"), "Shadow: Strength of smoke");
+        assert_eq!(setting_title(&preset, "camera.exposure"), "Exposure");
     }
 
     #[test]

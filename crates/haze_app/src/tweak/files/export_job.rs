@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::settings::set_field;
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
 use image::{DynamicImage, RgbImage};
@@ -260,7 +259,7 @@ impl ExportJob {
             // A single image has the aspect ratio of the viewport.
             size.x = ((size.y as f32 * session.view.aspect).round() as u32).clamp(1, MAX_PIXELS);
         }
-        let shot = session.shot(size);
+        let shot = session.animated_shot(size);
         let target = Target { path, title: session.document.title() };
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
@@ -405,7 +404,7 @@ async fn make(
 /// Returns nine shots: with the present seed and the eight after it.
 fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
     let with = |more: u32| {
-        let mut shot = shot.clone();
+        let mut shot = shot.at_its_time().into_owned();
         for system in &mut shot.preset.systems {
             system.emitter.seed = system.emitter.seed.wrapping_add(more);
         }
@@ -421,11 +420,12 @@ fn variations(shot: &Shot, path: &str) -> Vec<(String, Shot)> {
         let mut shot = shot.clone();
         match MacroParam::find(path) {
             Some((system, made)) => (made.set)(shot.preset.systems.get_mut(system)?, text.parse().ok()?),
-            None => drop(set_field(&mut shot.preset, path, &text).ok()?),
+            None => drop(shot.preset.set_field(path, &text).ok()?),
         }
         shot.preset.validate().ok()?;
         Some((text, shot))
     };
+    let shot = &*shot.at_its_time();
     spread_values(&shot.preset, path).into_iter().filter_map(with).collect()
 }
 

@@ -64,6 +64,7 @@ fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Lig
         is_changed: context.changed.contains(&path),
         second: second.as_ref().map(Option::as_deref),
         sheet: None,
+        key: None,
         reason_without_effect: None,
     };
     let (begin, tooltips) = (ui.cursor().min, context.tooltips);
@@ -129,19 +130,19 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
                 if ui.button(kind_name(kind)).clicked() {
                     let light = beside(new_light(kind, &preset.lights), &preset.camera, &smoke().bounds());
                     let end = preset.lights.len();
-                    shown.insert(&mut preset.lights, end, light);
+                    shown.insert(preset, end, light);
                 }
             }
         });
         if let Some(index) = shown.selected
             && ui.button("Duplicate").clicked()
         {
-            shown.duplicate(&mut preset.lights, index);
+            shown.duplicate(preset, index);
         }
     });
     let Some(index) = shown.selected else { return };
     if ui.button("Delete").clicked() {
-        shown.remove(&mut preset.lights, index);
+        shown.remove(preset, index);
     }
     let behind = ui.button("Move behind smoke").on_hover_text("Moves the light behind the smoke, seen from the camera");
     if behind.clicked() {
@@ -176,6 +177,7 @@ fn angles(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut L
             is_changed: context.changed.contains(&path),
             second,
             sheet: None,
+            key: context.keys.map(|keys| keys.of(&path)),
             reason_without_effect: None,
         };
         let refused = &mut context.refused;

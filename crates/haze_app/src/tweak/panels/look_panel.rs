@@ -64,7 +64,8 @@ fn macro_row(ui: &mut Ui, context: &mut RowContext<'_>, system: &mut PresetSyste
         paths.iter().map(|path| (context.reason_without_effect)(path)).collect::<Option<Vec<_>>>();
     let reason_without_effect = reason_without_effect.and_then(|reasons| reasons.first().copied());
     let sheet = FIVE_VALUES.filter(|_| context.has_sheets);
-    let row = Row { name: param.name, tooltip: param.tooltip, is_changed, second, sheet, reason_without_effect };
+    let row =
+        Row { name: param.name, tooltip: param.tooltip, is_changed, second, sheet, key: None, reason_without_effect };
     let refused = &mut context.refused;
     let before = ui.cursor().min;
     let request = row.show(ui, |ui, label| {

@@ -20,3 +20,4 @@ pub mod search_box;
 pub mod settings_panel;
 pub mod sprite_panel;
 pub mod timeline;
+pub mod track_editor;

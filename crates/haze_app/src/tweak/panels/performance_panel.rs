@@ -115,6 +115,7 @@ fn budget(ui: &mut Ui, session: &mut Session) {
         reason_without_effect: &|_| None,
         second: None,
         has_sheets: false,
+        keys: None,
         requests: Vec::new(),
         refused: None,
         searched_path: None,

@@ -246,7 +246,7 @@ const RAMPS: [RampEntry; 9] = [
 fn off(ui: &mut Ui, session: &mut Session, system: usize, field: &str, switch: Option<&RampSwitch>, reason: &str) {
     let turned_on = switch.and_then(|switch| {
         let mut preset = session.document.preset.clone();
-        set_field(&mut preset, &format!("systems[{system}].{}", switch.setting), switch.value).ok()?;
+        preset.set_field(&format!("systems[{system}].{}", switch.setting), switch.value).ok()?;
         let path = format!("systems[{system}].material.{field}");
         session.no_effect_reason(&preset, &path).is_none().then_some((switch.label, preset))
     });

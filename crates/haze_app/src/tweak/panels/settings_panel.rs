@@ -4,6 +4,7 @@ use eframe::egui::{self, Ui};
 use haze::preset::Preset;
 use haze::settings::{Fields, field_path};
 
+use super::rows::key_mark::KeyMarks;
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
 use super::rows::{RowRequest, setting_rows, soft_fade_plot};
 use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel};
@@ -94,7 +95,9 @@ fn system_row(ui: &mut Ui, session: &mut Session) {
 /// Draws a tab of rows of settings, and runs their requests. Returns the path of a field if a sheet of its values is
 /// requested.
 fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
+    let edit = session.begin_edit();
     let mut shown = std::mem::take(&mut session.view.lights);
+    let keys = KeyMarks::new(&session.document.preset, session.playback.time);
     let whole = || {
         let mut smoke = SmokeGeometry::default();
         smoke.of(session);
@@ -107,6 +110,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
         reason_without_effect: &|path| session.no_effect_reason(&session.document.preset, path),
         second: session.second_diff(),
         has_sheets: true,
+        keys: Some(&keys),
         requests: Vec::new(),
         refused: None,
         searched_path: session.search.found.as_ref().map(|(path, _)| path.as_str()),
@@ -129,6 +133,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let RowContext { requests, refused, .. } = context;
     let is_edited = session.document.preset != edited;
     session.document.preset = edited;
+    session.end_edit(edit);
     session.view.lights = shown;
     session.report_refused_input(refused, is_edited);
     let mut sheet = None;
@@ -137,6 +142,8 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
             RowRequest::Reset => session.reset_field(&path),
             RowRequest::CopySecond => session.copy_from_second(&path),
             RowRequest::Sheet => sheet = Some(path),
+            RowRequest::Key => session.toggle_key(&path),
+            RowRequest::RemoveKeys => session.remove_track(&path),
         }
     }
     sheet

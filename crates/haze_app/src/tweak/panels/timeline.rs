@@ -10,8 +10,8 @@ use super::rows::icon_button::{self, Icon};
 use crate::tweak::session::Session;
 
 pub fn panel(ui: &mut Ui, session: &mut Session) {
-    let playback = &mut session.playback;
     narrow::row(ui, "timeline", |ui| {
+        let playback = &mut session.playback;
         if icon_button::button(ui, Icon::Back, false, "Previous frame (,)").clicked() {
             playback.step(-1.0);
         }
@@ -27,7 +27,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             playback.is_looping = !playback.is_looping;
         }
         // In a narrow window, the rest of the row is scrolled to.
-        let beside = if narrow::is_narrow(ui.ctx()) { 110.0 } else { 500.0 };
+        let keys = if session.document.preset.animation.is_empty() { 0.0 } else { 46.0 };
+        let beside = if narrow::is_narrow(ui.ctx()) { 110.0 } else { 500.0 + keys };
         ui.spacing_mut().slider_width = (ui.available_width() - beside).max(60.0);
         let scrub = egui::Slider::new(&mut playback.time, playback.range.clone())
             .clamping(egui::SliderClamping::Never)
@@ -45,13 +46,23 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         let speed =
             egui::DragValue::new(&mut playback.speed).speed(0.01).range(-8.0..=8.0).fixed_decimals(2).suffix("×");
         ui.add(speed).on_hover_text("Playback speed; a negative speed plays backwards");
+        let edit = session.begin_edit();
         freeze(ui, &mut session.document.preset, session.view.size);
+        session.end_edit(edit);
+        let playback = &session.playback;
         let preset = &mut session.document.preset;
         let is_kept = preset.time.to_bits() == playback.time.to_bits();
         let keep =
             ui.add_enabled(!is_kept, egui::Button::new("Set start")).on_hover_text("Opens the preset at this time");
         if keep.clicked() {
             preset.time = playback.time;
+        }
+        if !preset.animation.is_empty() && !narrow::is_narrow(ui.ctx()) {
+            let tracks = &mut session.view.tracks;
+            let button = ui.add(egui::Button::selectable(!tracks.is_closed, "Keys"));
+            if button.on_hover_text("Shows the keyframes of the settings that change over time").clicked() {
+                tracks.is_closed = !tracks.is_closed;
+            }
         }
     });
 }

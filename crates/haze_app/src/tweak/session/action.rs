@@ -155,6 +155,7 @@ pub const GESTURES: &[(&str, &str)] = &[
         "Paint the ramp that lights this smoke: up lightens, down darkens, right warms, left cools",
     ),
     ("Double click a name", "Reset to the saved value"),
+    ("Diamond beside a name", "Add or delete a keyframe at the time that is shown"),
     ("Click a value", "Type a number, with or without its unit"),
     ("Grid icon beside a name", "Compare values of the setting side by side"),
 ];

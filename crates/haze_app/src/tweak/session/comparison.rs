@@ -116,11 +116,12 @@ impl CompareWith {
     }
 }
 
-/// Returns `preset` with the camera and time of `other`, and with the same lights muted and turned. The exposure stays
-/// that of `preset`.
+/// Returns `preset` at the time of `other` with its camera, and with the same lights muted and turned. The exposure stays that
+/// of `preset`.
 fn with_view_of(preset: &Preset, other: &Preset, lights: &LightView) -> Preset {
+    let preset = preset.at(other.time);
     let camera = Camera { exposure: preset.camera.exposure, ..other.camera };
-    Preset { camera, time: other.time, lights: lights.shown_of_preset(&preset.lights), ..preset.clone() }
+    Preset { camera, time: other.time, lights: lights.shown_of_preset(&preset.lights), ..preset }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use haze::frame::MAX_LIGHTS;
 use haze::preset::Preset;
 use haze::{Light, LightRole};
 
+use crate::tweak::document::keyframes::{copy_light_tracks, renumber_lights};
 use crate::tweak::document::light_defaults::light_name;
 use crate::tweak::document::light_roles;
 
@@ -130,6 +131,14 @@ impl LightView {
         (0..).zip(lights).filter(|(index, _)| self.is_shown(*index)).map(|(_, light)| self.turned(light)).collect()
     }
 
+    /// Leaves only the lights that are in the image, turned, with their tracks.
+    pub fn apply(&self, preset: &mut Preset) {
+        let count = preset.lights.len();
+        preset.lights = self.shown(&preset.lights);
+        let shown: Vec<_> = (0..count).filter(|index| self.is_shown(*index)).collect();
+        renumber_lights(&mut preset.animation, |index| shown.iter().position(|other| *other == index));
+    }
+
     /// Returns the names of the lights that are in the image, in the same order.
     pub fn shown_names(&self, lights: &[Light]) -> Vec<String> {
         let mut of_these = self.clone();
@@ -157,31 +166,39 @@ impl LightView {
     }
 
     /// Inserts a light and selects it, unless there are already [`MAX_LIGHTS`].
-    pub fn insert(&mut self, lights: &mut Vec<Light>, index: usize, light: Light) {
-        if lights.len() < MAX_LIGHTS {
-            self.follow(lights);
-            lights.insert(index, light);
-            self.renumber(|place| Some(place + usize::from(place >= index)));
+    pub fn insert(&mut self, preset: &mut Preset, index: usize, light: Light) {
+        if preset.lights.len() < MAX_LIGHTS {
+            self.follow(&preset.lights);
+            preset.lights.insert(index, light);
+            let place = |place| Some(place + usize::from(place >= index));
+            self.renumber(place);
+            renumber_lights(&mut preset.animation, place);
             self.entries.insert(index, LightEntry { light, mute_solo: MuteSolo::default() });
             self.selected = Some(index);
         }
     }
 
-    /// Inserts a copy of a light after it, and selects the copy. The copy of a key light has no role.
-    pub fn duplicate(&mut self, lights: &mut Vec<Light>, index: usize) {
-        if let Some(&light) = lights.get(index) {
-            let role = if light.role == LightRole::Key { LightRole::None } else { light.role };
-            self.insert(lights, index + 1, Light { role, ..light });
+    /// Inserts a copy of a light after it, with its keyframes, and selects the copy. The copy of a key light has no role.
+    pub fn duplicate(&mut self, preset: &mut Preset, index: usize) {
+        if let Some(&light) = preset.lights.get(index) {
+            let (role, count) =
+                (if light.role == LightRole::Key { LightRole::None } else { light.role }, preset.lights.len());
+            self.insert(preset, index + 1, Light { role, ..light });
+            if preset.lights.len() > count {
+                copy_light_tracks(&mut preset.animation, index, index + 1);
+            }
         }
     }
 
-    /// Removes a light. If it was selected, none is selected afterwards.
-    pub fn remove(&mut self, lights: &mut Vec<Light>, index: usize) {
-        if index < lights.len() {
-            self.follow(lights);
-            lights.remove(index);
+    /// Removes a light and its keyframes. If it was selected, none is selected afterwards.
+    pub fn remove(&mut self, preset: &mut Preset, index: usize) {
+        if index < preset.lights.len() {
+            self.follow(&preset.lights);
+            preset.lights.remove(index);
             self.entries.remove(index);
-            self.renumber(|place| (place != index).then(|| place - usize::from(place > index)));
+            let place = |place| (place != index).then(|| place - usize::from(place > index));
+            self.renumber(place);
+            renumber_lights(&mut preset.animation, place);
         }
     }
 }
@@ -201,15 +218,19 @@ mod tests {
         intensities.iter().map(|&intensity| Light { intensity, ..Light::default() }).collect()
     }
 
+    fn preset(intensities: &[f32]) -> Preset {
+        Preset { lights: lights(intensities), ..Preset::default() }
+    }
+
     fn muted(shown: &LightView) -> Vec<usize> {
         (0..shown.entries.len()).filter(|&index| shown.entries[index].mute_solo.is_muted).collect()
     }
 
     #[test]
     fn mute_and_solo_stay_with_their_lights() {
-        let mut all = lights(&[1.0, 2.0, 3.0]);
+        let mut all = preset(&[1.0, 2.0, 3.0]);
         let mut shown = LightView::default();
-        shown.follow(&all);
+        shown.follow(&all.lights);
         shown.mute_solo(1).unwrap().is_muted = true;
         shown.selected = Some(2);
         shown.remove(&mut all, 0);
@@ -223,7 +244,7 @@ mod tests {
         shown.follow(&lights(&[1.0, 2.0, 3.0]));
         assert_eq!((muted(&shown), shown.selected), (vec![1], Some(1)));
         // A copy is distinguished from its original.
-        let mut twins = lights(&[1.0, 2.0, 3.0]);
+        let mut twins = preset(&[1.0, 2.0, 3.0]);
         shown.duplicate(&mut twins, 1);
         shown.remove(&mut twins, 1);
         assert_eq!((muted(&shown), shown.selected), (vec![], Some(1)));
@@ -241,7 +262,7 @@ mod tests {
         preset.lights[0].role = LightRole::Key;
         assert_eq!(shown.key_light(&preset, 0), Some(0));
         // A copy is no second key light.
-        shown.duplicate(&mut preset.lights, 0);
+        shown.duplicate(&mut preset, 0);
         assert_eq!((shown.key_light(&preset, 0), preset.lights[1].role), (Some(0), LightRole::None));
     }
 
@@ -254,7 +275,7 @@ mod tests {
         assert_eq!(shown.held_key_light(&preset, 0, false), Some(1));
         preset.lights[1].intensity = 0.5;
         assert_eq!(shown.held_key_light(&preset, 0, true), Some(1));
-        shown.insert(&mut preset.lights, 0, Light { intensity: 0.1, ..Light::default() });
+        shown.insert(&mut preset, 0, Light { intensity: 0.1, ..Light::default() });
         assert_eq!(shown.held_key_light(&preset, 0, true), Some(2));
         assert_eq!(shown.held_key_light(&preset, 0, false), Some(1));
     }
@@ -320,10 +341,10 @@ mod tests {
 
     #[test]
     fn no_more_lights_are_added_than_a_frame_takes() {
-        let (mut all, mut shown) = (Vec::new(), LightView::default());
+        let (mut all, mut shown) = (preset(&[]), LightView::default());
         for _ in 0..MAX_LIGHTS + 2 {
             shown.insert(&mut all, 0, Light::default());
         }
-        assert_eq!(all.len(), MAX_LIGHTS);
+        assert_eq!(all.lights.len(), MAX_LIGHTS);
     }
 }

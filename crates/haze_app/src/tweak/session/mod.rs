@@ -16,6 +16,7 @@ pub mod slider_range;
 pub mod smoke_geometry;
 pub mod sprite_preview;
 pub mod sprite_view;
+pub mod track_view;
 pub mod view_options;
 
 use std::collections::{HashMap, HashSet};
@@ -32,6 +33,7 @@ use haze_author::preset::{Tooltips, no_effect_reason};
 use haze_demo::shot::Shot;
 
 use crate::tweak::document::Document;
+use crate::tweak::document::keyframes::{self, KeyframeEdit};
 use crate::tweak::document::light_roles::{keep_one_key, light_of};
 use crate::tweak::document::loaded_materials::LoadedMaterials;
 use crate::tweak::document::loaded_particles::LoadedParticles;
@@ -142,7 +144,7 @@ impl Session {
         let (materials, caches) = asset_loading::all(preset, source, &folders)?;
         Ok(Self {
             assets,
-            playback: Playback::at(preset.time),
+            playback: Playback::of(preset),
             view: ViewOptions::default(),
             compare: CompareState::default(),
             psnr_job: PsnrJob::default(),
@@ -189,9 +191,21 @@ impl Session {
 
     /// Returns the shot of the present view.
     pub fn shot(&self, size: UVec2) -> Shot {
-        let mut preset = self.document.preset.clone();
-        preset.time = self.playback.time;
-        preset.lights = self.view.lights.shown(&preset.lights);
+        self.shot_of(self.preset_now(), size)
+    }
+
+    /// Returns the shot of the present view with its tracks, for images at other times.
+    pub fn animated_shot(&self, size: UVec2) -> Shot {
+        self.shot_of(Preset { time: self.playback.time, ..self.document.preset.clone() }, size)
+    }
+
+    /// Returns the preset with the values of its tracks at the time of the playback.
+    pub fn preset_now(&self) -> Preset {
+        self.document.preset.at(self.playback.time)
+    }
+
+    fn shot_of(&self, mut preset: Preset, size: UVec2) -> Shot {
+        self.view.lights.apply(&mut preset);
         let (materials, caches) = (self.materials(), self.particle_frames());
         Shot { preset, size, debug_view: self.view.debug_view, materials, caches, shown_scalar: None }
     }
@@ -329,18 +343,57 @@ impl Session {
     }
 
     /// Changes the selected light, if there is one.
-    pub fn change_light(&mut self, change: impl FnOnce(&mut LightView, &mut Vec<Light>, usize)) {
-        let lights = &mut self.document.preset.lights;
-        if let Some(index) = self.view.lights.selected.filter(|&index| index < lights.len()) {
-            change(&mut self.view.lights, lights, index);
+    pub fn change_light(&mut self, change: impl FnOnce(&mut LightView, &mut Preset, usize)) {
+        let preset = &mut self.document.preset;
+        if let Some(index) = self.view.lights.selected.filter(|&index| index < preset.lights.len()) {
+            change(&mut self.view.lights, preset, index);
         }
     }
 
     /// Adds a light, and selects it.
     pub fn add_light(&mut self, light: Light) {
-        let lights = &mut self.document.preset.lights;
-        let end = lights.len();
-        self.view.lights.insert(lights, end, light);
+        let preset = &mut self.document.preset;
+        let end = preset.lights.len();
+        self.view.lights.insert(preset, end, light);
+    }
+
+    /// Gives settings the values of their keyframes at the time of the playback, until [`Session::end_edit`].
+    pub fn begin_edit(&mut self) -> Option<KeyframeEdit> {
+        KeyframeEdit::begin(&mut self.document.preset, self.playback.time)
+    }
+
+    /// Turns changed values of settings with keyframes into keyframes. The playback stops at them.
+    pub fn end_edit(&mut self, edit: Option<KeyframeEdit>) {
+        if let Some(time) = edit.and_then(|edit| edit.end(&mut self.document.preset)) {
+            (self.playback.time, self.playback.is_playing) = (time, false);
+        }
+    }
+
+    /// Adds a keyframe of a setting at the time of the playback, or deletes the one that is there.
+    pub fn toggle_key(&mut self, setting: &str) {
+        let (preset, time) = (&mut self.document.preset, self.playback.time);
+        match keyframes::track(preset, setting).and_then(|track| keyframes::key_at(track, time)) {
+            Some(index) => keyframes::remove_key(preset, setting, index),
+            None => {
+                keyframes::add_key(preset, setting, time);
+                self.view.tracks.select(setting);
+            }
+        }
+    }
+
+    /// Removes the track of a setting, which keeps the value that is shown.
+    pub fn remove_track(&mut self, setting: &str) {
+        keyframes::remove_track(&mut self.document.preset, setting, self.playback.time);
+    }
+
+    /// Pastes the copied keyframes into a track, from a time on.
+    pub fn paste_keys(&mut self, setting: &str, time: f32) {
+        let mut preset = self.document.preset.clone();
+        keyframes::paste_keys(&mut preset, setting, time, &self.view.tracks.copied);
+        match preset.validate() {
+            Ok(()) => self.document.preset = preset,
+            Err(error) => self.messages.error("keyframes", format!("Cannot paste: {error}")),
+        }
     }
 
     pub fn undo(&mut self) {
@@ -368,7 +421,7 @@ impl Session {
     pub fn replace_document(&mut self, document: Document, (materials, caches): LoadedAssets) {
         self.loaded_materials = LoadedMaterials::new(&document.preset, materials);
         self.particle_files = LoadedParticles::new(&document.preset, caches);
-        self.playback = Playback::at(document.preset.time);
+        self.playback = Playback::of(&document.preset);
         (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
         self.ramps = RampEdits::default();
         self.copy_request = None;

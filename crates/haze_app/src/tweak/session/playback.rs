@@ -2,6 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use haze::preset::Preset;
+
 /// Clock that can be paused, stepped and looped. Times are in seconds since the emission began.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
@@ -22,6 +24,14 @@ pub const STEP: f32 = 1.0 / 30.0;
 const MAX_STEP: f32 = 0.1;
 
 impl Playback {
+    /// Returns a clock that is paused at a preset's time, with a loop that reaches to its last keyframe.
+    pub fn of(preset: &Preset) -> Self {
+        let clock = Self::at(preset.time);
+        let keys = preset.animation.iter().filter_map(|track| track.keys.last());
+        let end = keys.fold(*clock.range.end(), |end, key| end.max(key.time));
+        Self { range: 0.0..=end, ..clock }
+    }
+
     /// Returns a clock that is paused at a time.
     pub fn at(time: f32) -> Self {
         Self { time, is_playing: false, speed: 1.0, range: 0.0..=(time + 6.0).max(10.0), is_looping: false }
@@ -51,7 +61,10 @@ impl Playback {
 
 #[cfg(test)]
 mod tests {
+    use haze::preset::KeyValue;
+
     use super::*;
+    use crate::tweak::document::keyframes::set_key;
 
     #[test]
     fn a_loop_wraps_in_both_directions() {
@@ -68,6 +81,14 @@ mod tests {
         assert!((clock.time - 4.0).abs() < 1e-5, "{}", clock.time);
         clock.step(-1.0);
         assert!(!clock.is_playing && clock.time < 3.99 && clock.time > 3.9);
+    }
+
+    #[test]
+    fn the_loop_reaches_to_the_last_keyframe() {
+        let mut preset = Preset { time: 2.0, ..Preset::default() };
+        assert_eq!(Playback::of(&preset), Playback::at(2.0));
+        set_key(&mut preset, "camera.exposure", 25.0, KeyValue::Number(1.0));
+        assert_eq!(Playback::of(&preset).range, 0.0..=25.0);
     }
 
     #[test]

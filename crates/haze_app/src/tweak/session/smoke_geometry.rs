@@ -21,7 +21,7 @@ pub struct SmokeGeometry {
 impl SmokeGeometry {
     /// Returns the smoke that a session shows.
     pub fn of(&mut self, session: &Session) -> &Self {
-        self.at(&session.document.preset, session.particle_frames(), session.playback.time)
+        self.at(&session.preset_now(), session.particle_frames(), session.playback.time)
     }
 
     fn at(&mut self, preset: &Preset, caches: Vec<Option<ParticleFrames>>, time: f32) -> &Self {

@@ -5,6 +5,7 @@ use haze::settings::DebugView;
 
 use super::light_view::LightView;
 use super::sprite_view::SpriteView;
+use super::track_view::TrackView;
 
 /// View options. They are not part of the preset.
 #[derive(Clone, Debug)]
@@ -24,6 +25,7 @@ pub struct ViewOptions {
     pub lights: LightView,
     pub overlays: Overlays,
     pub sprite: SpriteView,
+    pub tracks: TrackView,
 }
 
 /// Tab of the settings panel.
@@ -51,6 +53,7 @@ impl Default for ViewOptions {
             lights: LightView::default(),
             overlays: Overlays::default(),
             sprite: SpriteView::default(),
+            tracks: TrackView::default(),
         }
     }
 }

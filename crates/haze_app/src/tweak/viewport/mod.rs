@@ -66,6 +66,7 @@ impl Viewport {
         session.view.aspect = size.x as f32 / size.y as f32;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
         self.begin_gesture(ui, session);
+        let edit = session.begin_edit();
         session.view.lights.follow(&session.document.preset.lights);
         let projection = ScreenProjection::new(&session.document.preset.camera, rect);
         // While the inspector is on, a click pins a pixel, and a drag with Ctrl paints.
@@ -77,6 +78,7 @@ impl Viewport {
             self.steer(ui, &response, &projection, session);
         }
         self.menu(&response, &projection, session);
+        session.end_edit(edit);
         if let Some(turn) = &mut session.view.lights.turn {
             turn.advance(ui.input(|input| input.stable_dt.min(0.1)));
             ui.ctx().request_repaint();
@@ -90,6 +92,7 @@ impl Viewport {
         if compare.against.is_some() && compare.difference == 0.0 {
             divider(ui, rect, &mut compare.split);
         }
+        let edit = session.begin_edit();
         // Above the image, and below everything else that is drawn on it.
         ramp_highlight::paint(ui, rect, &session.inspect, session.view.system);
         let projection = ScreenProjection::new(&session.document.preset.camera, rect);
@@ -106,6 +109,7 @@ impl Viewport {
             self.act(action, session);
             ui.ctx().request_repaint();
         }
+        session.end_edit(edit);
     }
 
     fn menu(&mut self, response: &Response, projection: &ScreenProjection, session: &mut Session) {
@@ -145,6 +149,12 @@ impl Viewport {
 
     /// Runs the action of a key or a menu.
     pub fn act(&mut self, action: InView, session: &mut Session) {
+        let edit = session.begin_edit();
+        self.change(action, session);
+        session.end_edit(edit);
+    }
+
+    fn change(&mut self, action: InView, session: &mut Session) {
         let saved = session.saved().camera;
         let camera = &mut session.document.preset.camera;
         match action {

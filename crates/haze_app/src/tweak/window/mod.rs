@@ -214,6 +214,7 @@ impl Window {
         panels::notice_bar::panel(ui, &mut self.session, self.persistence.as_mut());
         egui::Panel::bottom("status").show(ui, |ui| self.status_bar(ui));
         egui::Panel::bottom("time").show(ui, |ui| panels::timeline::panel(ui, &mut self.session));
+        self.tracks(ui);
         if self.session.view.has_strip && !panels::narrow::is_narrow(ui.ctx()) {
             let aspect = self.session.view.aspect;
             let room = ui.available_height();
@@ -225,6 +226,18 @@ impl Window {
             let shown = shown.response.rect.height();
             self.strip_size.end(ui.ctx(), shown, room, &mut self.layout.strip_height);
         }
+    }
+
+    /// Draws the keyframes, if there are any.
+    fn tracks(&mut self, ui: &mut Ui) {
+        let is_empty = self.session.document.preset.animation.is_empty();
+        if is_empty || self.session.view.tracks.is_closed || panels::narrow::is_narrow(ui.ctx()) {
+            return;
+        }
+        let most = 0.4 * ui.available_height();
+        let height = panels::track_editor::filled_height(&self.session).min(most);
+        let panel = egui::Panel::bottom("tracks").exact_size(height);
+        panel.show(ui, |ui| panels::track_editor::panel(ui, &mut self.session));
     }
 
     /// Draws the settings panel: at the right, or below the image of a narrow window.

@@ -5,6 +5,7 @@ mod color_temperature;
 pub mod copy_icon;
 mod curve_editor;
 pub mod icon_button;
+pub mod key_mark;
 pub mod picture_gallery;
 pub mod setting_rows;
 pub mod soft_fade_plot;
@@ -15,6 +16,7 @@ use eframe::egui::{self, Response, Ui};
 
 use crate::tweak::document::display_names::display_name;
 use icon_button::Icon;
+use key_mark::{KeyMark, KeyState};
 
 /// Width of the names, points, and their largest share of a row.
 const NAME: f32 = 118.0;
@@ -32,6 +34,8 @@ pub struct Row<'a> {
     pub second: Option<Option<&'a str>>,
     /// Label of the button that makes a sheet of values, if one can be made.
     pub sheet: Option<&'a str>,
+    /// Mark of the setting's keyframes, if it can have any.
+    pub key: Option<KeyMark>,
     /// Reason why the setting has no effect.
     pub reason_without_effect: Option<&'a str>,
 }
@@ -44,13 +48,19 @@ pub enum RowRequest {
     CopySecond,
     /// Make a sheet of its values.
     Sheet,
+    /// Add a keyframe at the time of the playback, or delete the one that is there.
+    Key,
+    /// Delete all keyframes.
+    RemoveKeys,
 }
 
 impl Row<'_> {
     /// Draws the row and returns a request. `control` receives the response of the name, as its accessible label.
     pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> Option<RowRequest> {
         let mut request = None;
-        ui.horizontal(|ui| {
+        let has_keys = self.key.is_some_and(|key| key.state != KeyState::None);
+        let background = ui.painter().add(egui::Shape::Noop);
+        let row = ui.horizontal(|ui| {
             let (width, height) = (name_width(ui), ui.spacing().interact_size.y);
             let tooltip = "Differs from the saved preset. Click to reset.";
             if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("Reset {}", display_name(self.name))) {
@@ -78,10 +88,15 @@ impl Row<'_> {
                 request = Some(RowRequest::Reset);
             }
             name.context_menu(|ui| request = self.menu(ui).or(request));
-            if let Some(sheet) =
-                self.sheet.filter(|_| self.reason_without_effect.is_none() && ui.rect_contains_pointer(place))
-            {
-                let corner = place.with_min_x(place.right() - height);
+            let is_hovered = ui.rect_contains_pointer(place);
+            let mut corner = place.with_min_x(place.right() - height);
+            if let Some(key) = self.key.filter(|_| has_keys || is_hovered && self.reason_without_effect.is_none()) {
+                if key_mark::button(ui, corner, name.id.with("key"), key, &display_name(self.name)) {
+                    request = Some(RowRequest::Key);
+                }
+                corner = corner.translate(egui::vec2(-height, 0.0));
+            }
+            if let Some(sheet) = self.sheet.filter(|_| self.reason_without_effect.is_none() && is_hovered) {
                 let what = format!("{sheet}: {}", display_name(self.name));
                 if icon_button::button_over(ui, corner, name.id.with(sheet), Icon::Sheet, &what).clicked() {
                     request = Some(RowRequest::Sheet);
@@ -89,6 +104,10 @@ impl Row<'_> {
             }
             ui.add_enabled_ui(self.reason_without_effect.is_none(), |ui| control(ui, &name));
         });
+        if has_keys {
+            let tint = key_mark::color().gamma_multiply(0.14);
+            ui.painter().set(background, egui::Shape::rect_filled(row.response.rect.expand(1.0), 2.0, tint));
+        }
         request
     }
 
@@ -101,6 +120,12 @@ impl Row<'_> {
             }
         };
         entry(self.is_changed, "Reset", RowRequest::Reset);
+        if let Some(key) = self.key {
+            entry(true, &key.action(), RowRequest::Key);
+            if key.state != KeyState::None {
+                entry(true, "Delete All Keyframes", RowRequest::RemoveKeys);
+            }
+        }
         if let Some(Some(value)) = self.second {
             entry(true, &format!("Copy {value} from image B"), RowRequest::CopySecond);
         }

@@ -9,6 +9,7 @@ use haze::settings::{Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole,
 use haze_author::preset::Tooltips;
 
 use super::curve_editor;
+use super::key_mark::KeyMarks;
 use super::picture_gallery::gallery;
 use super::value_text::shown_value;
 use super::{Row, RowRequest, value_control};
@@ -30,6 +31,8 @@ pub struct RowContext<'a> {
     pub second: Option<&'a HashMap<String, FieldValue>>,
     /// The fields belong to the preset, so sheets of their values can be made.
     pub has_sheets: bool,
+    /// Keyframes of the preset's settings; `None` if the fields cannot have any.
+    pub keys: Option<&'a KeyMarks>,
     /// Returns the reason why the field of a path has no effect.
     pub reason_without_effect: &'a dyn Fn(&str) -> Option<&'static str>,
     /// Requests, with the paths of their fields.
@@ -149,7 +152,7 @@ impl Rows<'_, '_, '_> {
     fn row(
         &mut self,
         name: &'static str,
-        (unit, sheet): (&str, Option<&'static str>),
+        (unit, sheet, has_keys): (&str, Option<&'static str>, bool),
         control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
     ) {
         if !(self.is_wanted)(name) {
@@ -176,6 +179,7 @@ impl Rows<'_, '_, '_> {
             is_changed: context.changed.contains(&path),
             second: second.as_ref().map(Option::as_deref),
             sheet: sheet.filter(|_| context.has_sheets),
+            key: context.keys.filter(|_| has_keys).map(|keys| keys.of(&path)),
             reason_without_effect: (context.reason_without_effect)(&path),
         };
         let refused = &mut context.refused;
@@ -213,67 +217,67 @@ impl Rows<'_, '_, '_> {
 impl FieldVisitor for Rows<'_, '_, '_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
         let usual = self.only.and_then(|only| only.usual);
-        self.row(name, (unit, FIVE_VALUES), |ui, label, refused, _, _| {
+        self.row(name, (unit, FIVE_VALUES, true), |ui, label, refused, _, _| {
             value_control::number(ui, label, value, (&range, usual), unit, refused);
         });
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
-        self.row(name, (unit, FIVE_VALUES), |ui, label, refused, _, _| {
+        self.row(name, (unit, FIVE_VALUES, true), |ui, label, refused, _, _| {
             value_control::integer(ui, label, value, &range, unit, refused);
         });
     }
 
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
-        self.row(name, (unit, None), |ui, label, refused, _, _| {
+        self.row(name, (unit, None, true), |ui, label, refused, _, _| {
             value_control::vector(ui, value, &range, unit, label, refused);
         });
     }
 
     fn color(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>) {
-        self.row(name, ("", None), |ui, label, _, _, _| value_control::color(ui, value, &range, label));
+        self.row(name, ("", None, true), |ui, label, _, _, _| value_control::color(ui, value, &range, label));
     }
 
     fn curve(&mut self, name: &'static str, value: &mut Curve, range: RangeInclusive<f32>) {
-        self.row(name, ("", None), |ui, label, _, _, _| {
+        self.row(name, ("", None, false), |ui, label, _, _, _| {
             curve_editor::curve(ui, value, &range, label);
         });
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {
-        self.row(name, ("", ALL), |ui, label, _, _, _| {
+        self.row(name, ("", ALL, true), |ui, label, _, _, _| {
             ui.checkbox(value, "").labelled_by(label.id);
         });
     }
 
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
         let plain = self.path.iter().map(|step| step.0).chain([name]).collect::<Vec<_>>().join(".");
-        self.row(name, ("", ALL), |ui, label, _, path, tooltips| {
+        self.row(name, ("", ALL, true), |ui, label, _, path, tooltips| {
             value_control::choice(ui, value, path, |choice| tooltips.choice(&plain, choice)).labelled_by(label.id);
         });
     }
 
     fn text(&mut self, name: &'static str, value: &mut String) {
-        self.row(name, ("", None), |ui, label, _, _, _| {
+        self.row(name, ("", None, false), |ui, label, _, _, _| {
             ui.add(egui::TextEdit::singleline(value).desired_width(f32::INFINITY)).labelled_by(label.id);
         });
     }
 
     fn image(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
         let thumbnails = self.context.thumbnails;
-        self.row(name, ("", None), |ui, label, _, path, _| {
+        self.row(name, ("", None, false), |ui, label, _, path, _| {
             gallery(ui, thumbnails, role, value, path).labelled_by(label.id);
         });
     }
 
     fn particles(&mut self, name: &'static str, value: &mut String) {
-        self.row(name, ("", None), |ui, label, _, path, _| {
+        self.row(name, ("", None, false), |ui, label, _, path, _| {
             value_control::path(ui, value, path).labelled_by(label.id);
         });
     }
 
     fn seed(&mut self, name: &'static str, value: &mut u32) {
-        self.row(name, ("", SEEDS), |ui, label, _, _, _| {
+        self.row(name, ("", SEEDS, false), |ui, label, _, _, _| {
             ui.add(egui::DragValue::new(value)).labelled_by(label.id);
             if ui.button("Next").clicked() {
                 *value = value.wrapping_add(1);

@@ -116,6 +116,7 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
         changed: &unchanged,
         second: None,
         has_sheets: false,
+        keys: None,
         reason_without_effect: &reason_without_effect,
         requests,
         refused: None,

@@ -3,10 +3,12 @@
 use eframe::egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::Harness;
 use glam::Vec3;
+use haze::preset::KeyValue;
 use haze::{Light, LightKind};
 
 use super::{camera, drag, flick, handle, light, lit, projection, undo_name};
-use crate::tweak::viewport::light_handle::Handle;
+use crate::tweak::document::keyframes::set_key;
+use crate::tweak::viewport::light_handle::{Handle, Shape, handles};
 use crate::tweak::window::Window;
 
 #[test]
@@ -26,6 +28,37 @@ fn an_axis_drag_moves_the_light_along_the_axis_in_one_step() {
         harness.state_mut().session.undo();
         assert_eq!((light(&harness).position, undo_name(&harness)), (before, Some("Light removed".into())));
     }
+}
+
+#[test]
+fn a_drag_of_a_light_with_keyframes_is_one_keyframe_and_one_step() {
+    let mut harness = lit(Light::default());
+    let session = &mut harness.state_mut().session;
+    let own = session.document.preset.lights[0].position;
+    for time in [0.0, 4.0] {
+        let value = KeyValue::Vector(own + Vec3::X * 0.2 * time);
+        set_key(&mut session.document.preset, "lights[0].position", time, value);
+    }
+    session.track(false);
+    session.playback.time = 2.0;
+    harness.run();
+    // The handles are where the light is at this time.
+    let shown = harness.state().session.preset_now();
+    let seen = projection(&harness);
+    let shapes = handles(&shown.lights[0], &seen);
+    let Shape::Square(from) = shapes.into_iter().find(|shape| shape.0 == Handle::Centre).unwrap().1 else {
+        unreachable!()
+    };
+    let to = from + vec2(60.0, -40.0);
+    drag(&mut harness, PointerButton::Primary, &[from, from + vec2(20.0, -10.0), to]);
+    let session = &harness.state().session;
+    let keys: Vec<_> = session.document.preset.animation[0].keys.iter().map(|key| key.time).collect();
+    assert_eq!(keys, [0.0, 2.0, 4.0]);
+    assert!(seen.project(session.preset_now().lights[0].position).unwrap().distance(to) < 1.5);
+    assert_eq!(light(&harness).position, own);
+    assert_eq!(undo_name(&harness).as_deref(), Some("Position of Point 1"));
+    harness.state_mut().session.undo();
+    assert_eq!(harness.state().session.document.preset.animation[0].keys.len(), 2);
 }
 
 #[test]
