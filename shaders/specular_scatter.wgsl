@@ -5,8 +5,8 @@
 // Source  OTEE "Specular scattering".
 
 #import "lib/lit_target.wgsl"
-#import "lib/glow.wgsl"
 #import "lib/color.wgsl"
+#import "lib/ramp.wgsl"
 #import "lib/sprite.wgsl"
 
 // True: the amount comes from the output of light_target.
@@ -22,22 +22,51 @@ struct QuadVertex {
     @location(2) @interpolate(flat, either) position_inverse_range: vec4f,
 }
 
+// Share of a light's body that the scene leaves visible.
+fn light_visibility(pixel: vec2f, radius: f32, light_depth: f32) -> f32 {
+    var visible = 0.0;
+    for (var i = 0u; i < VISIBILITY_TAPS; i++) {
+        let tap = clamp(floor(pixel + visibility_tap(i, radius)), vec2f(0.0), view.size - 1.0);
+        visible += select(0.0, 1.0, scene_view_depth(tap) >= light_depth);
+    }
+    return visible / f32(VISIBILITY_TAPS);
+}
+
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> QuadVertex {
     var out: QuadVertex;
     // Outside the clip volume, until the light is known to be visible.
     out.position = vec4f(2.0, 2.0, 2.0, 1.0);
 
-    let glow = glow_of_light(lights[instance]);
-    if all(glow.color <= vec3f(0.0)) {
+    let light = lights[instance];
+    let homogeneous = select(vec4f(light.position, 1.0), vec4f(-light.direction, 0.0), light.directional > 0.5);
+    let clip = view.clip_from_view * homogeneous;
+    let depth = select(-light.position.z, SKY_VIEW_DEPTH, light.directional > 0.5);
+    let fade = specular_scatter_fade(depth, system.smoke_near, system.smoke_far);
+    let strength = light.specular_scatter * system.specular_scatter_intensity * fade;
+    if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
+        return out;
+    }
+    let centre = clip.xy / clip.w;
+    let pixel = pixel_from_ndc(centre, view.size);
+    // The glow ends with its quad: a light that is further outside the view shows nothing.
+    if any(abs(pixel - 0.5 * view.size) > 0.5 * view.size + system.specular_scatter_size) {
+        return out;
+    }
+    // Surfaces less than the diameter of the light's body in front of it do not hide it, because they may be its own
+    // fixture. Any surface hides a directional light.
+    let body = max(light.radius * pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic), 1.5);
+    let compared_depth = min(depth - 2.0 * light.radius, 0.99 * view.far);
+    let visibility = light_visibility(pixel, body, compared_depth);
+    if visibility <= 0.0 {
         return out;
     }
     let corner = sprite_corner(index);
     let extent = corner * system.specular_scatter_size * 2.0 / view.size;
-    out.position = vec4f(glow.centre_ndc + extent, 0.5, 1.0);
+    out.position = vec4f(centre + extent, 0.5, 1.0);
     out.uv = corner;
-    out.color = glow.color;
-    out.position_inverse_range = glow.position_inverse_range;
+    out.color = light.color * strength * visibility;
+    out.position_inverse_range = vec4f(light.position, light.inverse_range);
     return out;
 }
 
@@ -57,5 +86,9 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     if amount <= 0.0 {
         discard;
     }
-    return vec4f(glow_light(in.color, in.position_inverse_range, distance_squared, amount, pixel), 0.0);
+    let to_light = in.position_inverse_range.xyz - shading_position(pixel);
+    let window = range_window(dot(to_light, to_light), in.position_inverse_range.w);
+    // x is distance², y is the amount.
+    let glow = sample_ramp_2d(specular_ramp, linear_sampler, vec2f(distance_squared, amount));
+    return vec4f(bounded_light(glow * in.color * window), 0.0);
 }

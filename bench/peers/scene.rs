@@ -17,8 +17,8 @@ use bevy::log::LogPlugin;
 use bevy::prelude::*;
 use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
-use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages};
-use bevy::render::renderer::RenderAdapterInfo;
+use bevy::render::render_resource::{Extent3d, PollType, TextureDimension, TextureFormat, TextureUsages};
+use bevy::render::renderer::{RenderAdapterInfo, RenderDevice};
 use bevy::render::view::Msaa;
 use bevy::render::{RenderApp, RenderPlugin};
 use bevy::time::TimeUpdateStrategy;
@@ -149,7 +149,7 @@ pub fn measure(
     variants: &[&'static str],
     spans: &[&str],
     mut change: impl FnMut(&mut App, Case),
-) {
+) -> Result<(), String> {
     let cases: Vec<_> = variants
         .iter()
         .flat_map(|&variant| LIGHTS.map(|lights| LAYERS.map(|layers| Case { variant, layers, lights })))
@@ -163,6 +163,11 @@ pub fn measure(
             change(&mut app, *case);
             for frame in 0..SETTLE + FRAMES {
                 app.update();
+                // Without a window, nothing else waits for the GPU: times would arrive frames later, or never.
+                let device = app.sub_app(RenderApp).world().resource::<RenderDevice>();
+                if let Err(error) = device.poll(PollType::wait_indefinitely()) {
+                    return Err(format!("the device does not finish a frame: {error}"));
+                }
                 let time = app
                     .world_mut()
                     .run_system_once_with(pass_time, spans.iter().map(|name| name.to_string()).collect());
@@ -173,6 +178,12 @@ pub fn measure(
         }
     }
 
+    if let Some(index) = times.iter().position(Vec::is_empty) {
+        let Case { variant, layers, lights } = cases[index];
+        return Err(format!(
+            "{variant}, {lights} lights, {layers} layers: no GPU times; the device needs timestamps in passes"
+        ));
+    }
     let adapter = app.sub_app(RenderApp).world().resource::<RenderAdapterInfo>();
     let UVec2 { x: width, y: height } = options.size;
     println!("{} ({}), {width}x{height}, {} rounds", adapter.name, adapter.driver_info, options.rounds);
@@ -197,6 +208,7 @@ pub fn measure(
         let first = pair[0] - layer * f64::from(LAYERS[0]);
         println!("{:<14} {:>6} {:>10.2} {:>10.4}", cases[0].variant, cases[0].lights, 1000.0 * layer, first);
     }
+    Ok(())
 }
 
 /// GPU time of the passes with these names in a recent frame, milliseconds.

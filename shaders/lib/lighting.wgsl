@@ -89,12 +89,6 @@ fn coverage(amount: f32, boost: f32) -> f32 {
     return saturate(amount * boost);
 }
 
-// Light that becomes `added` when transfer_lit multiplies it by the coverage. Smoke that covers less than a thousandth shows
-// next to nothing of a glow, and must not divide.
-fn light_before_coverage(added: vec3f, covered: f32) -> vec3f {
-    return added / max(covered, 1.0e-3);
-}
-
 // Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a displayed
 // middle grey is half.
 fn painted_share(paint: vec3f) -> f32 {

@@ -109,7 +109,6 @@ impl MaterialAssets {
                 shadow: largest_step(&self.shadow_ramp),
                 motif: largest_step(&self.motif),
                 fire: largest_step(&self.fire_ramp),
-                specular: largest_step(&self.specular_ramp),
             },
         }
     }

@@ -21,16 +21,14 @@ pub struct RampSteps {
     pub(crate) shadow: f32,
     pub(crate) motif: f32,
     pub(crate) fire: f32,
-    pub(crate) specular: f32,
 }
 
 impl RampSteps {
     /// Hard steps in every ramp.
-    pub const HARD: Self =
-        Self { diffuse: 1.0, backlight: 1.0, soft_scatter: 1.0, shadow: 1.0, motif: 1.0, fire: 1.0, specular: 1.0 };
+    pub const HARD: Self = Self { diffuse: 1.0, backlight: 1.0, soft_scatter: 1.0, shadow: 1.0, motif: 1.0, fire: 1.0 };
 
-    /// Returns the largest step of the ramps that light smoke with these settings. Coverage is looked up once per pixel at
-    /// every lighting resolution, and so is the glow of lights unless its own ramp is smooth.
+    /// Returns the largest step of the ramps that light smoke with these settings. Coverage and the glow of lights are
+    /// looked up once per pixel at every lighting resolution.
     pub fn largest(&self, settings: &Settings) -> f32 {
         let by_normal = !settings.is_six_way();
         let lit =

@@ -72,12 +72,6 @@ pub fn coverage(amount: f32, boost: f32) -> f32 {
     saturate(amount * boost)
 }
 
-/// Light that becomes `added` when transfer_lit multiplies it by the coverage. Smoke that covers less than a thousandth shows
-/// next to nothing of a glow, and must not divide.
-pub fn light_before_coverage(added: Vec3, covered: f32) -> Vec3 {
-    added / covered.max(1.0e-3)
-}
-
 /// Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a
 /// displayed middle grey is half.
 pub fn painted_share(paint: Vec3) -> f32 {

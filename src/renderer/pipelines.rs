@@ -13,7 +13,7 @@ use super::pass::depth_resolve::{self, DepthResolveKey};
 use super::pass::depth_slopes::{self, DepthSlopesKey};
 use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
-use super::pass::light_target::{self, LightTargetKey};
+use super::pass::light_target::{self, LightingKey};
 use super::pass::screen_shadow;
 use super::pass::shadow_march::MarchTo;
 use super::pass::shadow_march_slice;
@@ -32,7 +32,7 @@ pub(crate) struct Pipelines {
     pub depth_resolve: PipelineVariants<DepthResolveKey>,
     pub diffuse_bake: PipelineVariants<DiffuseBakeKey>,
     pub accumulate: PipelineVariants<AccumulateKey>,
-    pub light_target: PipelineVariants<LightTargetKey>,
+    pub light_target: PipelineVariants<LightingKey>,
     pub depth_slopes: PipelineVariants<DepthSlopesKey>,
     pub transfer: PipelineVariants<TransferKey>,
     pub transfer_lit: PipelineVariants<TransferLitKey>,

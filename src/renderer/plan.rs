@@ -9,7 +9,7 @@ use super::pass::depth_resolve::RESOLVED_DEPTH_FORMAT;
 use super::pass::depth_slopes::DepthSlopesKey;
 use super::pass::diffuse_bake::DiffuseBakeKey;
 use super::pass::forward::ForwardKey;
-use super::pass::light_target::{LightTargetKey, LightingKey};
+use super::pass::light_target::LightingKey;
 use super::pass::specular_scatter::SpecularScatterKey;
 use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
@@ -104,7 +104,7 @@ pub(crate) struct DeferredPlan<'a> {
     /// faster: server GPUs draw with a few of their processors only.
     pub computes_texels: bool,
     /// Present if smoke is lit at the target's resolution.
-    pub light_target: Option<LightTargetKey>,
+    pub light_target: Option<LightingKey>,
     /// Present if lit smoke is upsampled by `guided`.
     pub depth_slopes: Option<DepthSlopesKey>,
     /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
@@ -208,11 +208,6 @@ fn deferred<'a>(
     let glows =
         debug_views.iter().any(|debug_view| debug_view.shows_glow()) && settings.specular_scatter.intensity > 0.0;
     let tiled = inputs.tiles.filter(|_| settings.path == RenderPath::Tiled);
-    // No debug view shows the one without the other.
-    let glow_per_texel = glows
-        && tiled.is_some()
-        && settings.glow_per_texel()
-        && debug_views.iter().all(|view| view.shows_lit_smoke() == view.shows_glow());
     let accumulate_key = AccumulateKey {
         format: accumulate.format,
         encoding: accumulate.encoding,
@@ -241,7 +236,7 @@ fn deferred<'a>(
             .then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         // Cooperative: on a GPU.
         computes_texels: tiled.is_some() || inputs.tiles == Some(true),
-        light_target: lights_target.then_some(LightTargetKey { lighting, glow: glow_per_texel }),
+        light_target: lights_target.then_some(lighting),
         depth_slopes: (lights_target && upsample == Upsample::Guided).then_some(DepthSlopesKey),
         transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
         transfer_lit: lights_target.then_some(TransferLitKey {
@@ -252,7 +247,7 @@ fn deferred<'a>(
             exact_filtering,
         }),
         debug_views,
-        specular_scatter: (glows && !glow_per_texel).then_some(SpecularScatterKey {
+        specular_scatter: glows.then_some(SpecularScatterKey {
             host,
             lit: lights_target,
             upsample,

@@ -8,7 +8,7 @@ use super::attachment_role::AttachmentSet;
 use super::lighting_choice::LightingChoice;
 use crate::assets::ramp_steps::RampSteps;
 use crate::formula::shadow::LIGHTS_PER_BLOCK;
-use crate::settings::{BlendOrder, CoverageMode, Lighting, LightingResolution, RampFilter, RenderPath, Settings};
+use crate::settings::{BlendOrder, Lighting, LightingResolution, RenderPath, Settings};
 
 /// Capabilities of a device that settings depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,13 +34,7 @@ pub struct ResolvedSettings {
     pub scale: u32,
     /// Choice of the lighting resolution `auto`; `None` for another.
     pub lighting_choice: Option<LightingChoice>,
-    /// True if the glow of lights changes little from texel to texel.
-    glow_is_smooth: bool,
 }
-
-/// Largest change of the glow of a light from one texel to the next, of its brightest color, at which a lookup per texel looks
-/// like one per pixel.
-const SMOOTH_GLOW: f32 = 0.1;
 
 impl ResolvedSettings {
     /// `particle_scale`: metres per unit of the particles' space; sprite sizes grow by it. `picture`: size of the view,
@@ -67,11 +61,7 @@ impl ResolvedSettings {
         if let Some(choice) = lighting_choice {
             settings.accumulate.lighting_resolution = choice.resolution;
         }
-        // The first 64th of the ramp, which is looked up by the square of the distance, is the first eighth of the radius.
-        let texels = settings.specular_scatter.size_in_pixels(picture.y) / (8.0 * scale as f32);
-        let glow_is_smooth =
-            settings.ramp_filter == RampFilter::Bilinear && ramp_steps.specular <= SMOOTH_GLOW * texels;
-        Self { settings, scale, lighting_choice, glow_is_smooth }
+        Self { settings, scale, lighting_choice }
     }
 
     /// Returns the same settings with the path that `auto` chose.
@@ -87,15 +77,6 @@ impl ResolvedSettings {
     /// True if the smoke is lit once per texel, and a texel is larger than a pixel.
     pub fn lights_per_texel(&self) -> bool {
         self.accumulate.lighting_resolution == LightingResolution::Target && self.scale > 1
-    }
-
-    /// True if the path `tiled` looks the glow of lights up once per texel, with all other light. A painted coverage may hide
-    /// what glows.
-    pub fn glow_per_texel(&self) -> bool {
-        self.path == RenderPath::Tiled
-            && self.lights_per_texel()
-            && self.coverage == CoverageMode::Linear
-            && self.glow_is_smooth
     }
 }
 
@@ -123,21 +104,6 @@ mod tests {
         assert!([2, 4, 8].into_iter().all(|scale| lights_per_texel(0.1, scale)) && !lights_per_texel(0.11, 8));
         assert!(!lights_per_texel(0.25, 2) && lights_per_texel(0.02, 16));
         assert!(!lights_per_texel(0.0, 1), "a texel is a pixel");
-    }
-
-    #[test]
-    fn glow_is_looked_up_per_texel_where_it_is_smooth() {
-        let per_texel = |step: f32, scale, size, path| {
-            let mut settings = Settings { path, ..Settings::default() };
-            settings.accumulate.scale = scale;
-            settings.specular_scatter.size = size;
-            let ramps = RampSteps { specular: step, ..RampSteps::default() };
-            let picture = UVec2::splat(1080);
-            ResolvedSettings::new(&settings, 1.0, picture, 1.0, &ramps, Support::ALL).glow_per_texel()
-        };
-        assert!(per_texel(0.3, 2, 200.0, RenderPath::Tiled) && per_texel(0.3, 4, 200.0, RenderPath::Tiled));
-        assert!(!per_texel(0.3, 16, 200.0, RenderPath::Tiled) && !per_texel(0.3, 4, 40.0, RenderPath::Tiled));
-        assert!(!per_texel(1.0, 4, 200.0, RenderPath::Tiled) && !per_texel(0.3, 2, 200.0, RenderPath::Raster));
     }
 
     #[test]

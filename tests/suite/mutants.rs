@@ -33,7 +33,12 @@ const MUTANTS: &[Mutant] = &[
         "return vec4f(normal, amount);",
     ),
     ("flipped normal y", "lib/normal.wgsl", "normal.x * rotation.y + normal.y", "-normal.x * rotation.y - normal.y"),
-    ("swapped ramp axes", "lib/glow.wgsl", "vec2f(distance_squared, amount)", "vec2f(amount, distance_squared)"),
+    (
+        "swapped ramp axes",
+        "specular_scatter.wgsl",
+        "vec2f(distance_squared, amount)",
+        "vec2f(amount, distance_squared)",
+    ),
 ];
 
 /// A context with one shader replaced.

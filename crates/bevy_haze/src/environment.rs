@@ -15,8 +15,6 @@ use bevy::prelude::{AssetEvent, GlobalTransform, InheritedVisibility, MessageRea
 use bevy::render::Extract;
 use bevy::render::sync_world::MainEntity;
 
-use crate::map_light::MapLights;
-
 /// Light of the hemispheres above and below, as a white matte surface that faces them shows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HemisphereLight {
@@ -121,17 +119,17 @@ pub(crate) fn extract_environments(
 }
 
 impl ExtractedEnvironments {
-    /// Light of the maps on smoke at a point, cd/m². Maps that have not been measured yet are dark.
+    /// Light of the maps on smoke at a point, cd/m². `of_map` returns the light of a map whose upward direction is given, in units
+    /// of its texels, or `None` if it has not been measured yet: it is dark then.
     pub fn light_at(
         &self,
         point: Vec3,
         (camera, layers): (MainEntity, Option<&RenderLayers>),
-        maps: &MapLights,
+        of_map: impl Fn(AssetId<Image>, Vec3) -> Option<HemisphereLight>,
     ) -> HemisphereLight {
         let layers = layers.unwrap_or_default();
         let light = |environment: &ExtractedEnvironment| {
-            let light = maps.get(environment.map)?.hemispheres(environment.up);
-            Some(light.scaled(environment.intensity))
+            Some(of_map(environment.map, environment.up)?.scaled(environment.intensity))
         };
         let (mut sum, mut total) = (HemisphereLight::default(), 0.0);
         for environment in self.environments.iter().filter(|environment| environment.layers.intersects(layers)) {

@@ -132,7 +132,8 @@ impl LightSources<'_, '_> {
     fn ambient_at(&self, point: Vec3, view: &CameraViewItem<'_, '_>) -> HemisphereLight {
         let global = self.ambient.as_deref().cloned().unwrap_or_default();
         let even = HemisphereLight::even(ambient_light(view.ambient, &global));
-        let maps = self.environments.light_at(point, (*view.camera_entity, view.layers), &self.maps);
+        let of_map = |map, up| Some(self.maps.get(map)?.hemispheres(up));
+        let maps = self.environments.light_at(point, (*view.camera_entity, view.layers), of_map);
         even.plus(maps, 1.0).scaled(view.camera.exposure)
     }
 

@@ -88,18 +88,15 @@ impl<'a> PreparedFrame<'a> {
             let (reduced_depth, textures) = (&reduced_depth, &textures);
             let is_lit = visible.lights_per_texel(self.debug_view);
             let mut smoke = AccumulatedTarget { visible, baked: &baked, reduced_depth, textures, is_lit, lit: None };
-            let glow_per_texel = self.debug_view == DebugView::Final && visible.settings.glow_per_texel();
             if is_lit {
-                let lights = visible.lights.iter().filter(|_| glow_per_texel);
-                let glows: Vec<_> = lights.filter_map(|light| smoke.glow_quad(light)).collect();
-                let light = smoke.light_target(&glows);
+                let light = smoke.light_target();
                 let slopes = smoke.depth_slopes(&light);
                 smoke.lit = Some(LitTarget { light, slopes });
             }
             if self.debug_view != DebugView::SpecularScatter {
                 smoke.transfer(self.debug_view, picture);
             }
-            if self.debug_view.shows_glow() && !glow_per_texel {
+            if self.debug_view.shows_glow() {
                 smoke.specular_scatter(picture);
             }
         }

@@ -1,8 +1,8 @@
 //! light_target: lights the accumulated smoke once per texel, if `lighting_resolution` selects it; transfer_lit
 //! then upsamples the light. `TexelPass` records it.
 //!
-//! Reads: accumulation target, lights, ramps, scene depth.
-//! Writes: lit smoke, Rgba16Float; computed with the glow of lights, it replaces specular_scatter.
+//! Reads: accumulation target, lights, ramps.
+//! Writes: lit smoke, Rgba16Float.
 //! Blend: none.
 //! Source: OTEE "Transfer & lighting", at the target's resolution.
 
@@ -47,28 +47,19 @@ impl LightingKey {
     }
 }
 
-/// Key of a light_target pipeline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct LightTargetKey {
-    pub lighting: LightingKey,
-    /// True to add the glow of lights, which takes a compute shader.
-    pub glow: bool,
-}
-
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: LightTargetKey) -> RenderPipelineDescription {
+pub(crate) fn describe(key: LightingKey) -> RenderPipelineDescription {
     RenderPipelineDescription {
         buffers: &[],
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: None,
         sample_count: 1,
         targets: vec![color_target(LIT_FORMAT, None)],
-        constants: key.lighting.constants([]),
+        constants: key.constants([]),
     }
 }
 
 /// Returns the parts of the compute pipeline for a key.
-pub(crate) fn describe_compute(key: LightTargetKey) -> ComputePipelineDescription {
-    let entry_point = if key.glow { "texels_with_glow" } else { "texels" };
-    ComputePipelineDescription { entry_point, constants: key.lighting.constants([]) }
+pub(crate) fn describe_compute(key: LightingKey) -> ComputePipelineDescription {
+    ComputePipelineDescription { entry_point: "texels", constants: key.constants([]) }
 }

@@ -56,7 +56,6 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/emission.wgsl",
     "lib/emitter.wgsl",
     "lib/fire.wgsl",
-    "lib/glow.wgsl",
     "lib/gradient_noise.wgsl",
     "lib/hash.wgsl",
     "lib/haze_transmittance.wgsl",

@@ -16,7 +16,7 @@ use crate::renderer::pass::depth_downsample::{self, DepthDownsampleKey};
 use crate::renderer::pass::depth_slopes::{self, DepthSlopesKey};
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
-use crate::renderer::pass::light_target::{self, LightTargetKey};
+use crate::renderer::pass::light_target::{self, LightingKey};
 use crate::renderer::pass::measure::{self, MeasureKey};
 use crate::renderer::pass::shadow_march::{self, ShadowMarchKey};
 use crate::renderer::pass::shadow_visibility;
@@ -45,7 +45,7 @@ pub(crate) struct TiledPipelines {
     pub shadow_visibility: PipelineVariants<(), ComputePipelineDescription>,
     // Variants of the passes that write every texel of a target.
     pub depth_downsample: PipelineVariants<DepthDownsampleKey, ComputePipelineDescription>,
-    pub light_target: PipelineVariants<LightTargetKey, ComputePipelineDescription>,
+    pub light_target: PipelineVariants<LightingKey, ComputePipelineDescription>,
     pub depth_slopes: PipelineVariants<DepthSlopesKey, ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,

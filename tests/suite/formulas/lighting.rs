@@ -156,15 +156,6 @@ fn coverages() -> Vec<Formula> {
             mutants: &[("saturate(amount * boost)", "amount * boost")],
         },
         Formula {
-            name: "light_before_coverage",
-            file: "lib/lighting.wgsl",
-            wgsl: "y(0, light_before_coverage(vec3f(x(0), 2.0 * x(0), 1.0), x(1)).y);",
-            reference: |x| vec![lighting::light_before_coverage(Vec3::new(x[0], 2.0 * x[0], 1.0), x[1]).y],
-            cases: [random(50, &[(0.0, 8.0), (0.0, 1.0)]), random(10, &[(0.0, 8.0), (0.0, 0.002)])].concat(),
-            tolerance: 1e-5,
-            mutants: &[("max(covered, 1.0e-3)", "max(covered, 1.0e-2)"), ("added / max", "added * max")],
-        },
-        Formula {
             name: "painted_share",
             file: "lib/lighting.wgsl",
             wgsl: "y(0, painted_share(vec3f(x(0), x(1), x(2))));",

@@ -59,8 +59,7 @@ fn main() -> Result<(), String> {
             data.particles = vec![particles];
         }
     };
-    scene::measure(app, &options, &["bevy_firework"], &["main_transparent_pass_3d"], place);
-    Ok(())
+    scene::measure(app, &options, &["bevy_firework"], &["main_transparent_pass_3d"], place)
 }
 
 fn texture(app: &mut App, bytes: Vec<u8>, format: TextureFormat) -> Handle<Image> {

@@ -43,8 +43,7 @@ fn main() -> Result<(), String> {
         }
     };
     let variants = VARIANTS.map(|(name, ..)| name);
-    scene::measure(app, &options, &variants, &["smoke", "main_transparent_pass_3d"], place);
-    Ok(())
+    scene::measure(app, &options, &variants, &["smoke", "main_transparent_pass_3d"], place)
 }
 
 /// Smoke with the sprite of the scene: soft at the scene, lit through a ramp.

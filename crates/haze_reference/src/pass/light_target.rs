@@ -1,29 +1,23 @@
 //! CPU version of `shaders/light_target.wgsl`.
 
-use glam::{IVec2, Vec3, Vec4};
+use glam::{IVec2, Vec4};
 
-use super::specular_scatter::GlowQuad;
 use crate::accumulated::AccumulatedTarget;
 use crate::blend_unit::quantise;
 use haze::assets::image::Image;
 use haze::formula::color::bounded_light;
-use haze::formula::lighting::{coverage, light_before_coverage};
 use haze::settings::AccumulationFormat;
 
 impl AccumulatedTarget<'_> {
-    /// Lit target: light times amount, and amount. `glows`: added to the light.
-    pub fn light_target(&self, glows: &[GlowQuad<'_>]) -> Image<Vec4> {
+    /// Lit target: light times amount, and amount.
+    pub fn light_target(&self) -> Image<Vec4> {
         let mut lit = Image::new(self.visible.setup.rect.size, Vec4::ZERO);
-        lit.for_each(|at, texel| *texel = self.lit_texel_with(at.as_ivec2(), glows));
+        lit.for_each(|at, texel| *texel = self.lit_texel(at.as_ivec2()));
         lit
     }
 
     /// Texel of the lit target. Positions outside are clamped to the nearest texel inside.
     pub fn lit_texel(&self, at: IVec2) -> Vec4 {
-        self.lit_texel_with(at, &[])
-    }
-
-    fn lit_texel_with(&self, at: IVec2, glows: &[GlowQuad<'_>]) -> Vec4 {
         let (visible, system) = (self.visible, &self.visible.system);
         let at = at.clamp(IVec2::ZERO, visible.setup.rect.size.as_ivec2() - 1);
         let accumulated = self.first_texture().map_or(Vec4::ZERO, |texture| texture.load(at));
@@ -35,10 +29,7 @@ impl AccumulatedTarget<'_> {
         let surface = self.shaded_surface(&self.attachments(accumulated, |texture| texture.load(at)), pixel);
         let position = self.lit_position(&surface, pixel);
         let reflected = self.diffuse(&surface, amount, position) + visible.soft_scatter(amount) * surface.tint;
-        let glow = glows.iter().filter_map(|glow| self.glow_light(glow, pixel, amount));
-        let glow = glow.fold(Vec3::ZERO, |sum, (_, light)| sum + light);
-        let added = light_before_coverage(glow, coverage(amount, system.boost));
-        let light = bounded_light(reflected + self.fire_light(&surface, amount) + added);
+        let light = bounded_light(reflected + self.fire_light(&surface, amount));
         quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)
     }
 }

@@ -58,16 +58,14 @@ impl AccumulatedTarget<'_> {
     /// Lookup coordinate of the specular ramp at a pixel, and the light found there; `None` outside the quad and where
     /// there is no smoke.
     pub fn sample_glow(&self, glow: &GlowQuad<'_>, pixel: Vec2) -> Option<(Vec2, Vec3)> {
-        let amount = if self.is_lit { self.sample_lit(pixel).w } else { self.sample_accumulated(pixel).w };
-        self.glow_light(glow, pixel, amount)
-    }
-
-    /// As [`sample_glow`](Self::sample_glow), through smoke of an amount.
-    pub fn glow_light(&self, glow: &GlowQuad<'_>, pixel: Vec2, amount: f32) -> Option<(Vec2, Vec3)> {
         let visible = self.visible;
         let uv = (pixel - glow.centre) / visible.system.specular_scatter_size;
         let distance_squared = uv.length_squared();
-        if distance_squared >= 1.0 || amount <= 0.0 {
+        if distance_squared >= 1.0 {
+            return None;
+        }
+        let amount = if self.is_lit { self.sample_lit(pixel).w } else { self.sample_accumulated(pixel).w };
+        if amount <= 0.0 {
             return None;
         }
         let coordinate = Vec2::new(distance_squared, amount);
