@@ -94,7 +94,7 @@ impl PathModelSource {
 
 impl PathModel {
     /// Measured on an NVIDIA H200: `bench/results/h200_auto.json`; the traversal in `h200.json`; further textures and grain
-    /// by the suite `sprites`; pixels by the suite `frame` (`h200_frame.json`): `raster` draws depth_downsample, `tiled` computes
+    /// by the suite `sprites`; pixels by the suite `frame` (`h100_frame.json`): `raster` draws depth_downsample, `tiled` computes
     /// it.
     const GPU: Self = Self {
         raster: PathCosts {
