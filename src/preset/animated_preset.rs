@@ -7,8 +7,7 @@ use super::preset_file::Preset;
 use crate::error::FieldError;
 use crate::settings::{is_field_named, set_field};
 
-/// A preset that is evaluated at any times, in any order. Frames need no memory of the heap, except for choices with
-/// keyframes.
+/// A preset that is evaluated at any times, in any order. Settings are looked up by name once, not in each frame.
 ///
 /// ```
 /// use haze::preset::{AnimatedPreset, Preset};
@@ -34,7 +33,7 @@ impl AnimatedPreset {
         Self { shown, fields }
     }
 
-    /// The preset at a time, seconds: its settings have the values of their tracks, within their ranges, and it has no
+    /// The preset at a time, seconds: its settings have the values of their tracks, each within its range, and it has no
     /// tracks of its own.
     pub fn at(&mut self, time: f32) -> &Preset {
         self.shown.time = time;

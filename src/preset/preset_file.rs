@@ -212,7 +212,9 @@ impl Preset {
         self.systems.iter().enumerate().map(load).collect()
     }
 
-    /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once; also with the values of each keyframe.
+    /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once; also with the values of each keyframe at its
+    /// time. Between keyframes and with flicker, rules for several settings together may still be broken: `at(time)` can be
+    /// validated too.
     ///
     /// # Errors
     /// The first field that is not valid.

@@ -84,8 +84,9 @@ impl SystemTargets {
                 inputs[3..].iter_mut().zip(&accumulation.attachments[1..]).for_each(|(input, view)| *input = view);
                 inputs
             };
-            let transfer =
+            let bind_transfer =
                 |amount| bind_textures(device, "haze transfer inputs", &layouts.transfer, transfer_textures(amount));
+            let transfer = bind_transfer(amount);
             let lit = accumulation.lit.as_ref().unwrap_or(amount);
             let lit_inputs =
                 |slopes| bind_textures(device, "haze lit inputs", &layouts.lit, [lit, depth.unwrap_or(lit), slopes]);
@@ -99,14 +100,13 @@ impl SystemTargets {
                 }),
                 accumulate: depth
                     .map(|depth| bind_textures(device, "haze accumulate inputs", &layouts.accumulate, [depth])),
-                transfer: transfer(amount),
-                overdraw: accumulation.overdraw.as_ref().map(|layers| transfer(&layers[0])),
+                overdraw: accumulation.overdraw.as_ref().map(|layers| bind_transfer(&layers[0])),
                 light_target: accumulation.lit.as_ref().map(|lit| match computed_texels {
                     Some(computed) => {
                         let textures = transfer_textures(amount).into_iter().chain([lit]);
                         bind_textures(device, "haze light_target inputs", &computed.light_target, textures)
                     }
-                    None => transfer(amount),
+                    None => transfer.clone(),
                 }),
                 depth_slopes: depth_slopes.map(|slopes| match computed_texels {
                     Some(computed) => {
@@ -116,6 +116,7 @@ impl SystemTargets {
                     None => lit_inputs(lit),
                 }),
                 upsampled: lit_inputs(depth_slopes.unwrap_or(lit)),
+                transfer,
             }
         });
         ReadyTargets { accumulation, baked_diffuse, inputs }

@@ -79,14 +79,21 @@ impl Frames {
     /// Returns the shot at the time of a frame, with the values that its settings have then.
     pub fn shot(&self, shot: &Shot, frame: u32) -> Shot {
         let mut shot = shot.clone();
-        shot.preset.time += frame as f32 / self.rate;
-        shot.at_its_time().into_owned()
+        shot.preset = shot.preset.at(shot.preset.time + frame as f32 / self.rate);
+        shot
     }
 
     /// Returns the error of a sequence that was stopped after so many frames.
     pub fn stopped_sequence(&self, names: &FrameNames, done: u32) -> Error {
         let what = format!("not written; this sequence is partial, {done} of {} frames are written", self.count());
         stopped(&names.of(self.range.start() + done), what)
+    }
+
+    /// True if a system burns in one of the first `count` frames, counted beyond the range too.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn burns(&self, shot: &Shot, count: u32) -> bool {
+        let mut shots = (0..count).map(|index| self.shot(shot, self.range.start() + index));
+        shots.any(|shot| shot.preset.systems.iter().any(|system| system.settings.burns()))
     }
 
     /// Renders every frame and passes it to `take` with its number. `stopped` makes the error of a run that was stopped
@@ -174,6 +181,9 @@ pub async fn render_flipbook(
     frames.render(backend, shot, progress, place, stopped).await?;
     Ok(sheet)
 }
+
+/// Frames per second if none are given.
+pub const USUAL_RATE: f32 = 60.0;
 
 /// Highest frame rate of a GIF. GIF delays are whole hundredths of a second, and viewers lengthen delays below two
 /// hundredths.

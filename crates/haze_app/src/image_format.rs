@@ -6,7 +6,7 @@ use haze::image::Image;
 use haze::preset::SceneName;
 use haze::settings::DebugView;
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::{encoded, rgba8, tonemap};
+use haze_demo::tonemap_pass::{encoded, exposure, rgba8, tonemap};
 use image::{DynamicImage, ImageBuffer, imageops};
 
 use super::smoke_alone::{before_two_skies, separated};
@@ -78,7 +78,7 @@ impl ImageFormat {
             let image = render(shot).await?;
             return Ok(match self.bits {
                 BitDepth::Eight => tonemap(&image, shot).into(),
-                BitDepth::Sixteen => DynamicImage::from(rgba16(&encoded(&image, shot))).into_rgb16().into(),
+                BitDepth::Sixteen => DynamicImage::from(rgba16(&encoded(&image, exposure(shot)))).into_rgb16().into(),
             });
         }
         let [dark, bright] = before_two_skies(shot);
@@ -87,7 +87,7 @@ impl ImageFormat {
             Alpha::Straight => straight(&smoke),
             Alpha::Premultiplied => smoke,
         };
-        let encoded = encoded(&smoke, shot);
+        let encoded = encoded(&smoke, exposure(shot));
         Ok(match self.bits {
             BitDepth::Eight => rgba8(&encoded).into(),
             BitDepth::Sixteen => rgba16(&encoded).into(),

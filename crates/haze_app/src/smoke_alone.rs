@@ -12,7 +12,7 @@ const BRIGHT: f32 = 64.0;
 /// Returns the shot before an even dark sky, and before a bright one.
 pub fn before_two_skies(shot: &Shot) -> [Shot; 2] {
     [0.0, BRIGHT].map(|light| {
-        let mut shot = shot.clone();
+        let mut shot = shot.at_its_time().into_owned();
         let environment = &mut shot.preset.environment;
         environment.scene = SceneName::Empty;
         (environment.zenith, environment.horizon) = (Vec3::splat(light), Vec3::splat(light));

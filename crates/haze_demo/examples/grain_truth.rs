@@ -26,7 +26,7 @@ const BANDS: [(f32, f32); 3] = [(4.0, 8.0), (8.0, 16.0), (16.0, 32.0)];
 /// Wavelength, in standard deviations, at which a Gaussian blur halves a wave: 2π / √(2 ln 2).
 const HALVED: f32 = 5.336;
 
-/// Erosion, bump and octaves of the grain, by name. Those in the middle are the start that `docs/sprites.md` recommends.
+/// Erosion, bump and octaves of the grain, by name.
 const GRAINS: [(&str, f32, f32, u32); 4] =
     [("no grain", 0.0, 0.0, 1), ("grain", 0.5, 1.0, 1), ("two octaves", 0.5, 1.0, 2), ("strong", 0.9, 2.0, 2)];
 

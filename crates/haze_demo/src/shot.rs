@@ -74,13 +74,20 @@ impl Shot {
         Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches, shown_scalar: None })
     }
 
-    /// The shot at the time of its preset: its settings have the values of their tracks. Drawing does so by itself; do it before
+    /// The shot at the time of its preset: its settings have the values of their tracks. Renderers call it; call it before
     /// settings are changed for one image, because tracks replace them.
     pub fn at_its_time(&self) -> Cow<'_, Self> {
         if self.preset.animation.is_empty() {
             return Cow::Borrowed(self);
         }
-        Cow::Owned(Self { preset: self.preset.at(self.preset.time), ..self.clone() })
+        Cow::Owned(Self {
+            preset: self.preset.at(self.preset.time),
+            size: self.size,
+            debug_view: self.debug_view,
+            materials: self.materials.clone(),
+            caches: self.caches.clone(),
+            shown_scalar: self.shown_scalar,
+        })
     }
 
     /// True if both give the same image before tonemapping; exposure is ignored. Cheap: images and particles from files

@@ -13,15 +13,14 @@ use haze::shader;
 /// data.
 pub fn tonemap(image: &Image<Vec4>, shot: &Shot) -> RgbImage {
     let mut rounded = Image::new(image.size, [0_u8; 3]);
-    let encoded = encoded(image, shot);
+    let encoded = encoded(image, exposure(shot));
     rounded.for_each(|at, out| *out = quantise(encoded.load(at.as_ivec2()).xyz(), at));
     // Never the default: there is one texel per pixel.
     RgbImage::from_raw(image.size.x, image.size.y, rounded.texels.into_flattened()).unwrap_or_default()
 }
 
-/// As [`tonemap`], but not rounded. Alpha stays.
-pub fn encoded(image: &Image<Vec4>, shot: &Shot) -> Image<Vec4> {
-    let exposure = exposure(shot);
+/// As [`tonemap`], but not rounded. `exposure`: that of [`exposure`]. Alpha stays.
+pub fn encoded(image: &Image<Vec4>, exposure: f32) -> Image<Vec4> {
     let encode = |color: Vec3| if exposure == 0.0 { color } else { tonemapped(color, exposure) };
     let mut encoded = Image::new(image.size, Vec4::ZERO);
     encoded.for_each(|at, out| {
@@ -45,7 +44,12 @@ pub fn rgba8(encoded: &Image<Vec4>) -> RgbaImage {
 
 /// Returns the exposure factor of a shot; 0 if its debug view shows data.
 pub fn exposure(shot: &Shot) -> f32 {
-    if shot.debug_view.is_data() { 0.0 } else { shot.at_its_time().preset.camera.exposure.exp2() }
+    let preset = &shot.preset;
+    match (shot.debug_view.is_data(), preset.animation.is_empty()) {
+        (true, _) => 0.0,
+        (false, true) => preset.camera.exposure.exp2(),
+        (false, false) => preset.at(preset.time).camera.exposure.exp2(),
+    }
 }
 
 /// Dithers and rounds to 8 bits.

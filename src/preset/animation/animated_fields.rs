@@ -33,7 +33,7 @@ impl AnimatedField<'_> {
         }
     }
 
-    /// True for fields that flicker: half or twice as much of them has a meaning.
+    /// True for fields that flicker: those whose half and double make sense.
     pub(super) fn flickers(&self) -> bool {
         matches!(self, Self::Number(..) | Self::Color(..))
     }

@@ -10,7 +10,7 @@ use super::keyframe::{Ease, KeyValue, Keyframe};
 /// Kind of the interpolated values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Numbers, positions, sizes and colors: each component by itself.
+    /// Numbers, positions, sizes and colors: component by component.
     Linear,
     /// Directions turn the short way.
     Direction,

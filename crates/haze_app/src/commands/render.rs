@@ -11,7 +11,7 @@ use pollster::block_on;
 
 use crate::exr_export;
 use crate::frame_range::{FrameNames, parse_frames, parse_rate, parse_sheet};
-use crate::image_export::{self, ExportProgress, Frames, SCENE};
+use crate::image_export::{self, ExportProgress, Frames, SCENE, USUAL_RATE};
 use crate::image_format::{Alpha, Background, BitDepth, ImageFormat};
 use crate::options::{ShotArguments, choices};
 use crate::output::print_line;
@@ -48,9 +48,6 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     bits: BitDepth,
 }
-
-/// Frames per second if none are given.
-const USUAL_RATE: f32 = 60.0;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let is_gif = has_extension(&arguments.shot.output, "gif");

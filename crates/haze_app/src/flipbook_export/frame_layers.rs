@@ -1,20 +1,23 @@
 //! Layers of one frame of a flipbook.
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use haze::Error;
 use haze::image::Image;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::exposure;
 
 use crate::backend::Backend;
 use crate::smoke_layers::SmokeLayers;
 
 /// Layers of one frame, all multiplied by the opacity of the smoke, which is in alpha.
 pub struct FrameLayers {
+    /// Exposed.
     pub light: Image<Vec4>,
     /// View space.
     pub normals: Image<Vec4>,
     /// Way until the next frame: x to the right, y up, shares of the frame's width and height.
     pub motion: Image<Vec4>,
+    /// Exposed.
     pub fire: Option<Image<Vec4>>,
     /// From right, top and front; from left, bottom and back.
     pub six_way: Option<[Image<Vec4>; 2]>,
@@ -33,12 +36,17 @@ impl FrameLayers {
         let (width, height) = (shot.size.x as f32, shot.size.y as f32);
         let mut motion = layers.motion(seconds).await?;
         motion.texels.iter_mut().for_each(|texel| *texel /= Vec4::new(width, height, 1.0, 1.0));
+        let exposure = Vec3::splat(exposure(shot)).extend(1.0);
+        let exposed = |mut image: Image<Vec4>| {
+            image.texels.iter_mut().for_each(|texel| *texel *= exposure);
+            image
+        };
         Ok(Self {
             normals: layers.normals().await?,
             motion,
-            fire: if burns { Some(layers.fire().await?) } else { None },
+            fire: if burns { Some(exposed(layers.fire().await?)) } else { None },
             six_way: if has_six_way { Some(layers.six_way().await?) } else { None },
-            light: layers.light,
+            light: exposed(layers.light),
         })
     }
 

@@ -74,8 +74,12 @@ impl FlipbookExport {
             let expected = format!("less than the number of frames, {count}");
             return Err(FieldError::new("--loop", fade, expected).into());
         }
-        let burns = shot.preset.systems.iter().any(|system| system.settings.burns());
+        if frames.range.end().checked_add(fade).is_none() {
+            let problem = format!("{fade} frames after {} are beyond the last frame", frames.range.end());
+            return Err(FieldError::from_problem("--loop", problem, format!("at most frame {}", u32::MAX)).into());
+        }
         let all = count + fade;
+        let burns = frames.burns(shot, all);
         let layers = async |index: u32| {
             // Frames of the fade are rendered with those that they fade into.
             let done = index + index.min(fade);
@@ -97,11 +101,11 @@ impl FlipbookExport {
         let mut sheets = Sheets::new(shot.size, options.cells);
         // A frame is placed when the next one is known, for its motion.
         let mut last = layers(0).await?;
-        let first_frame = encoded(&last.light, shot);
+        let first_frame = encoded(&last.light, 1.0);
         let mut last_frame = first_frame.clone();
         for index in 1..count {
             let next = layers(index).await?;
-            let next_frame = encoded(&next.light, shot);
+            let next_frame = encoded(&next.light, 1.0);
             sheets.place(index - 1, &last, [&last_frame, &next_frame]);
             if index + 1 == count && fade == 0 {
                 // No frame follows: its motion is that from the frame before.
@@ -112,7 +116,7 @@ impl FlipbookExport {
         if fade > 0 || count == 1 {
             sheets.place(count - 1, &last, [&last_frame, &first_frame]);
         }
-        let made = sheets.encode(shot, options.engine);
+        let made = sheets.encode(options.engine);
         let numbers = FlipbookNumbers {
             columns: options.cells.y,
             rows: options.cells.x,

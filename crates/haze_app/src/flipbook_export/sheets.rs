@@ -3,7 +3,6 @@
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use haze::formula::six_way::SixWay;
 use haze::image::Image;
-use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{encoded, rgba8};
 use image::{DynamicImage, Rgb, RgbImage, Rgba, RgbaImage};
 
@@ -46,8 +45,8 @@ impl Sheets {
         Self { frame, columns: cells.y, light: empty(), normals: empty(), motion: empty(), fire: None, six_way: None }
     }
 
-    /// Places a frame. `pair`: two frames that follow each other, one of them this, encoded; motion vectors lead from the one to
-    /// the other.
+    /// Places a frame. `pair`: this frame and a neighbour, in the order of time, encoded; motion vectors lead from the first to
+    /// the second.
     pub fn place(&mut self, index: u32, layers: &FrameLayers, pair: [&Image<Vec4>; 2]) {
         let corner = UVec2::new(index % self.columns, index / self.columns) * self.frame;
         let size = self.light.size;
@@ -64,8 +63,8 @@ impl Sheets {
         }
     }
 
-    /// Encodes the sheets in the conventions of an engine. `shot` gives the exposure.
-    pub fn encode(&self, shot: &Shot, engine: Engine) -> EncodedSheets {
+    /// Encodes the sheets in the conventions of an engine.
+    pub fn encode(&self, engine: Engine) -> EncodedSheets {
         let up = if engine.normals_point_up() { 1.0 } else { -1.0 };
         let normals = rgb8(&self.normals, |texel| {
             let normal = texel.xyz().normalize_or(Vec3::Z);
@@ -78,13 +77,10 @@ impl Sheets {
             let way = texel.xy() / motion_scale * glam::Vec2::new(1.0, down);
             (way.clamp(glam::Vec2::NEG_ONE, glam::Vec2::ONE) * 0.5 + 0.5).extend(0.5)
         });
-        let mut images = vec![
-            (COLOR, rgba8(&encoded(&self.light, shot)).into()),
-            (NORMALS, normals.into()),
-            (MOTION, motion.into()),
-        ];
+        let mut images =
+            vec![(COLOR, rgba8(&encoded(&self.light, 1.0)).into()), (NORMALS, normals.into()), (MOTION, motion.into())];
         if let Some(fire) = &self.fire {
-            images.push((EMISSION, DynamicImage::from(rgba8(&encoded(fire, shot))).into_rgb8().into()));
+            images.push((EMISSION, DynamicImage::from(rgba8(&encoded(fire, 1.0))).into_rgb8().into()));
         }
         let six_way_intensity = self.six_way.as_ref().map(|sides| {
             let brightest = sides.each_ref().map(|side| largest(side, |light| light.xyz().max_element()));

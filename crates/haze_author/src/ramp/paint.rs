@@ -49,7 +49,7 @@ fn weight(distance: f32) -> f32 {
     (-0.5 * (distance / REACH).powi(2)).exp()
 }
 
-/// Color of a row by itself.
+/// Color of a row without the others.
 fn color_of(recipe: &RampRecipe, row: &RampRow, at: f32) -> Result<HexColor, FieldError> {
     let (place, times) = (String::new(), Vec::new());
     let alone = RampRecipe { place, times, rows: vec![row.clone()], ..recipe.clone() };

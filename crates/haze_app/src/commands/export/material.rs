@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::preset::Preset;
-use haze::settings::set_field;
 use haze::{Error, FieldError};
 
 use crate::engine::Engine;
@@ -38,9 +37,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { preset: path, engine, system, set, output, assets } = arguments;
     let mut preset = Preset::load(path)?;
     for (field, value) in set {
-        set_field(&mut preset, field, value).map_err(|error| with_option("--set", error))?;
+        preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
     }
     preset.validate()?;
+    let preset = preset.at(preset.time);
     let index = system.as_ref().map_or(Ok(0), |name| system_index(&preset, name))?;
     let folders = assets.folders(path)?;
     let materials = preset.load_materials_from(path, &folders)?;

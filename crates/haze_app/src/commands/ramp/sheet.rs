@@ -69,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
     let mut shots = Vec::new();
     for (cell, ramp) in &ramps {
-        let mut shot = Shot { size, ..base.clone() };
+        let mut shot = Shot { size, ..base.at_its_time().into_owned() };
         apply_ramp(&mut shot, cell.role, ramp);
         shots.push((cell.name.clone(), shot));
     }

@@ -33,12 +33,16 @@ impl KeyframeEdit {
             return None;
         }
         let lists = |preset: &Preset| (preset.lights.len(), preset.systems.len());
-        if lists(preset) != lists(&self.shown) {
-            // Keyframes replace the values that lights and systems bring with them.
-            return None;
-        }
-        let keyed: Vec<String> =
-            preset.animation.iter().filter(|track| !track.keys.is_empty()).map(|track| track.setting.clone()).collect();
+        // Keyframes replace the values that new lights and systems bring with them.
+        let has_other_lists = lists(preset) != lists(&self.shown);
+        let is_in_list = |setting: &str| setting.starts_with("lights[") || setting.starts_with("systems[");
+        let keyed: Vec<String> = preset
+            .animation
+            .iter()
+            .filter(|track| !track.keys.is_empty())
+            .filter(|track| !has_other_lists || !is_in_list(&track.setting))
+            .map(|track| track.setting.clone())
+            .collect();
         let of = |preset: &Preset| -> HashMap<String, FieldValue> {
             field_values(preset).into_iter().filter(|(path, _)| keyed.contains(path)).collect()
         };
@@ -142,6 +146,10 @@ pub fn move_key(track: &mut Track, index: usize, time: f32) {
     let period = Some(track.period).filter(|period| *period > 0.0);
     let least = near(index.checked_sub(1).and_then(|before| track.keys.get(before)), REACH).or(period.map(|_| 0.0));
     let most = near(track.keys.get(index + 1), -REACH).or(period);
+    // Keyframes of a file may be nearer to each other.
+    if least.zip(most).is_some_and(|(least, most)| least > most) {
+        return;
+    }
     if let Some(key) = track.keys.get_mut(index) {
         // A hundredth of a second is finer than a frame, and short in a file.
         let time = (time * 100.0).round() / 100.0;

@@ -18,7 +18,7 @@ use crate::material_export::MaterialExport;
 use crate::page_renderer::PageRenderer;
 
 pub use crate::image_export::{
-    ExportProgress, Frames, SCENE, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
+    ExportProgress, Frames, SCENE, USUAL_RATE, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
     write_sequence,
 };
 
@@ -62,6 +62,7 @@ pub async fn write_exr_sequence(
 /// Writes the material of a system into a folder.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn write_material(shot: &Shot, system: usize, engine: Engine, folder: &Path) -> Result<(), Error> {
+    let shot = &*shot.at_its_time();
     let Some((found, images)) = shot.preset.systems.get(system).zip(shot.materials.get(system)) else {
         return Err(FieldError::new("export", "a material", "a preset with a system").into());
     };

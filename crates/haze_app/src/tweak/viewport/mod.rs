@@ -155,7 +155,7 @@ impl Viewport {
     }
 
     fn change(&mut self, action: InView, session: &mut Session) {
-        let saved = session.saved().camera;
+        let saved = session.saved().with_keyframes_at(session.playback.time).camera;
         let camera = &mut session.document.preset.camera;
         match action {
             InView::Frame => self.frame(session),

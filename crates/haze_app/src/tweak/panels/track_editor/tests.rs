@@ -120,7 +120,7 @@ fn the_diamond_of_a_row_adds_and_deletes() {
     harness.hover_at(radius);
     harness.run_steps(3);
     harness.get_by_label("Add Keyframe at 2.00 s: Radius");
-    // All of them.
+    // The menu deletes all keyframes.
     row_menu(&mut harness, "Intensity");
     harness.get_by_label("Delete All Keyframes").click();
     harness.run_steps(4);
