@@ -1,7 +1,5 @@
 //! CPU ray caster for a scene from a file: renders the same color and depth as `scene_mesh.wgsl`.
 
-use std::sync::Arc;
-
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
 use super::boxes::LIGHT_GAP;
@@ -54,7 +52,7 @@ impl<'a> MeshCaster<'a> {
     pub fn new(scene: &'a Scene, view: &View) -> Option<Self> {
         let rays = CameraRays::new(view);
         Some(Self {
-            mesh: scene.backdrop.scene.as_ref().map(Arc::as_ref)?,
+            mesh: scene.backdrop.mesh()?,
             scene,
             scale: scene.environment.scene_scale,
             size: view.size.as_vec2(),

@@ -59,7 +59,7 @@ pub(crate) struct Scene {
 
 impl Scene {
     pub fn new(environment: &Environment, lights: &[Light], backdrop: &Backdrop) -> Self {
-        let mut boxes = if backdrop.scene.is_some() { Vec::new() } else { layout::boxes(environment) };
+        let mut boxes = if backdrop.mesh().is_some() { Vec::new() } else { layout::boxes(environment) };
         boxes.truncate(MAX_BOXES);
         let lights: Vec<_> = lights.iter().map(|light| light.uniform(&Mat4::IDENTITY)).collect();
         let ambient = match &backdrop.sky {

@@ -136,7 +136,7 @@ impl Shot {
 
     /// Corners of the box around the scene from a file, metres.
     fn mesh_bounds(&self) -> Option<(Vec3, Vec3)> {
-        let (min, max) = self.backdrop.scene.as_ref()?.bounds()?;
+        let (min, max) = self.backdrop.mesh()?.bounds()?;
         let scale = self.preset.environment.scene_scale;
         Some((min * scale, max * scale))
     }

@@ -46,7 +46,7 @@ impl UploadedBackdrop {
         let data: &[u8] = bytemuck::cast_slice(&bits);
         let texture =
             device.create_texture_with_data(queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, data);
-        let mesh = backdrop.scene.as_ref().map(|mesh| {
+        let mesh = backdrop.mesh().map(|mesh| {
             let pipelines = pipelines();
             let uploaded = pipelines.upload(device, queue, mesh);
             (pipelines, uploaded)

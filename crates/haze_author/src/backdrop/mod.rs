@@ -114,10 +114,15 @@ impl Backdrop {
         of_scene.chain(self.sky.iter().map(|sky| &sky.file)).map(PathBuf::as_path)
     }
 
+    /// Scene, if any. A page has none: what uses it is left out of its program.
+    pub fn mesh(&self) -> Option<&SceneMesh> {
+        self.scene.as_deref().filter(|_| !cfg!(target_arch = "wasm32"))
+    }
+
     /// Replaces a preset's camera by that of the scene, except for the exposure. False if there is none.
     pub fn take_camera(&self, preset: &mut Preset) -> bool {
         let scale = preset.environment.scene_scale;
-        let Some(camera) = self.scene.as_ref().and_then(|scene| scene.camera_at_scale(scale)) else { return false };
+        let Some(camera) = self.mesh().and_then(|scene| scene.camera_at_scale(scale)) else { return false };
         preset.camera = Camera { exposure: preset.camera.exposure, ..camera };
         true
     }
@@ -125,7 +130,7 @@ impl Backdrop {
     /// Replaces a preset's lights by those of the scene. False if it has none.
     pub fn take_lights(&self, preset: &mut Preset) -> bool {
         let scale = preset.environment.scene_scale;
-        let lights = self.scene.as_ref().map(|scene| scene.lights_at_scale(scale)).unwrap_or_default();
+        let lights = self.mesh().map(|scene| scene.lights_at_scale(scale)).unwrap_or_default();
         if lights.is_empty() {
             return false;
         }

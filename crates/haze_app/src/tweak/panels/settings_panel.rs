@@ -174,7 +174,7 @@ fn section(
 
 fn surroundings(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, backdrop: &Backdrop) {
     section(ui, context, &[("environment", None)], true, &mut preset.environment);
-    if let Some(scene) = &backdrop.scene {
+    if let Some(scene) = backdrop.mesh() {
         ui.label(egui::RichText::new(format!("The scene file has {}.", scene.description())).weak());
         ui.horizontal_wrapped(|ui| {
             let mut button =

@@ -242,7 +242,7 @@ mod tests {
     fn a_path_is_used_when_its_field_loses_focus() {
         let row = |ui: &mut Ui, value: &mut String| {
             let name = ui.label("path");
-            path(ui, value, "row").labelled_by(name.id);
+            path(ui, value, "row", "").labelled_by(name.id);
         };
         let mut harness = egui_kittest::Harness::new_ui_state(row, String::new());
         for (key, expected) in
