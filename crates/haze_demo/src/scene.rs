@@ -50,7 +50,7 @@ pub(crate) struct Scene {
     /// Scene and sky from files.
     pub backdrop: Backdrop,
     /// Ambient light on surfaces, in the space of the panorama.
-    ambient: SkyLight,
+    pub ambient: SkyLight,
     pub environment: Environment,
     /// Lights in world space.
     pub lights: Vec<LightUniform>,

@@ -186,7 +186,7 @@ impl Import {
         let factor = if factor.is_finite() { factor.max(Vec3::ZERO) } else { Vec3::ONE };
         let info = pbr.base_color_texture();
         let transform = info.as_ref().and_then(gltf::texture::Info::texture_transform);
-        let set = transform.as_ref().and_then(|transform| transform.tex_coord());
+        let set = transform.as_ref().and_then(gltf::texture::TextureTransform::tex_coord);
         let set = set.or(info.as_ref().map(gltf::texture::Info::tex_coord)).unwrap_or_default();
         let uvs: Vec<Vec2> =
             reader.read_tex_coords(set).map(|uvs| uvs.into_f32().map(Vec2::from).collect()).unwrap_or_default();

@@ -12,7 +12,7 @@ mod sky_image;
 #[cfg(not(target_arch = "wasm32"))]
 mod sky_import;
 mod sky_light;
-#[cfg(all(test, not(target_arch = "wasm32")))]
+#[cfg(test)]
 mod tests;
 
 use std::path::{Path, PathBuf};

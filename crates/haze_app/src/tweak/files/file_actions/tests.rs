@@ -15,6 +15,7 @@ use tempfile::TempDir;
 use super::*;
 use crate::tweak::files::hot_reload::ShaderFolder;
 use crate::tweak::files::persistence::{Layout, Persistence};
+use crate::tweak::files::shared_look;
 use crate::tweak::window::{Start, Window, testing};
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
@@ -224,6 +225,8 @@ fn a_dropped_scene_and_sky_are_shown_from_any_folder_and_copied_when_the_preset_
     bench.drop_file(&example("dusk.hdr"));
     bench.until(|bench| bench.session().document.preset.environment.sky_file == "dusk.hdr");
     assert_eq!(bench.said(), "dusk.hdr is now the sky. It lights the scene and the smoke");
+    let link = shared_look::fragment_of(bench.session()).unwrap_err().to_string();
+    assert!(link.starts_with("link: environment.scene_file names a file; expected the demo scene"), "{link}");
     // The artist's camera and lights stay until others are asked for.
     let dropped = bench.session().document.preset.clone();
     assert!(dropped.camera == before.camera && dropped.lights == before.lights);
