@@ -19,7 +19,7 @@ use image::{ImageDecoder as _, ImageReader, Limits};
 use super::bvh::Bvh;
 use super::color_texture::{ColorTexture, Wrap};
 use super::gltf_files::{self, GltfFiles};
-use super::scene_mesh::{MAX_MASKS, SceneMaterial, SceneMesh, SceneVertex};
+use super::scene_mesh::{SceneMaterial, SceneMesh, SceneVertex};
 
 /// Maximum number of triangles of a scene.
 pub const MAX_TRIANGLES: usize = 1_000_000;
@@ -33,6 +33,8 @@ pub const MAX_TEXTURE_BYTES: u64 = 512 << 20;
 const MAX_DISTANCE: f32 = 1.0e5;
 /// Luminous efficacy by which Blender and others export watts as lumens, lm/W.
 const LUMENS_PER_WATT: f32 = 683.0;
+/// Maximum number of materials that are cut out.
+const MAX_MASKS: usize = 128;
 /// Alpha below which a blended material is cut out.
 const BLEND_CUTOFF: f32 = 0.5;
 /// Alpha below which a masked material is cut out if the file does not say it: glTF's default.

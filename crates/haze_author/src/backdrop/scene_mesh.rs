@@ -42,8 +42,6 @@ pub struct SceneMaterial {
 
 /// Side of the mask of a material, texels.
 pub const MASK_SIDE: u32 = 256;
-/// Maximum number of materials that are cut out.
-pub const MAX_MASKS: usize = 128;
 
 /// Triangles of a scene file; see the module's documentation.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,7 +8,7 @@ use haze::{Error, FieldError};
 use haze_author::backdrop::Backdrop;
 
 use super::dropped_image::place_of;
-use crate::tweak::platform::{asset_loading, file_io};
+use crate::tweak::platform::{IS_PAGE, asset_loading, file_io};
 use crate::tweak::session::Session;
 
 /// Scene or sky that was loaded, and its name in the preset.
@@ -43,6 +43,9 @@ impl DroppedBackdrop {
     /// Shows it around the smoke, as one step that can be undone.
     pub fn apply(self, session: &mut Session) {
         let Self { kind, name, folder, loaded } = self;
+        if IS_PAGE {
+            return session.messages.info("file", format!("A page does not show {name}; the program does"));
+        }
         let is_known = session.folders().candidate_paths(Path::new("")).any(|known| file_io::is_same(&known, &folder));
         if !is_known {
             session.backdrop_folders.push(folder);
@@ -61,6 +64,5 @@ impl DroppedBackdrop {
         *session.document.preset.environment.backdrop_name_mut(kind) = name;
         session.messages.clear("backdrop");
         session.messages.info("file", said);
-        session.report_missing_backdrop();
     }
 }

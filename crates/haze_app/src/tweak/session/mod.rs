@@ -25,7 +25,6 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use glam::UVec2;
 use haze::preset::{AssetFolders, Preset};
-
 use haze::settings::{BackdropKind, DebugView, FieldValue, field_values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
