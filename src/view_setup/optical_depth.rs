@@ -30,7 +30,7 @@ pub(super) fn optical_depths(
     // the view-space positions.
     let (mut total, mut sum, mut squares) = (0.0_f64, DVec2::ZERO, DVec2::ZERO);
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
-        let position = space.view_position(particle.position);
+        let position = space.view_from_particles.transform_point3a(particle.position.into());
         let (optical_depth, radius) = centre_optical_depth_and_radius(particle, settings);
         let in_front = ((-position.z - view.depth.near) / radius).clamp(0.0, 1.0);
         let area = 4.0 * radius * radius;
@@ -40,10 +40,11 @@ pub(super) fn optical_depths(
         knots[low] += share * (1.0 - (place - low as f32));
         knots[low + 1] += share * (place - low as f32);
 
+        let across = position.xy().as_dvec2();
         let share = f64::from(share);
         total += share;
-        sum += position.xy().as_dvec2() * share;
-        squares += (position.xy().as_dvec2().powf(2.0) + f64::from(radius * radius) / 3.0) * share;
+        sum += across * share;
+        squares += (across * across + f64::from(radius * radius) / 3.0) * share;
     }
     // NaN comes from sprites of size 0.
     if total.is_nan() || total <= 0.0 {
