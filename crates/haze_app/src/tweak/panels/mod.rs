@@ -19,5 +19,6 @@ pub mod rows;
 pub mod search_box;
 pub mod settings_panel;
 pub mod sprite_panel;
+pub mod sun_panel;
 pub mod timeline;
 pub mod track_editor;

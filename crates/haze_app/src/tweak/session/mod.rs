@@ -53,6 +53,7 @@ use messages::Messages;
 use picture_thumbnails::PictureThumbnails;
 use playback::Playback;
 use setting_search::SettingSearch;
+use smoke_geometry::SmokeGeometry;
 use sprite_preview::SpritePreview;
 use view_options::{Tab, ViewOptions};
 
@@ -81,6 +82,8 @@ pub struct Session {
     pub assets: Option<PathBuf>,
     /// Path of a screenshot; the window closes once it is written.
     pub screenshot: Option<PathBuf>,
+    /// Smoke at the shown time, for panels that measure it.
+    pub smoke: SmokeGeometry,
     /// Images as last loaded without error.
     pub loaded_materials: LoadedMaterials,
     pub particle_files: LoadedParticles,
@@ -160,6 +163,7 @@ impl Session {
             flipbook: None,
             repaint: RepaintHandle::default(),
             screenshot: None,
+            smoke: SmokeGeometry::default(),
             loaded_materials: LoadedMaterials::new(preset, materials),
             particle_files: LoadedParticles::new(preset, caches),
             ramps: RampEdits::default(),

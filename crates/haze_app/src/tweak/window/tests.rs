@@ -267,7 +267,7 @@ fn time_is_played_and_stepped() {
 fn write_images_of_every_tab() {
     let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) else { return };
     let wanted = std::env::var("HAZE_SIZE").ok();
-    let sizes = [(1280, 800), (2560, 1440), (640, 400)]
+    let sizes = [(1280, 800), (1400, 900), (2560, 1440), (640, 400)]
         .into_iter()
         .filter(|(width, height)| wanted.as_ref().is_none_or(|wanted| *wanted == format!("{width}x{height}")));
     for (size, theme) in sizes.flat_map(|size| [(size, Theme::Dark), (size, Theme::Light)]) {
@@ -293,6 +293,15 @@ fn write_images_of_every_tab() {
         save(&mut harness, "color");
         harness.key_press(Key::Escape);
         harness.run_steps(2);
+        for time in ["Add a sun", "Sunset", "Moonlit"] {
+            harness.get_by_label(time).click();
+            harness.run_steps(4);
+            save(&mut harness, time);
+        }
+        for _ in 0..3 {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+            harness.run_steps(2);
+        }
         harness.get_by_label("Look").click();
         harness.get_by_label("Inspect").click();
         harness.run_steps(3);
