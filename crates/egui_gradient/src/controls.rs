@@ -8,7 +8,7 @@ use super::eyedropper::{Eyedropper, EyedropperResult};
 use super::number::{self, NumberInput};
 use super::paint::color32;
 use super::selection::Selection;
-use super::{clipboard, gradient_strip, stop_operations};
+use super::{clipboard, gradient_strip, simplify, stop_operations};
 use haze_author::ramp::fit_stops::fit_row;
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::ramp::{Blend, Curve, HexColor, RampStop};
@@ -16,8 +16,8 @@ use haze_author::ramp::{Blend, Curve, HexColor, RampStop};
 /// Hover texts of the curves, in the order of [`Curve::ALL`].
 const CURVES: [&str; 4] = ["Smooth, without overshoot", "Linear", "Flat at both ends", "Hard edge at the next stop"];
 
-/// Draws the controls. `at` is the position of the row, for copied text.
-pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
+/// Draws the controls. `at` is the position of the row, for copied text; `blend` the space of the gradient.
+pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32, blend: Blend) {
     let Some(lead) = context.lead().cloned() else { return };
     ui.horizontal(|ui| {
         let last = context.stops.len() - 1;
@@ -46,6 +46,7 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
     });
     ui.horizontal_wrapped(|ui| {
         stop_buttons(ui, context, at);
+        simplify::menu(ui, context, blend);
         snap_controls(ui, context);
     });
 }

@@ -8,6 +8,7 @@ pub mod file_menu;
 pub mod hint_popup;
 pub mod key_list;
 pub mod lights_panel;
+pub mod look_browser;
 pub mod look_panel;
 pub mod narrow;
 pub mod notice_bar;

@@ -9,6 +9,7 @@ use haze::ramp::Ramp;
 use haze::settings::{ImageRole, RampFilter, set_field};
 use haze_reference::SystemProbe;
 
+use super::look_browser;
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
 use super::rows::picture_gallery::gallery;
 use crate::tweak::document::display_names::display_name;
@@ -71,7 +72,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
             continue;
         }
         let ramp = NamedRamp { system: index, field, name };
-        ramp_stops::offer_stops(ui, session, ramp);
+        ui.horizontal_wrapped(|ui| {
+            look_browser::button(ui, session, index, field);
+            ramp_stops::offer_stops(ui, session, ramp);
+        });
         let spoken = display_name(field);
         let ink = ui.visuals().text_color();
         if let Some(two_axes) = two_axes(field, material) {

@@ -6,6 +6,7 @@ pub mod first_run_hints;
 pub mod inspection;
 pub mod light_view;
 pub mod look_controls;
+pub mod look_thumbnails;
 pub mod macro_param;
 pub mod messages;
 pub mod picture_thumbnails;
@@ -49,6 +50,7 @@ use comparison::CompareState;
 use first_run_hints::FirstRunHints;
 use inspection::Inspection;
 use light_view::LightView;
+use look_thumbnails::LookThumbnails;
 use messages::Messages;
 use picture_thumbnails::PictureThumbnails;
 use playback::Playback;
@@ -74,6 +76,8 @@ pub struct Session {
     /// Descriptions of the debug views.
     pub debug_view_tooltips: Tooltips,
     pub thumbnails: PictureThumbnails,
+    /// Looks of a ramp, while they are shown.
+    pub looks: LookThumbnails,
     /// Flipbook on the Sprite tab.
     pub flipbook: Option<SpritePreview>,
     /// Repaints the window from threads that run for longer than one window is open.
@@ -160,6 +164,7 @@ impl Session {
             tooltips: Tooltips::of::<Preset>(),
             debug_view_tooltips: Tooltips::of::<DebugView>(),
             thumbnails: PictureThumbnails::default(),
+            looks: LookThumbnails::default(),
             flipbook: None,
             repaint: RepaintHandle::default(),
             screenshot: None,
@@ -181,6 +186,7 @@ impl Session {
     pub fn attach_window(&mut self, context: &egui::Context) {
         self.repaint.follow(context);
         (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
+        self.looks = LookThumbnails::default();
     }
 
     /// Returns the folders where images are looked up.
@@ -429,6 +435,7 @@ impl Session {
         (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
         self.ramps = RampEdits::default();
         self.copy_request = None;
+        self.looks.close();
         self.sprites.forget();
         let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];
         stale.into_iter().for_each(|about| self.messages.clear(about));

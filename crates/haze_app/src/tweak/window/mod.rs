@@ -152,7 +152,7 @@ impl Window {
         }
         // Escape closes the topmost item first.
         if ui.input(|input| input.key_pressed(egui::Key::Escape))
-            && (self.export_job.dismiss() || self.session.hints.dismiss())
+            && (self.export_job.dismiss() || self.session.looks.close() || self.session.hints.dismiss())
         {
             ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
         }
@@ -279,6 +279,7 @@ impl Window {
             self.session.hints.record_rect(WindowPart::Image, rect);
             self.viewport.show(ui, &mut self.session, &self.renderer);
             inspector::panel(ui, rect, &self.session);
+            panels::look_browser::panel(ui, &mut self.session, rect);
         });
         if let Some(probe_job) = &mut self.probe_job {
             probe_job.update(ui, &mut self.session, &self.renderer);

@@ -285,6 +285,16 @@ fn write_images_of_every_tab() {
             }
             save(&mut harness, name);
         }
+        harness.get_by_label("Ramps").click();
+        harness.run_steps(4);
+        harness.get_by_label("Looks: Diffuse ramp").click();
+        for _ in 0..40 {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            harness.step();
+        }
+        save(&mut harness, "looks");
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
         harness.get_by_label("Light").click();
         harness.run_steps(4);
         harness.get_by_label("Key (Point 1)").click();
