@@ -7,7 +7,7 @@ use haze::settings::{ImageRole, set_field};
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::document::ramp_edits::ramp_name;
 use crate::tweak::session::Session;
-use crate::tweak::session::look_thumbnails::{LookEntry, WIDTH};
+use crate::tweak::session::look_thumbnails::{LookEntry, WIDTH, thumbnail_size};
 
 /// Margin around an image, and height of a name, points.
 const MARGIN: f32 = 4.0;
@@ -42,7 +42,7 @@ pub fn panel(ui: &Ui, session: &mut Session, image: egui::Rect) {
     let title = format!("Looks: {}", display_name(field));
     let window = egui::Window::new(title).id(egui::Id::unique("looks")).open(&mut is_open).collapsible(false);
     let window = window.constrain_to(image).default_pos(image.min + Vec2::splat(8.0)).max_size(most);
-    window.default_size(Vec2::new(most.x.min(4.0 * (WIDTH as f32 + 18.0)), most.y.min(560.0))).show(ui.ctx(), |ui| {
+    window.default_size(Vec2::new(most.x.min(4.0 * (WIDTH as f32 + 18.0)), most.y.min(760.0))).show(ui.ctx(), |ui| {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for entry in &shown.entries {
@@ -65,10 +65,7 @@ pub fn panel(ui: &Ui, session: &mut Session, image: egui::Rect) {
 
 /// Draws a look with its name. Returns true if it was clicked.
 fn cell(ui: &mut Ui, entry: &LookEntry, is_chosen: bool, view: glam::UVec2) -> bool {
-    let size = match &entry.picture {
-        Some(picture) => picture.size_vec2(),
-        None => Vec2::new(WIDTH as f32, WIDTH as f32 * (view.y as f32 / view.x.max(1) as f32).clamp(0.3, 1.5)),
-    };
+    let size = Vec2::from(thumbnail_size(view).as_vec2().to_array());
     let (rect, response) = ui.allocate_exact_size(size + Vec2::new(2.0 * MARGIN, NAME + 2.0 * MARGIN), Sense::click());
     response.widget_info(|| {
         egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, format!("Look {}", entry.name))

@@ -5,6 +5,7 @@ pub mod copy_question;
 pub mod debug_view_strip;
 pub mod export_dialog;
 pub mod file_menu;
+pub mod gradient_drag;
 pub mod hint_popup;
 pub mod key_list;
 pub mod lights_panel;

@@ -46,6 +46,12 @@ pub struct LookEntry {
     pub picture: Option<TextureHandle>,
 }
 
+/// Returns the size of a thumbnail of a view, pixels: its shape, but at most as high as wide.
+pub fn thumbnail_size(view: UVec2) -> UVec2 {
+    let aspect = view.y as f32 / view.x.max(1) as f32;
+    UVec2::new(WIDTH, (WIDTH as f32 * aspect.clamp(0.3, 1.0)).round() as u32)
+}
+
 impl LookThumbnails {
     /// Shows the ramps of these names in a field.
     pub fn open(&mut self, system: usize, field: &'static str, names: Vec<String>) {
@@ -75,9 +81,7 @@ impl LookThumbnails {
                 entry.picture = Some(context.load_texture(name, picture, TextureOptions::LINEAR));
             }
         }
-        let aspect = shot.size.y as f32 / shot.size.x.max(1) as f32;
-        let size = UVec2::new(WIDTH, (WIDTH as f32 * aspect.clamp(0.3, 1.5)).round() as u32);
-        let shot = Shot { size, ..shot.clone() };
+        let shot = Shot { size: thumbnail_size(shot.size), ..shot.clone() };
         // The ramp of the field at the time of the first rendering, so that equal smoke shares all images.
         let (system, field) = (shown.system, shown.field);
         let of = |shot: &Shot| ramp_of(shot, system, field);

@@ -21,7 +21,7 @@ mod toolbar;
 
 use eframe::egui::{self, Response, Sense, Ui};
 use glam::UVec2;
-use haze::{Bounds, LightKind};
+use haze::{Bounds, Light, LightKind, LightRole};
 
 use crate::tweak::document::light_defaults::new_light;
 use crate::tweak::session::Session;
@@ -184,7 +184,7 @@ impl Viewport {
         if let Some(light) = selected {
             return place_behind(light, eye, point, &smoke.bounds);
         }
-        let mut light = new_light(LightKind::Point, &preset.lights);
+        let mut light = Light { role: LightRole::Rim, ..new_light(LightKind::Point, &preset.lights) };
         place_behind(&mut light, eye, point, &smoke.bounds);
         session.add_light(light);
     }

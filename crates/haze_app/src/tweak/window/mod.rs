@@ -189,6 +189,7 @@ impl Window {
             },
             Action::Screenshot => self.export_job.order(ExportKind::Image, session),
             Action::Seeds => self.export_job.order(ExportKind::Seeds, session),
+            Action::EngineFlipbook => self.export_job.order(ExportKind::EngineFlipbook, session),
             Action::Export => self.export_job.is_open = !self.export_job.is_open,
             Action::Paste => context.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Undo => session.undo(),
