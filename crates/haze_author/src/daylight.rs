@@ -60,7 +60,7 @@ pub const TIMES_OF_DAY: [TimeOfDay; 6] = [
 ];
 
 /// Light of sun or moon, and of the sky, in the unit of [`Light::intensity`] of a directional light: radiance of a white matte
-/// surface. At noon the sun has about 3.
+/// surface. At noon the sun has about 2.5, to fit the exposures of the built-in presets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Daylight {
     /// Linear RGB of sun or moon, brightest channel 1.
@@ -81,13 +81,15 @@ pub struct Daylight {
 /// Production Ready Sky and Atmosphere Rendering Technique", 2020, table 1, times 8 km and 15 km.
 const MOLECULES: Vec3 = Vec3::new(0.0464, 0.1085, 0.2648);
 const OZONE: Vec3 = Vec3::new(0.009_75, 0.0282, 0.0013);
-/// Haze of clear country air: 0.08 at 550 nm, by wavelength to the power of -1.3. (Ångström, 1929)
-const HAZE: Vec3 = Vec3::new(0.061, 0.08, 0.107);
+/// Haze of country air: 0.1 at 550 nm, by wavelength to the power of -1.3. (Ångström, 1929)
+const HAZE: Vec3 = Vec3::new(0.076, 0.1, 0.134);
 
 /// Temperature of the sun above the air, kelvin.
 const SUN_KELVIN: f32 = 5778.0;
 /// Illuminance of the sun above the air, lux.
 const SUN_LUX: f32 = 133_300.0;
+/// Limit that the light of the sky nears, lux. Clear skies give 8 000 to 15 000; the table's midday has bright clouds.
+const SKY_LUX: f32 = 40_000.0;
 /// Color of moonlight in the picture.
 const MOON_COLOR: Vec3 = Vec3::new(0.45, 0.62, 1.0);
 /// Color of the sky by moonlight, overhead and at the horizon.
@@ -99,7 +101,7 @@ const GLOW: f32 = 0.35;
 /// Share of the light that the ground reflects: between asphalt and dry grass, slightly warm.
 const GROUND: Vec3 = Vec3::new(0.14, 0.13, 0.11);
 /// Sun's intensity in the picture at noon. It fits the exposures of the built-in presets, 0.3 to 0.8.
-const NOON: f32 = 3.0;
+const NOON: f32 = 2.5;
 /// Brightness of fill lights, as a share of the sky's. Tuned by eye on the preset `column`.
 const FILL: f32 = 0.25;
 /// Air masses of a view a little above the horizon, 7°.
@@ -187,6 +189,7 @@ fn measured(body: Body, elevation: f32) -> Measured {
             let risen = ((elevation + 0.8) / 3.8).clamp(0.0, 1.0);
             let direct = SUN_LUX * luminance(transmission(mass) * hue(sun)) * risen * risen;
             let sky = (all - direct * sine).max(0.1 * all);
+            let sky = sky / (1.0 + sky / SKY_LUX);
             // Weakly from 10° down: the sky is brightest around a low sun.
             let low = ((10.0 - elevation) / 10.0).clamp(0.0, 1.0);
             let direct = direct + GLOW * low * low * sky;
