@@ -47,8 +47,8 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32, blend: Blend) {
     ui.horizontal_wrapped(|ui| {
         stop_buttons(ui, context, at);
         simplify::menu(ui, context, blend);
-        snap_controls(ui, context);
     });
+    ui.horizontal(|ui| snap_controls(ui, context));
 }
 
 /// Returns a name whose first letter is a capital.

@@ -128,7 +128,9 @@ fn at_smoke(
     context.requests.extend(request.map(|request| (request, path)));
     if share.is_finite() && row.reason_without_effect.is_none() {
         rows::note(ui, if context.second.is_some() { 2.0 } else { 1.0 }, |ui| {
-            ui.weak(format!("{:.0} % of all lights there", 100.0 * share)).on_hover_text(AT_SMOKE);
+            let text = egui::RichText::new(format!("{:.0} % of all lights there", 100.0 * share)).weak();
+            // A longer line would widen a narrow panel.
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(AT_SMOKE);
         });
     }
 }
@@ -280,5 +282,18 @@ mod tests {
         }
         assert!((shares - 100.0).abs() < 2.0, "{shares}");
         assert!(!harness.state().session.document.is_dirty());
+    }
+
+    #[test]
+    fn a_selected_light_does_not_widen_the_narrowest_panel() {
+        let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
+        harness.get_by_label("Light").click();
+        harness.run_steps(3);
+        for light in 0..3 {
+            harness.state_mut().session.view.lights.selected = Some(light);
+            harness.run_steps(5);
+            let (tab, image) = (harness.get_by_label("Look").rect(), harness.get_by_label("viewport").rect());
+            assert!(tab.left() >= image.right(), "{light}: {tab} {image}");
+        }
     }
 }
