@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32, blend: Blend) {
     });
     ui.horizontal_wrapped(|ui| {
         stop_buttons(ui, context, at);
-        simplify::menu(ui, context, blend);
+        simplify_menu(ui, context, blend);
     });
     ui.horizontal(|ui| snap_controls(ui, context));
 }
@@ -159,7 +159,7 @@ pub fn update_eyedropper(ui: &Ui, context: &mut EditContext<'_>, blend: Blend) {
     match eyedropper.update(ui, &mut context.editor.sample_size) {
         EyedropperResult::Pointed(colors) => {
             if let Some(Ok(gradient)) =
-                preview(context, &colors, blend).map(|stops| gradient_strip::gradient(&stops, blend))
+                preview(context, &colors, blend).map(|stops| stop_operations::gradient(&stops, blend))
             {
                 let color = |at: f32| color32(gradient_strip::color_at(&gradient, at));
                 eyedropper.magnifier(ui, context.editor.sample_size, &colors, color);
@@ -204,6 +204,27 @@ fn snap_controls(ui: &mut Ui, context: &mut EditContext<'_>) {
     let field = egui::DragValue::new(&mut snap.parts).range(2..=100).speed(0.1).suffix(" parts");
     let response = ui.add(field.update_while_editing(false));
     response.on_hover_text("Number of equal parts that positions snap to");
+}
+
+/// Draws the menu of simpler gradients.
+fn simplify_menu(ui: &mut Ui, context: &mut EditContext<'_>, blend: Blend) {
+    let menu = ui.menu_button("Simplify", |ui| {
+        let known = context.editor.simplified.take();
+        let known = known.filter(|(of, in_blend, _)| of == context.stops && *in_blend == blend);
+        let known = known.unwrap_or_else(|| (context.stops.clone(), blend, simplify::simplified(context.stops, blend)));
+        if known.2.is_empty() {
+            ui.weak("No fewer stops make this gradient");
+        }
+        for simple in &known.2 {
+            let text = format!("{} stops, error {:.1} of 255", simple.stops.len(), simple.error);
+            if ui.button(text).clicked() {
+                context.replace("simplify", simple.stops.clone());
+                ui.close();
+            }
+        }
+        context.editor.simplified = Some(known);
+    });
+    menu.response.on_hover_text("Fewer stops, with the largest error in any channel");
 }
 
 fn stop_buttons(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {

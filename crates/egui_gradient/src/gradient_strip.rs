@@ -7,10 +7,9 @@ use super::handles::{self, GAP, strip_position};
 use super::paint::{borders, color32, gradient as paint_gradient, histogram, readout, ticks};
 use super::selection::Selection;
 use super::stop_operations;
-use haze::error::FieldError;
 use haze::formula::color::srgb_from_linear;
 use haze_author::ramp::gradient::add_stop;
-use haze_author::ramp::{Blend, Curve, Gradient, HexColor, RampRecipe, RampRow, RampStop};
+use haze_author::ramp::{Curve, Gradient, HexColor};
 
 /// Heights of the strip, of the lane for handles below it, and of histograms, points.
 const STRIP: f32 = 30.0;
@@ -26,7 +25,7 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, options: &DisplayOptions
     let all = all.shrink2(vec2(GAP * 0.5, 0.0));
     let (strip, rest) = all.split_top_bottom_at_y(all.top() + STRIP);
     let (lane, below) = rest.split_top_bottom_at_y(rest.top() + LANE);
-    let gradient = match gradient(context.stops, options.blend) {
+    let gradient = match stop_operations::gradient(context.stops, options.blend) {
         Ok(gradient) => gradient,
         Err(error) => {
             ui.put(all, egui::Label::new(format!("Not a gradient: {error}")));
@@ -47,12 +46,6 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, options: &DisplayOptions
         options.histograms.iter().for_each(|(color, bins)| histogram(ui, below, bins, *color));
     }
     pointed_at.or(stop)
-}
-
-/// Builds the gradient of the stops.
-pub fn gradient(stops: &[RampStop], blend: Blend) -> Result<Gradient, FieldError> {
-    let rows = vec![RampRow { stops: stops.to_vec(), ..RampRow::default() }];
-    RampRecipe { blend, rows, ..RampRecipe::default() }.gradient()
 }
 
 /// Returns the sRGB color at a position.

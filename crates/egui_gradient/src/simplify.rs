@@ -1,13 +1,11 @@
 //! Gradients with fewer stops, and the errors of these.
 
-use egui::Ui;
 use glam::Vec3;
 use haze::formula::color::srgb_from_linear;
 use haze_author::ramp::fit_stops::fit_row;
 use haze_author::ramp::{Blend, RampStop};
 
-use super::edit_context::EditContext;
-use super::gradient_strip::gradient;
+use super::stop_operations::gradient;
 
 /// Number of colors at which gradients are compared.
 const SAMPLES: usize = 256;
@@ -51,27 +49,6 @@ fn codes(stops: &[RampStop], blend: Blend) -> Option<Vec<Vec3>> {
         light.map(|light| 255.0 * srgb_from_linear(light.clamp(0.0, 1.0)))
     };
     Some((0..SAMPLES).map(code).collect())
-}
-
-/// Draws the menu of simpler gradients.
-pub fn menu(ui: &mut Ui, context: &mut EditContext<'_>, blend: Blend) {
-    let menu = ui.menu_button("Simplify", |ui| {
-        let known = context.editor.simplified.take();
-        let known = known.filter(|(of, in_blend, _)| of == context.stops && *in_blend == blend);
-        let known = known.unwrap_or_else(|| (context.stops.clone(), blend, simplified(context.stops, blend)));
-        if known.2.is_empty() {
-            ui.weak("No fewer stops make this gradient");
-        }
-        for simple in &known.2 {
-            let text = format!("{} stops, error {:.1} of 255", simple.stops.len(), simple.error);
-            if ui.button(text).clicked() {
-                context.replace("simplify", simple.stops.clone());
-                ui.close();
-            }
-        }
-        context.editor.simplified = Some(known);
-    });
-    menu.response.on_hover_text("Fewer stops, with the largest error in any channel");
 }
 
 #[cfg(test)]

@@ -184,7 +184,7 @@ fn the_middle_between_two_stops_is_dragged() {
     let middle = harness.get_by_label("middle between stop 1 and 2").rect().center();
     let color = {
         let row = harness.state().row.clone();
-        let gradient = gradient_strip::gradient(&row.stops, haze_author::ramp::Blend::default()).unwrap();
+        let gradient = stop_operations::gradient(&row.stops, haze_author::ramp::Blend::default()).unwrap();
         gradient_strip::color_at(&gradient, 0.2).0[0]
     };
     drag(&mut harness, middle, 0.1 * width, NONE);

@@ -84,6 +84,8 @@ pub fn editor(
         }
         is_changed = true;
     }
+    // The gradient that multiplies the rows has no place of its own.
+    let row = recipe.rows.get(index).map(|row| row.at);
     if is_changed {
         let ramps = &mut session.document.recipes.ramps;
         // A recipe that equals the one on disk is no change, and no step.
@@ -98,15 +100,7 @@ pub fn editor(
     } else if is_changed {
         session.messages.clear("ramp");
     }
-    // The gradient that multiplies the rows has no place of its own.
-    let row = row_position(session, ramp, index);
     Some(edited.pointed_at.zip(row).map(|(at, row)| Vec2::new(at, row)))
-}
-
-/// Returns the position of a row of a ramp on the vertical axis.
-fn row_position(session: &mut Session, ramp: NamedRamp<'_>, index: usize) -> Option<f32> {
-    let folders = session.folders();
-    recipe_of(session, ramp.name, &folders)?.rows.get(index).map(|row| row.at)
 }
 
 /// Returns the recipe of a ramp as it is edited, or that of a built-in ramp.

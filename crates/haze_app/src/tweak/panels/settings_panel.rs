@@ -99,7 +99,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let keys = KeyMarks::new(&session.document.preset, session.playback.time);
     let mut smoke_shown = std::mem::take(&mut session.smoke);
     if session.view.tab == Tab::Light {
-        smoke_shown.of(session);
+        session.measure(&mut smoke_shown);
     }
     let mut context = RowContext {
         tooltips: &session.tooltips,

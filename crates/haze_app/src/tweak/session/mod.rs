@@ -214,6 +214,11 @@ impl Session {
         self.document.preset.at(self.playback.time)
     }
 
+    /// Returns the smoke that is shown, measured unless `known` has it already.
+    pub fn measure<'a>(&self, known: &'a mut SmokeGeometry) -> &'a SmokeGeometry {
+        known.at(&self.preset_now(), self.particle_frames(), self.playback.time)
+    }
+
     fn shot_of(&self, mut preset: Preset, size: UVec2) -> Shot {
         self.view.lights.apply(&mut preset);
         let (materials, caches) = (self.materials(), self.particle_frames());

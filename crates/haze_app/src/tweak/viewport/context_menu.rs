@@ -51,7 +51,7 @@ fn entries(
 ) -> Option<InView> {
     for (kind, name) in ADDED {
         if ui.button(name).clicked() {
-            let middle = smoke.of(session).bounds().centre();
+            let middle = session.measure(smoke).bounds().centre();
             let light = here(new_light(kind, &session.document.preset.lights), at, projection, middle);
             session.add_light(light);
         }

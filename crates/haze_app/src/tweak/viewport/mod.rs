@@ -99,7 +99,7 @@ impl Viewport {
         let painter = ui.painter_at(rect);
         let outlined = OutlinedPainter(&painter);
         if session.view.overlays.is_any() {
-            let smoke = self.smoke.of(session);
+            let smoke = session.measure(&mut self.smoke);
             overlay::draw(&outlined, &projection, &session.view, smoke, &renderer.texels());
         }
         self.gizmo.draw(&outlined, &projection, session);
@@ -165,7 +165,7 @@ impl Viewport {
             InView::Behind => self.place_behind(session, None),
             InView::Overlay(overlay) => session.view.overlays.toggle(overlay),
             InView::Turntable => {
-                let middle = self.smoke.of(session).bounds().centre();
+                let middle = session.measure(&mut self.smoke).bounds().centre();
                 let turn = &mut session.view.lights.turn;
                 *turn = if turn.is_some() { None } else { Some(LightTurn { middle, angle: 0.0 }) };
             }
@@ -175,7 +175,7 @@ impl Viewport {
 
     /// Puts the selected light, or a new one, behind the smoke on the ray, or else behind the smoke in the image.
     fn place_behind(&mut self, session: &mut Session, at: Option<Ray>) {
-        let smoke = self.smoke.of(session);
+        let smoke = session.measure(&mut self.smoke);
         let preset = &mut session.document.preset;
         let met = at.and_then(|ray| smoke.centre_on_ray(ray.origin, ray.direction));
         let point = met.unwrap_or_else(|| smoke.visible_centre(&preset.camera, session.view.size));
@@ -191,7 +191,7 @@ impl Viewport {
 
     /// Frames the selected light, or all smoke.
     fn frame(&mut self, session: &mut Session) {
-        let mut bounds = self.smoke.of(session).bounds();
+        let mut bounds = session.measure(&mut self.smoke).bounds();
         let preset = &mut session.document.preset;
         let selected = session.view.lights.selected.and_then(|index| preset.lights.get(index));
         let light = selected.filter(|light| light.kind != LightKind::Directional);

@@ -55,7 +55,7 @@ pub fn curve(ui: &mut Ui, session: &mut Session, setting: &str, axis: &TimeAxis,
     let begun = pointer.filter(|_| is_pressed && response.is_pointer_button_down_on());
     match begun.and_then(|at| dragged.or_else(|| plot.nearest(&track, at, &numbers))) {
         Some(dragged) => {
-            // A press alone selects nothing and moves nothing.
+            // A press alone moves nothing.
             let is_moved = ui.input(|input| {
                 let origin = input.pointer.press_origin();
                 input.pointer.is_decidedly_dragging() && origin != input.pointer.interact_pos()
