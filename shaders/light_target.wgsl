@@ -1,13 +1,14 @@
 // light_target: lights the accumulated smoke once per texel, under lighting_resolution `target`. transfer upsamples the
 // light.
 // Reads   accumulation target, lights, ramps, baked diffuse light.
-// Writes  lit smoke: rgb light times amount, a amount; Rgba16Float, linear light.
+// Writes  lit smoke: rgb light times amount, a amount; Rgba16Float, linear light. In compute also the cells with smoke, and
+//         the glow of lights behind it.
 // Blend   none.
 // Source  OTEE "Transfer & lighting", at the target's resolution.
 // Space   As in transfer.
 
 #import "lib/lit_smoke.wgsl"
-#import "lib/color.wgsl"
+#import "lib/glow.wgsl"
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -22,10 +23,36 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
 
 @group(3) @binding(6) var written: texture_storage_2d<rgba16float, write>;
 
+// As smoke_cells in lib/smoke_tiles.wgsl, and glows in transfer_lit.wgsl.
+@group(3) @binding(7) var written_cells: texture_storage_2d<r32float, write>;
+@group(3) @binding(8) var written_glows: texture_storage_2d<rgba32float, write>;
+
+var<workgroup> has_smoke: atomic<u32>;
+
+// A workgroup is a cell of CELL_SIDE² texels.
 @compute @workgroup_size(8, 8)
-fn texels(@builtin(global_invocation_id) id: vec3u) {
+fn texels(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) cell: vec3u,
+    @builtin(local_invocation_index) index: u32,
+) {
     if all(id.xy < vec2u(system.target_size)) {
-        textureStore(written, id.xy, lit_texel(vec2f(id.xy)));
+        let lit = lit_texel(vec2f(id.xy));
+        textureStore(written, id.xy, lit);
+        if lit.a > 0.0 {
+            atomicStore(&has_smoke, 1u);
+        }
+    }
+    workgroupBarrier();
+    if index == 0u {
+        textureStore(written_cells, cell.xy, vec4f(f32(atomicLoad(&has_smoke))));
+    }
+    if all(cell.xy == vec2u(0u)) {
+        for (var light = index; light < system.light_count; light += 64u) {
+            let glow = glow_of_light(lights[light]);
+            textureStore(written_glows, vec2u(light, 0u), vec4f(glow.centre, 0.0, 0.0));
+            textureStore(written_glows, vec2u(light, 1u), vec4f(glow.color, 0.0));
+        }
     }
 }
 

@@ -26,6 +26,7 @@ pub mod shadow;
 pub mod shadow_map;
 pub mod six_way;
 pub mod smoke_extent;
+pub mod smoke_tiles;
 pub mod soft_fade;
 pub mod sprite;
 pub mod stretch;

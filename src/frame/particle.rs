@@ -1,6 +1,6 @@
 //! One sprite of a particle system.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::bounds::Bounds;
 use super::sprite_extent::SpriteExtent;
@@ -54,11 +54,11 @@ impl Default for Particle {
 impl Particle {
     /// True if every number is finite, in range and at most [`MAX_MAGNITUDE`]. Sprites that are not valid are skipped.
     pub fn is_valid(&self) -> bool {
-        let [x, y, z] = self.position.to_array();
-        let [u, v, w] = self.velocity.to_array();
-        let numbers = [x, y, z, u, v, w, self.rotation, self.amount, self.frame, self.age];
-        // Both comparisons are false for NaN.
-        numbers.iter().all(|number| number.abs() <= MAX_MAGNITUDE) && (0.0..=MAX_MAGNITUDE).contains(&self.radius)
+        // Comparisons are false for NaN.
+        let in_range = |numbers: Vec4| numbers.abs().cmple(Vec4::splat(MAX_MAGNITUDE));
+        let place = in_range(self.position.extend(self.radius));
+        let look = in_range(Vec4::new(self.rotation, self.amount, self.frame, self.age));
+        (place & look & in_range(self.velocity.extend(0.0))).all() && self.radius >= 0.0
     }
 
     /// True if the particle is valid, and its radius and amount are above 0.

@@ -7,21 +7,19 @@ use crate::frame::{Particle, Particles};
 use crate::settings::{BlendOrder, Settings};
 use crate::view_setup::{DrawingOrder, ParticleSpace};
 
-/// Processor that sorts particles for compute shaders. If the CPU also draws (software adapters), sorting on the CPU
-/// directly is faster.
+/// Processor that sorts particles. If the CPU also draws (software adapters), sorting on the CPU directly is faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SortedBy {
     Cpu,
     Gpu,
 }
 
-/// Compute shaders that read the particles.
+/// Use of the uploaded particles.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ComputeReaders {
-    /// The path `tiled`, with the processor that sorts.
-    pub tiled: Option<SortedBy>,
-    /// The density grid of the frame.
-    pub shadow: bool,
+pub(crate) struct ParticleUse {
+    pub sorted_by: SortedBy,
+    /// True if compute shaders read the particles.
+    pub read_by_compute: bool,
 }
 
 #[derive(Debug, Default)]
@@ -34,7 +32,7 @@ pub(crate) struct Instances {
 }
 
 impl Instances {
-    /// Uploads a slice or an emitter's particles, sorted unless compute shaders sort them. Uses a host's buffer as is.
+    /// Uploads a slice or an emitter's particles, sorted unless the GPU sorts them. Uses a host's buffer as is.
     /// `order`: keys of a slice; scratch memory otherwise. Returns `None` if there is nothing to draw.
     pub fn write(
         &mut self,
@@ -43,7 +41,7 @@ impl Instances {
         order: &mut DrawingOrder,
         particles: Particles<'_>,
         settings: &Settings,
-        readers: ComputeReaders,
+        used: ParticleUse,
     ) -> Option<Sprites> {
         let loops = settings.sprite.debug_loop;
         let particles = match particles {
@@ -58,13 +56,13 @@ impl Instances {
                 &self.evaluated
             }
         };
-        let is_sorted = settings.order() == BlendOrder::Sorted && readers.tiled != Some(SortedBy::Gpu);
+        let is_sorted = settings.order() == BlendOrder::Sorted && used.sorted_by == SortedBy::Cpu;
         order.write(particles, is_sorted, &mut self.sorted);
         let needed = size_of_val(self.sorted.as_slice()) as u64;
         let held = self.bytes();
         let should_release = self.idle.tick(needed.next_power_of_two() * 4 <= held);
         let mut usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
-        usage.set(wgpu::BufferUsages::STORAGE, readers.tiled.is_some() || readers.shadow);
+        usage.set(wgpu::BufferUsages::STORAGE, used.read_by_compute);
         let fits = self.buffer.as_ref().is_some_and(|buffer| buffer.usage().contains(usage) && needed <= held);
         if !fits || should_release {
             self.buffer = None;

@@ -36,7 +36,7 @@ pub(crate) struct Layouts {
     pub depth_resolve: wgpu::BindGroupLayout,
     pub accumulate: wgpu::BindGroupLayout,
     pub transfer: wgpu::BindGroupLayout,
-    /// Lit smoke or the first attachment, reduced depth, depth slopes.
+    /// Lit smoke or the first attachment, reduced depth, depth slopes, cells with smoke, glows.
     pub lit: wgpu::BindGroupLayout,
     /// Of a host's shaders: shadow of the smoke on the scene.
     pub scene_shadow: wgpu::BindGroupLayout,
@@ -107,7 +107,13 @@ impl Layouts {
             transfer: layout("haze transfer inputs", &transfer_types()),
             lit: layout(
                 "haze lit inputs",
-                &[texture(filterable, D2), texture(unfilterable, D2), texture(filterable, D2)],
+                &[
+                    texture(filterable, D2),
+                    texture(unfilterable, D2),
+                    texture(filterable, D2),
+                    texture(unfilterable, D2),
+                    texture(unfilterable, D2),
+                ],
             ),
             scene_shadow: layout(
                 "haze scene shadow",

@@ -20,7 +20,7 @@ pub struct MemoryUse {
 pub struct TiledMemory {
     /// Particles of emitters that the GPU evaluates.
     pub emitted: u64,
-    /// A host's particles, sorted back to front.
+    /// Particles that a compute shader sorted back to front.
     pub sorted: u64,
     /// Projected sprites, and the rectangles of texels that they touch.
     pub sprites: u64,

@@ -415,8 +415,8 @@ impl Renderer {
                 Some(SystemPasses::Deferred(passes)) => {
                     // Draws the bounding box: lights each pixel once, or upsamples the lit target.
                     Timing::measure_in_pass(timing, "transfer", pass, |pass| passes.transfer.record(pass, debug_view));
-                    // Adds the glow of lights behind the smoke.
-                    for glow in passes.specular_scatter.iter().filter(|_| debug_view.shows_glow()) {
+                    // Adds the glow of lights behind the smoke, unless transfer did.
+                    for glow in passes.specular_scatter.iter().filter(|glow| glow.is_drawn(debug_view)) {
                         Timing::measure_in_pass(timing, "specular_scatter", pass, |pass| glow.record(pass));
                     }
                 }

@@ -134,7 +134,7 @@ impl Pipelines {
                     }
                 }
                 plan.transfers().try_for_each(|key| self.transfer.check(key))?;
-                plan.transfer_lit.map_or(Ok(()), |key| self.transfer_lit.check(key))?;
+                plan.lit_transfers().try_for_each(|(_, key)| self.transfer_lit.check(key))?;
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(key))
             }
         }

@@ -109,7 +109,7 @@ pub(crate) struct DeferredPlan<'a> {
     pub depth_slopes: Option<DepthSlopesKey>,
     /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
     pub transfer: TransferKey,
-    /// Draws the debug views that show lit smoke, if it is lit at the target's resolution.
+    /// Key of the debug view `Final`, if smoke is lit at the target's resolution; see `lit_transfers`.
     pub transfer_lit: Option<TransferLitKey>,
     pub debug_views: &'a [DebugView],
     pub specular_scatter: Option<SpecularScatterKey>,
@@ -182,8 +182,12 @@ fn deferred<'a>(
     let depth_test = depth_test(inputs, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
-    let lights_target =
-        settings.lights_per_texel() && debug_views.iter().any(|view| view.shows_lit_smoke() || view.shows_glow());
+    let tiled = inputs.tiles.filter(|_| settings.path == RenderPath::Tiled);
+    // Cooperative: on a GPU.
+    let computes_texels = tiled.is_some() || inputs.tiles == Some(true);
+    // At scale 1 a texel is a pixel, whose light can be computed too.
+    let is_lit = settings.lights_per_texel() || (computes_texels && settings.scale == 1);
+    let lights_target = is_lit && debug_views.iter().any(|view| view.shows_lit_smoke() || view.shows_glow());
     let lighting = LightingKey {
         encoding: accumulate.encoding,
         decode: accumulate.decode,
@@ -207,7 +211,6 @@ fn deferred<'a>(
     };
     let glows =
         debug_views.iter().any(|debug_view| debug_view.shows_glow()) && settings.specular_scatter.intensity > 0.0;
-    let tiled = inputs.tiles.filter(|_| settings.path == RenderPath::Tiled);
     let accumulate_key = AccumulateKey {
         format: accumulate.format,
         encoding: accumulate.encoding,
@@ -234,13 +237,14 @@ fn deferred<'a>(
         overdraw: debug_views
             .contains(&DebugView::Overdraw)
             .then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
-        // Cooperative: on a GPU.
-        computes_texels: tiled.is_some() || inputs.tiles == Some(true),
+        computes_texels,
         light_target: lights_target.then_some(lighting),
-        depth_slopes: (lights_target && upsample == Upsample::Guided).then_some(DepthSlopesKey),
+        depth_slopes: (lights_target && upsample == Upsample::Guided && settings.scale > 1).then_some(DepthSlopesKey),
         transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
         transfer_lit: lights_target.then_some(TransferLitKey {
             drawn,
+            tiles: computes_texels,
+            glows: computes_texels && glows,
             upsample,
             coverage,
             ramp_filter,
@@ -314,6 +318,19 @@ impl DeferredPlan<'_> {
         let drawn =
             |debug_view: &&DebugView| **debug_view != DebugView::SpecularScatter && !self.draws_lit(**debug_view);
         self.debug_views.iter().filter(drawn).map(|&debug_view| TransferKey { debug_view, ..self.transfer })
+    }
+
+    /// Returns the debug views that transfer_lit draws, with their keys.
+    pub fn lit_transfers(&self) -> impl Iterator<Item = (DebugView, TransferLitKey)> {
+        let drawn = self.debug_views.iter().filter(|debug_view| self.draws_lit(**debug_view));
+        drawn.zip(self.transfer_lit.into_iter().cycle()).map(|(&debug_view, key)| {
+            (debug_view, TransferLitKey { glows: key.glows && debug_view.shows_glow(), ..key })
+        })
+    }
+
+    /// Returns true if transfer_lit adds the glow of lights.
+    pub fn glows_in_transfer(&self) -> bool {
+        self.transfer_lit.is_some_and(|key| key.glows)
     }
 
     /// Returns true if transfer_lit draws a debug view. Those that show a part of the light need transfer.

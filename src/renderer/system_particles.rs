@@ -1,8 +1,9 @@
 //! Particles of one system: measured on the CPU, uploaded, evaluated or sorted.
 
+use super::context::Shared;
 use super::frame_context::FrameContext;
 use super::gpu::idle_counter::IdleCounter;
-use super::instances::{ComputeReaders, Instances, SortedBy};
+use super::instances::{Instances, ParticleUse, SortedBy};
 use super::memory_use::TiledMemory;
 use super::pass::Groups;
 use super::pass::density_splat::DensitySplat;
@@ -10,10 +11,13 @@ use super::pass::measure::Measure;
 use super::sprite_instances::Sprites;
 use super::system_passes::ParticlePass;
 use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
-use super::validate_frame::is_readable_by_compute;
+use super::validate_frame::{exceeds_tiled_limits, is_readable_by_compute};
 use crate::frame::{Bounds, Particle, ParticleSystem, Particles, SpriteExtent};
-use crate::settings::{RenderPath, Settings};
+use crate::settings::{BlendOrder, RenderPath, Settings};
 use crate::view_setup::{ParticleMeasures, ParticleSpace, ViewGeometry};
+
+/// Number of particles from which the GPU sorts for a path that draws: the CPU needs 0.2 ms to sort them.
+const MIN_GPU_SORTED: u32 = 32_768;
 
 /// Particles of one system, and the buffers that hold them.
 #[derive(Debug, Default)]
@@ -92,13 +96,14 @@ impl SystemParticles {
             let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.sprite.debug_loop)?;
             return Some((sprites, Some(ParticlePass::Emit(emit))));
         }
-        let sorted_by = shared.tiles().filter(|_| is_tiled);
-        let sorted_by = sorted_by.map(|cooperative| if cooperative { SortedBy::Gpu } else { SortedBy::Cpu });
+        let sorted_by = sorted_by(shared, &particles, is_tiled);
+        let read_by_compute = is_tiled || context.shadow.is_some() || sorted_by == SortedBy::Gpu;
         let order = &mut self.measures.order;
-        let readers = ComputeReaders { tiled: sorted_by, shadow: context.shadow.is_some() };
-        let sprites = self.instances.write(gpu, space, order, particles, settings, readers)?;
+        let used = ParticleUse { sorted_by, read_by_compute };
+        let sprites = self.instances.write(gpu, space, order, particles, settings, used)?;
+        let must_sort = settings.order() == BlendOrder::Sorted && !sprites.is_sorted;
         match &shared.pipelines.tiled {
-            Some(tiled) if !is_tiled && particles.need_sorting(settings) => {
+            Some(tiled) if !is_tiled && must_sort => {
                 let (sprites, sort) = self.depth_sorted.write(gpu, tiled, &sprites);
                 Some((sprites, Some(ParticlePass::DepthSort(sort, groups.clone()))))
             }
@@ -171,6 +176,14 @@ impl SystemParticles {
         let emitted = self.emitted.bytes() + self.measured.bytes();
         TiledMemory { emitted, ..TiledMemory::default() } + self.depth_sorted.memory()
     }
+}
+
+/// Returns the processor that sorts particles of the CPU.
+fn sorted_by(shared: &Shared, particles: &Particles<'_>, is_tiled: bool) -> SortedBy {
+    let Some(tiled) = shared.pipelines.tiled.as_ref().filter(|tiled| tiled.cooperative()) else { return SortedBy::Cpu };
+    let count = particles.count();
+    let is_worth_it = count >= MIN_GPU_SORTED && !exceeds_tiled_limits(tiled, count);
+    if is_tiled || is_worth_it { SortedBy::Gpu } else { SortedBy::Cpu }
 }
 
 /// See [`SystemParticles::known`].

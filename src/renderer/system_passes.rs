@@ -13,13 +13,14 @@ use super::pass::diffuse_bake::DiffuseBake;
 use super::pass::emit::Emit;
 use super::pass::forward::Forward;
 use super::pass::specular_scatter::SpecularScatter;
-use super::pass::transfer::Transfer;
+use super::pass::transfer::{LitInputs, Transfer};
 use super::pass::{Groups, TexelPass, TexelPipeline};
 use super::pipelines::Pipelines;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::sprite_instances::Sprites;
 use super::system_targets::{ReadyTargets, TargetInputs};
 use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
+use crate::formula::smoke_tiles::{tile_counts, tile_side};
 use crate::settings::DebugView;
 use crate::view_setup::SystemSetup;
 
@@ -194,34 +195,41 @@ impl PassBuilder<'_> {
                 };
                 Some(texel_pass("depth_slopes", pipeline, &inputs.depth_slopes))
             }),
-            transfer: transfer_pass(pipelines, plan, &groups, inputs),
+            transfer: transfer_pass(pipelines, plan, &groups, inputs, setup),
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
                 pipeline: pipelines.specular_scatter.get(key),
                 groups: groups.clone(),
                 inputs: inputs.upsampled.clone(),
                 lights,
+                is_in_transfer: plan.glows_in_transfer(),
             }),
             sprites: sprites.clone(),
         })
     }
 }
 
-fn transfer_pass(pipelines: &Pipelines, plan: &DeferredPlan<'_>, groups: &Groups, inputs: &TargetInputs) -> Transfer {
+fn transfer_pass(
+    pipelines: &Pipelines,
+    plan: &DeferredPlan<'_>,
+    groups: &Groups,
+    inputs: &TargetInputs,
+    setup: &SystemSetup,
+) -> Transfer {
     let mut by_debug_view = [const { None }; DebugView::ALL.len()];
     for key in plan.transfers() {
         by_debug_view[key.debug_view as usize] = Some(pipelines.transfer.get(key));
     }
-    if let Some(key) = plan.transfer_lit {
-        let lit = pipelines.transfer_lit.get(key);
-        plan.debug_views.iter().filter(|debug_view| plan.draws_lit(**debug_view)).for_each(|&debug_view| {
-            by_debug_view[debug_view as usize] = Some(lit.clone());
-        });
+    for (debug_view, key) in plan.lit_transfers() {
+        by_debug_view[debug_view as usize] = Some(pipelines.transfer_lit.get(key));
     }
     Transfer {
         pipelines: by_debug_view,
         groups: groups.clone(),
         inputs: inputs.transfer.clone(),
         overdraw_inputs: inputs.overdraw.clone(),
-        lit_inputs: plan.transfer_lit.map(|_| inputs.upsampled.clone()),
+        lit: plan.transfer_lit.map(|key| LitInputs {
+            group: inputs.upsampled.clone(),
+            tiles: key.tiles.then(|| tile_counts(setup.rect.size, tile_side(setup.rect.scale)).element_product()),
+        }),
     }
 }

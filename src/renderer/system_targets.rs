@@ -88,8 +88,11 @@ impl SystemTargets {
                 |amount| bind_textures(device, "haze transfer inputs", &layouts.transfer, transfer_textures(amount));
             let transfer = bind_transfer(amount);
             let lit = accumulation.lit.as_ref().unwrap_or(amount);
-            let lit_inputs =
-                |slopes| bind_textures(device, "haze lit inputs", &layouts.lit, [lit, depth.unwrap_or(lit), slopes]);
+            let (cells, glows) = (accumulation.smoke_cells.as_ref(), accumulation.glows.as_ref());
+            let lit_inputs = |slopes| {
+                let textures = [lit, depth.unwrap_or(lit), slopes, cells.unwrap_or(lit), glows.unwrap_or(lit)];
+                bind_textures(device, "haze lit inputs", &layouts.lit, textures)
+            };
             // Passes that compute texels write the last of their textures.
             let computed = shared.pipelines.tiled.as_ref().map(|tiled| &tiled.layouts);
             let computed_texels = computed.filter(|_| plan.computes_texels);
@@ -103,7 +106,8 @@ impl SystemTargets {
                 overdraw: accumulation.overdraw.as_ref().map(|layers| bind_transfer(&layers[0])),
                 light_target: accumulation.lit.as_ref().map(|lit| match computed_texels {
                     Some(computed) => {
-                        let textures = transfer_textures(amount).into_iter().chain([lit]);
+                        let written = [Some(lit), cells, glows].into_iter().flatten();
+                        let textures = transfer_textures(amount).into_iter().chain(written);
                         bind_textures(device, "haze light_target inputs", &computed.light_target, textures)
                     }
                     None => transfer.clone(),

@@ -8,7 +8,7 @@ use super::gpu::capabilities::array_layers;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear_target;
 use super::targets::validate_attachments;
-use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
+use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES, TiledPipelines};
 use crate::error::FieldError;
 use crate::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
@@ -211,15 +211,19 @@ fn validate_system(
 /// Returns the reason why the path `auto` cannot choose `tiled` for a system; `None` if it can.
 pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &ParticleSystem<'_>) -> Option<PathReason> {
     let Some(tiled) = &shared.pipelines.tiled else { return Some(PathReason::TiledUnsupported) };
-    let (count, is_readable) = match system.particles {
-        Particles::Slice(particles) => (particles.len() as u64, true),
-        Particles::Buffer(particles) => (u64::from(particles.count), is_readable_by_compute(&particles)),
-        Particles::Emitter(emission) => (u64::from(emission.count()), true),
+    let is_readable = match &system.particles {
+        Particles::Buffer(particles) => is_readable_by_compute(particles),
+        Particles::Slice(_) | Particles::Emitter(_) => true,
     };
     if !is_readable {
         return Some(PathReason::BufferNotReadable);
     }
-    (count > tiled.limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES).then_some(PathReason::TooManyParticles)
+    exceeds_tiled_limits(tiled, system.particles.count()).then_some(PathReason::TooManyParticles)
+}
+
+/// True for more particles than the buffers of the compute shaders hold.
+pub(crate) fn exceeds_tiled_limits(tiled: &TiledPipelines, count: u32) -> bool {
+    u64::from(count) > tiled.limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES
 }
 
 /// Returns true if compute shaders can read a host's particles.

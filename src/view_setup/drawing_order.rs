@@ -1,8 +1,6 @@
 //! Visible sprites in drawing order. Sorted normals are blended over each other and depend on the order; the amount
 //! does not. (OTEE "Accumulating")
 
-use glam::Vec4;
-
 use super::particle_space::ParticleSpace;
 use crate::frame::Particle;
 
@@ -25,9 +23,8 @@ impl DrawingOrder {
     /// Reads the keys of particles.
     pub fn read(&mut self, space: &ParticleSpace, particles: &[Particle]) {
         self.clear();
-        let depth_row = depth_row(space);
         for (index, particle) in (0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()) {
-            self.push(depth_row, index, particle);
+            self.push(space.view_from_particles.transform_point3a(particle.position.into()).z, index);
         }
     }
 
@@ -36,9 +33,8 @@ impl DrawingOrder {
         self.keys.clear();
     }
 
-    /// Adds a visible particle. `depth_row`: see [`depth_row`].
-    pub(super) fn push(&mut self, depth_row: Vec4, index: u64, particle: &Particle) {
-        let z = depth_row.truncate().dot(particle.position) + depth_row.w;
+    /// Adds a visible particle. `z`: of its centre in view space; it increases towards the viewer.
+    pub(super) fn push(&mut self, z: f32, index: u64) {
         self.keys.push((u64::from(ordered_bits(z)) << 32) | index);
     }
 
@@ -49,6 +45,10 @@ impl DrawingOrder {
             self.sort();
         }
         out.clear();
+        if !is_sorted && self.keys.len() == particles.len() {
+            out.extend_from_slice(particles);
+            return;
+        }
         out.extend(self.keys.iter().map(|&key| particles[(key & 0xffff_ffff) as usize]));
     }
 
@@ -89,11 +89,6 @@ impl DrawingOrder {
             std::mem::swap(keys, sorted);
         }
     }
-}
-
-/// Returns the third row of `view_from_particles`, which gives view z; it increases towards the viewer.
-pub(super) fn depth_row(space: &ParticleSpace) -> Vec4 {
-    space.view_from_particles.row(2)
 }
 
 /// Maps a number to bits that sort in the same order. (Herf, "Radix tricks", 2001)

@@ -28,6 +28,7 @@ mod response;
 mod shadow;
 mod six_way;
 mod smoke_extent;
+mod smoke_tiles;
 mod soft_fade;
 mod sprite;
 mod sprite_fragment;
@@ -89,6 +90,7 @@ fn formulas() -> Vec<Formula> {
         shadow::formulas(),
         six_way::formulas(),
         smoke_extent::formulas(),
+        smoke_tiles::formulas(),
         soft_fade::formulas(),
         sprite::formulas(),
         sprite_fragment::formulas(),
@@ -200,6 +202,13 @@ const INDIRECT: &[(&str, &str)] = &[
     ("slots_from_attachments", "maps roles to texture slots by override constants"),
     ("attachments_from_slots", "maps texture slots to roles by override constants"),
     ("texel_of_five", "offsets of a cross; whole frames lit per texel cover it"),
+    ("tile_vertex", "places a corner of a tile; whole frames of the path tiled cover it"),
+    ("tile_has_smoke", "reads cells of light_target; whole frames of the path tiled cover it"),
+    ("tile_corner", "places a corner of a tile; whole frames of the path tiled cover it"),
+    ("lights_that_reach", "reads the lights of the pass; whole frames of the path tiled cover it"),
+    ("glow_of_lights", "adds up glow_in_smoke; whole frames of the path tiled cover it"),
+    ("glow_of_light", "fills a struct from tested functions; whole frames cover it"),
+    ("glow_in_smoke", "calls sample_ramp_2d and range_window; whole frames cover it"),
     ("box_position", "projects a corner of the box; whole frames cover it"),
     ("sample_attachments", "reads the pass's textures by the tested sample_target"),
     ("load_attachments", "reads the pass's textures"),

@@ -4,14 +4,15 @@
 use glam::Vec4;
 use haze::builtin;
 use haze::image::Image;
+use haze::settings::{LightingResolution, RenderPath};
 use haze::shader::{self, Sources};
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
 use crate::goldens;
-use crate::gpu::gpu;
+use crate::gpu::{gpu, is_tiled_available};
 use crate::presets::{shot, without_smoke};
-use crate::psnr::{MIN_PSNR, psnr_over};
+use crate::psnr::{MIN_PSNR, psnr, psnr_over};
 
 /// Name, shader file, text in it, and its replacement.
 type Mutant = (&'static str, &'static str, &'static str, &'static str);
@@ -33,12 +34,20 @@ const MUTANTS: &[Mutant] = &[
         "return vec4f(normal, amount);",
     ),
     ("flipped normal y", "lib/normal.wgsl", "normal.x * rotation.y + normal.y", "-normal.x * rotation.y - normal.y"),
-    (
-        "swapped ramp axes",
-        "specular_scatter.wgsl",
-        "vec2f(distance_squared, amount)",
-        "vec2f(amount, distance_squared)",
-    ),
+    ("swapped ramp axes", "lib/glow.wgsl", "vec2f(distance_squared, amount)", "vec2f(amount, distance_squared)"),
+];
+
+/// Mistakes in frames that transfer_lit draws by tiles.
+const TILE_MUTANTS: &[Mutant] = &[
+    ("no border of tiles", "lib/smoke_tiles.wgsl", "select(1, 0, system.scale == 1u)", "0"),
+    ("cells of other tiles", "lib/smoke_tiles.wgsl", "vec2i(first_texel / CELL_SIDE)", "vec2i(first_texel)"),
+];
+
+/// Mistakes in the glow that transfer_lit adds.
+const GLOW_MUTANTS: &[Mutant] = &[
+    ("glow of the first light only", "transfer_lit.wgsl", "i < glowing.y", "i < min(glowing.y, 1u)"),
+    ("glow of near lights left out", "transfer_lit.wgsl", "if reaches &&", "if !reaches &&"),
+    ("rows of glows swapped", "light_target.wgsl", "vec2u(light, 1u)", "vec2u(light, 0u)"),
 ];
 
 /// A context with one shader replaced.
@@ -83,4 +92,33 @@ fn mistakes_in_shaders_fail_golden_images_and_agreement() {
         assert!(worst_golden > goldens::TOLERANCE, "{} passes the golden images: {worst_golden:.2}", mutant.0);
         assert!(worst_psnr < MIN_PSNR, "{} passes the agreement of the renderers: {worst_psnr:.1} dB", mutant.0);
     }
+}
+
+#[test]
+fn mistakes_in_tiles_and_their_glow_change_the_frame() {
+    if is_tiled_available() {
+        expect_changes("campfire", TILE_MUTANTS);
+        expect_changes("backlit_fog", GLOW_MUTANTS);
+    }
+}
+
+/// PSNR to the clean frame below which a frame has changed. Two clean frames are equal.
+const CHANGED: f32 = 80.0;
+
+/// Draws a preset with each mutant by tiles, which must change the frame.
+fn expect_changes(preset: &str, mutants: &[Mutant]) {
+    let mut shot = shot(preset, glam::UVec2::new(320, 180));
+    for system in &mut shot.preset.systems {
+        system.settings.path = RenderPath::Tiled;
+        system.settings.accumulate.lighting_resolution = LightingResolution::Target;
+        system.settings.accumulate.scale = 4;
+    }
+    let gpu = gpu();
+    let clean = drawn(&OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue), &shot, false);
+    for mutant in mutants {
+        let psnr = psnr(&drawn(&context(mutant), &shot, false), &clean);
+        println!("{}: {psnr:.1} dB", mutant.0);
+        assert!(psnr < CHANGED, "{} leaves the frame as it is: {psnr:.1} dB", mutant.0);
+    }
+    gpu.check().unwrap();
 }

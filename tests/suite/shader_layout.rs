@@ -122,6 +122,9 @@ fn wgsl_structs_match_rust() {
     let maps = composed("shadow_visibility.wgsl");
     assert_layout(&maps, "ShadowMap", ShadowMapUniform::FIELDS, size_of::<ShadowMapUniform>());
     assert_layout(&maps, "ShadowVisibility", ShadowVisibilityUniform::FIELDS, size_of::<ShadowVisibilityUniform>());
+    let lit = composed("transfer_lit.wgsl");
+    assert_eq!(constant(&lit, "CELL_SIDE"), f64::from(formula::smoke_tiles::CELL_SIDE));
+    assert_eq!(constant(&lit, "MIN_TILE_PIXELS"), f64::from(formula::smoke_tiles::MIN_TILE_PIXELS));
     let march = composed("shadow_march.wgsl");
     assert_layout(&march, "ShadowMarch", ShadowMarchUniform::FIELDS, size_of::<ShadowMarchUniform>());
 }

@@ -8,7 +8,7 @@ use super::eyedropper::{Eyedropper, EyedropperResult};
 use super::number::{self, NumberInput};
 use super::paint::color32;
 use super::selection::Selection;
-use super::{clipboard, gradient_strip, stop_operations};
+use super::{clipboard, gradient_strip, simplify, stop_operations};
 use haze_author::ramp::fit_stops::fit_row;
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::ramp::{Blend, Curve, HexColor, RampStop};
@@ -16,8 +16,8 @@ use haze_author::ramp::{Blend, Curve, HexColor, RampStop};
 /// Hover texts of the curves, in the order of [`Curve::ALL`].
 const CURVES: [&str; 4] = ["Smooth, without overshoot", "Linear", "Flat at both ends", "Hard edge at the next stop"];
 
-/// Draws the controls. `at` is the position of the row, for copied text.
-pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
+/// Draws the controls. `at` is the position of the row, for copied text; `blend` the space of the gradient.
+pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32, blend: Blend) {
     let Some(lead) = context.lead().cloned() else { return };
     ui.horizontal(|ui| {
         let last = context.stops.len() - 1;
@@ -46,8 +46,9 @@ pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
     });
     ui.horizontal_wrapped(|ui| {
         stop_buttons(ui, context, at);
-        snap_controls(ui, context);
+        simplify_menu(ui, context, blend);
     });
+    ui.horizontal(|ui| snap_controls(ui, context));
 }
 
 /// Returns a name whose first letter is a capital.
@@ -158,7 +159,7 @@ pub fn update_eyedropper(ui: &Ui, context: &mut EditContext<'_>, blend: Blend) {
     match eyedropper.update(ui, &mut context.editor.sample_size) {
         EyedropperResult::Pointed(colors) => {
             if let Some(Ok(gradient)) =
-                preview(context, &colors, blend).map(|stops| gradient_strip::gradient(&stops, blend))
+                preview(context, &colors, blend).map(|stops| stop_operations::gradient(&stops, blend))
             {
                 let color = |at: f32| color32(gradient_strip::color_at(&gradient, at));
                 eyedropper.magnifier(ui, context.editor.sample_size, &colors, color);
@@ -203,6 +204,27 @@ fn snap_controls(ui: &mut Ui, context: &mut EditContext<'_>) {
     let field = egui::DragValue::new(&mut snap.parts).range(2..=100).speed(0.1).suffix(" parts");
     let response = ui.add(field.update_while_editing(false));
     response.on_hover_text("Number of equal parts that positions snap to");
+}
+
+/// Draws the menu of simpler gradients.
+fn simplify_menu(ui: &mut Ui, context: &mut EditContext<'_>, blend: Blend) {
+    let menu = ui.menu_button("Simplify", |ui| {
+        let known = context.editor.simplified.take();
+        let known = known.filter(|(of, in_blend, _)| of == context.stops && *in_blend == blend);
+        let known = known.unwrap_or_else(|| (context.stops.clone(), blend, simplify::simplified(context.stops, blend)));
+        if known.2.is_empty() {
+            ui.weak("No fewer stops make this gradient");
+        }
+        for simple in &known.2 {
+            let text = format!("{} stops, error {:.1} of 255", simple.stops.len(), simple.error);
+            if ui.button(text).clicked() {
+                context.replace("simplify", simple.stops.clone());
+                ui.close();
+            }
+        }
+        context.editor.simplified = Some(known);
+    });
+    menu.response.on_hover_text("Fewer stops, with the largest error in any channel");
 }
 
 fn stop_buttons(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {

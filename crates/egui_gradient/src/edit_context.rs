@@ -7,6 +7,7 @@ use super::clipboard;
 use super::eyedropper::Eyedropper;
 use super::screenshot_sampling::SampleSize;
 use super::selection::Selection;
+use super::simplify::Simplified;
 use haze_author::ramp::{Blend, HexColor, RampRow, RampStop};
 
 /// State of an editor across frames.
@@ -32,6 +33,8 @@ pub struct EditorState {
     pub has_keyboard: bool,
     /// True if the clipboard's contents were requested.
     pub awaits_paste: bool,
+    /// Simpler gradients, with the stops and the blend space that they were made from.
+    pub simplified: Option<(Vec<RampStop>, Blend, Vec<Simplified>)>,
     /// Text of the color being typed.
     pub typed: Option<String>,
 }

@@ -15,11 +15,14 @@ pub const GAP: f32 = 15.0;
 /// Speed of a stop relative to the pointer while Alt is held.
 const FINE: f32 = 0.1;
 
-/// Draws the handles in their lane and handles their input.
-pub fn show(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect) {
+/// Distance above the strip or below the handles at which a dragged stop is removed, points.
+const OFF: f32 = 24.0;
+
+/// Draws the handles in their lane and handles their input. Returns the position of the stop under the pointer.
+pub fn show(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect) -> Option<f32> {
     lane_input(ui, context, lane);
-    show_handles(ui, context, strip, lane);
-    update_drag(ui, context, strip);
+    let pointed_at = show_handles(ui, context, strip, lane);
+    update_drag(ui, context, strip.union(lane), strip);
     // Stops selected in this frame may have been removed in it.
     context.editor.selection.clamp_to(context.stops.len());
     if context.requests_focus {
@@ -27,6 +30,7 @@ pub fn show(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect) {
         let index = context.editor.cursor.unwrap_or(context.editor.selection.lead());
         ui.memory_mut(|memory| memory.request_focus(handle_id(ui, index)));
     }
+    pointed_at
 }
 
 /// Handles input on the lane outside the handles. A click selects the nearest stop, also one without a handle; a drag
@@ -72,8 +76,8 @@ pub fn strip_position(strip: Rect, x: f32) -> f32 {
     (x - strip.left()) / strip.width()
 }
 
-/// Draws and handles all handles that fit.
-fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect) {
+/// Draws and handles all handles that fit. Returns the position of the stop under the pointer.
+fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect) -> Option<f32> {
     let room = (lane.width() / GAP) as usize + 1;
     let middle = context.editor.cursor.unwrap_or(context.editor.selection.lead());
     let shown = handle_layout::visible_handles(context.stops.len(), middle, room);
@@ -81,7 +85,7 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
     let places = handle_layout::spread(&wanted, lane.width(), GAP);
     // State before any edit in this frame.
     let before = (context.stops.clone(), context.editor.selection.clone());
-    let mut focused = None;
+    let (mut focused, mut pointed_at) = (None, None);
     let mut drawn = Vec::new();
     for ((index, place), wanted) in shown.zip(places).zip(wanted) {
         let stop = &before.0[index];
@@ -97,14 +101,8 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
         drawn.push((index, rect, lane.left() + wanted, color32(stop.color), response.hovered()));
         if context.editor.dragged.is_none() && response.hovered() {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
-            let text = format!(
-                "{name}: {} at {:.4}. Drag: Ctrl snaps to equal parts, Shift to other stops; Alt at the start moves a copy, \
-                 Alt during the drag slows it to a tenth; Escape cancels. Click: Shift selects a range, Ctrl adds. Arrow keys: \
-                 Shift ten times as far, Ctrl to the next part. Delete or the middle button removes",
-                String::from(stop.color),
-                stop.at
-            );
-            response.on_hover_text(text);
+            pointed_at = Some(stop.at);
+            response.on_hover_text(format!("{} at {:.4}. Drag it off to delete", String::from(stop.color), stop.at));
         }
     }
     // Selected handles are drawn over the others, the lead over all.
@@ -126,6 +124,7 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
             context.requests_focus = true;
         }
     }
+    pointed_at
 }
 
 /// Handles pointer input on a handle, and focus changes.
@@ -231,8 +230,9 @@ fn move_focus(context: &mut EditContext<'_>, index: usize, modifiers: Modifiers)
     }
 }
 
-/// Updates the drag by the pointer. Uses no response of a handle, since the stops' indices may change during the drag.
-fn update_drag(ui: &Ui, context: &mut EditContext<'_>, strip: Rect) {
+/// Updates the drag by the pointer. Uses no response of a handle, since the stops' indices may change during the drag. Off `whole`,
+/// the strip with its handles, the stops are removed until the pointer comes back.
+fn update_drag(ui: &Ui, context: &mut EditContext<'_>, whole: Rect, strip: Rect) {
     let Some(mut drag) = context.editor.dragged.take_if(|drag| drag.now == *context.stops) else {
         context.editor.dragged = None;
         return;
@@ -252,6 +252,26 @@ fn update_drag(ui: &Ui, context: &mut EditContext<'_>, strip: Rect) {
     drag.place += (pointer.x - drag.x) / strip.width() * if is_fine { FINE } else { 1.0 };
     drag.x = pointer.x;
     let (from, selection) = &drag.from;
+    let is_off = pointer.y < whole.top() - OFF || pointer.y > whole.bottom() + OFF;
+    if is_off && selection.count() < from.len() {
+        context.edit_selected(REMOVE, |all, removed| {
+            (*all, *removed) = drag.from.clone();
+            stop_operations::remove(all, removed);
+        });
+        context.editor.pending = Some(REMOVE[usize::from(selection.is_many())]);
+        ui.set_cursor_icon(CursorIcon::NoDrop);
+        if let Some(was) = from.get(selection.lead()) {
+            let text = format!("Release to delete {}", String::from(was.color));
+            readout(ui, pointer.x.clamp(strip.left(), strip.right()), strip, color32(was.color), text);
+        }
+        drag.now.clone_from(context.stops);
+        context.editor.dragged = Some(drag);
+        return;
+    }
+    if context.editor.pending.is_some_and(|step| REMOVE.contains(&step)) {
+        // Back on the strip.
+        context.editor.pending = Some(MOVE[usize::from(selection.is_many())]);
+    }
     let at = stop_operations::snap_to_parts(drag.place, context.editor.snap.with(modifiers));
     let at = if modifiers.shift { stop_operations::snap_to_stop(from, selection, at) } else { at };
     let led = context.editor.selection.lead();

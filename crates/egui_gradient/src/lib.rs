@@ -27,6 +27,7 @@ mod number;
 mod paint;
 mod screenshot_sampling;
 mod selection;
+mod simplify;
 mod stop_operations;
 #[cfg(test)]
 mod tests;
@@ -89,7 +90,7 @@ impl GradientEditor {
             context.clipboard(ui, at);
             // Before the controls, so that the click that activates the eyedropper picks no color.
             controls::update_eyedropper(ui, &mut context, options.blend);
-            controls::show(ui, &mut context, at);
+            controls::show(ui, &mut context, at, options.blend);
             is_held = is_interacting(ui, context.editor.has_keyboard);
             (edited.refused, done) = (context.refused, context.done);
         });

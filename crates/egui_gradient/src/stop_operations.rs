@@ -3,7 +3,14 @@
 use std::ops::Range;
 
 use super::selection::Selection;
-use haze_author::ramp::{Curve, RampStop};
+use haze::error::FieldError;
+use haze_author::ramp::{Blend, Curve, Gradient, RampRecipe, RampRow, RampStop};
+
+/// Builds the gradient of the stops.
+pub fn gradient(stops: &[RampStop], blend: Blend) -> Result<Gradient, FieldError> {
+    let rows = vec![RampRow { stops: stops.to_vec(), ..RampRow::default() }];
+    RampRecipe { blend, rows, ..RampRecipe::default() }.gradient()
+}
 
 /// Sorts stops by position, stably.
 pub fn sort(stops: &mut [RampStop]) {

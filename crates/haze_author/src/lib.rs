@@ -3,8 +3,11 @@
 //! The library `haze` links none of this: it loads the PNG files and presets that this crate writes.
 
 pub mod backdrop;
+pub mod color_temperature;
+pub mod daylight;
 pub mod deterministic_math;
 pub mod finding;
+pub mod light_angles;
 pub mod noise_recipe;
 pub mod particle_files;
 pub mod path_trace;

@@ -91,23 +91,33 @@ impl<'a> Segment<'a> {
     fn component(&self, progress: f32, get: &dyn Fn(&Keyframe) -> f32) -> f32 {
         let (start, end) = (get(self.from.key), get(self.to.key));
         let slope = |from: &Place<'_>, to: &Place<'_>| Slope::between(from, to, get(to.key) - get(from.key));
-        start + (end - start) * self.eased(progress, end - start, &slope)
+        start + (end - start) * self.eased(progress, end - start, &slope, &|_| 1.0)
     }
 
-    /// Share of the turn from one direction to the next.
+    /// Share of the turn from one direction to the next. Angles have no sign, so the axes of two turns tell whether the second
+    /// goes on like the first, bends, or leads back: the speed between them is multiplied by the cosine of the bend, at least 0.
     fn turn(&self, progress: f32) -> f32 {
-        let angle = |from: &Place<'_>, to: &Place<'_>| match (&from.key.value, &to.key.value) {
-            (KeyValue::Vector(from), KeyValue::Vector(to)) if from.length() > 0.0 && to.length() > 0.0 => {
-                from.angle_between(*to)
-            }
-            _ => 0.0,
+        let angle = |from: &Place<'_>, to: &Place<'_>| match directions(from, to) {
+            Some([from, to]) => from.angle_between(to),
+            None => 0.0,
+        };
+        let axis = |from: &Place<'_>, to: &Place<'_>| {
+            directions(from, to).map_or(Vec3::ZERO, |[from, to]| from.cross(to).normalize_or_zero())
         };
         let slope = |from: &Place<'_>, to: &Place<'_>| Slope::between(from, to, angle(from, to));
-        self.eased(progress, angle(&self.from, &self.to), &slope)
+        let straightness = |[a, b, c]: [&Place<'_>; 3]| axis(a, b).dot(axis(b, c)).max(0.0);
+        self.eased(progress, angle(&self.from, &self.to), &slope, &straightness)
     }
 
-    /// Share of the way for a share of the time. `change`: the length of the way.
-    fn eased(&self, progress: f32, change: f32, slope: &dyn Fn(&Place<'_>, &Place<'_>) -> Slope) -> f32 {
+    /// Share of the way for a share of the time. `change`: the length of the way. `straightness` of the way around the second of
+    /// three keyframes, 0 to 1, multiplies the slope there.
+    fn eased(
+        &self,
+        progress: f32,
+        change: f32,
+        slope: &dyn Fn(&Place<'_>, &Place<'_>) -> Slope,
+        straightness: &dyn Fn([&Place<'_>; 3]) -> f32,
+    ) -> f32 {
         match self.from.key.ease {
             Ease::Linear => progress,
             Ease::EaseIn => progress * progress,
@@ -115,13 +125,30 @@ impl<'a> Segment<'a> {
             Ease::Hold => 0.0,
             Ease::Smooth => {
                 let here = slope(&self.from, &self.to);
-                let start = self.before.as_ref().map_or(0.0, |before| slope(before, &self.from).joined(&here));
-                let end = self.after.as_ref().map_or(0.0, |after| here.joined(&slope(&self.to, after)));
+                let (from, to) = (&self.from, &self.to);
+                let start = self
+                    .before
+                    .as_ref()
+                    .map_or(0.0, |before| slope(before, from).joined(&here) * straightness([before, from, to]));
+                let end = self
+                    .after
+                    .as_ref()
+                    .map_or(0.0, |after| here.joined(&slope(to, after)) * straightness([from, to, after]));
                 // Slopes in shares of the way per share of the time.
                 let unit = if change == 0.0 { 0.0 } else { here.seconds / change };
                 hermite(progress, start * unit, end * unit)
             }
         }
+    }
+}
+
+/// Directions of two keyframes, if both have one.
+fn directions(from: &Place<'_>, to: &Place<'_>) -> Option<[Vec3; 2]> {
+    match (&from.key.value, &to.key.value) {
+        (KeyValue::Vector(from), KeyValue::Vector(to)) if from.length() > 0.0 && to.length() > 0.0 => {
+            Some([*from, *to])
+        }
+        _ => None,
     }
 }
 
@@ -229,6 +256,33 @@ mod tests {
         let Some(KeyValue::Vector(third)) = value(&keys, 0.0, 1.0 / 3.0, Kind::Direction) else { unreachable!() };
         let expected = 190.0_f32.to_radians();
         assert!(third.distance(Vec3::new(expected.cos(), 0.0, expected.sin())) < 1e-4, "{third}");
+    }
+
+    #[test]
+    fn smooth_directions_rest_where_they_turn_back_or_aside_and_pass_where_they_go_on() {
+        let key = |(time, azimuth, elevation): (f32, f32, f32)| {
+            let ((sin, cos), (up, level)) = (azimuth.to_radians().sin_cos(), elevation.to_radians().sin_cos());
+            let value = KeyValue::Vector(Vec3::new(cos * level, up, sin * level));
+            Keyframe { time, value, ease: Ease::Smooth }
+        };
+        let speed = |keys: [(f32, f32, f32); 3], time: f32| {
+            let keys = keys.map(key);
+            let at = |time| match value(&keys, 0.0, time, Kind::Direction) {
+                Some(KeyValue::Vector(vector)) => vector,
+                other => unreachable!("{other:?}"),
+            };
+            at(time - 5e-3).angle_between(at(time + 5e-3)).to_degrees() / 1e-2
+        };
+        let (there, on, back, up) = ((1.0, 40.0, 0.0), (2.0, 80.0, 0.0), (2.0, 0.0, 0.0), (2.0, 40.0, 40.0));
+        let begin = (0.0, 0.0, 0.0);
+        for (last, expected) in [(on, 40.0), (back, 0.0), (up, 0.0)] {
+            let speeds = [0.99, 1.0, 1.01].map(|time| speed([begin, there, last], time));
+            assert!(speeds.iter().all(|speed| (speed - expected).abs() < 3.0), "{last:?}: {speeds:?}");
+        }
+        // A bend by 45 degrees passes with the same speed before and after it.
+        let bent = [begin, there, (2.0, 68.0, 28.0)];
+        let speeds = [0.99, 1.01].map(|time| speed(bent, time));
+        assert!((speeds[0] - speeds[1]).abs() < 2.0 && (20.0..36.0).contains(&speeds[0]), "{speeds:?}");
     }
 
     proptest! {

@@ -10,7 +10,7 @@ use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
     ADDITIVE, QUAD_STRIP, RenderPipelineDescription, bool_constant, enum_constant, read_only_depth,
 };
-use crate::settings::{RampFilter, Upsample};
+use crate::settings::{DebugView, RampFilter, Upsample};
 
 /// Key of a specular scatter pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -49,9 +49,16 @@ pub(crate) struct SpecularScatter {
     /// Group 3: the targets.
     pub inputs: wgpu::BindGroup,
     pub lights: u32,
+    /// True if transfer_lit adds the glow to the frame, so that only the debug view of the glow needs this pass.
+    pub is_in_transfer: bool,
 }
 
 impl SpecularScatter {
+    /// True if a debug view needs this pass.
+    pub fn is_drawn(&self, debug_view: DebugView) -> bool {
+        debug_view.shows_glow() && !(self.is_in_transfer && debug_view.shows_lit_smoke())
+    }
+
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         self.groups.bind_for_lighting(pass);

@@ -16,6 +16,8 @@ use crate::settings::{CoverageMode, DebugView, Upsample};
 
 /// Vertices of the box: twelve triangles.
 const BOX_VERTICES: u32 = 36;
+/// Vertices of a tile.
+const TILE_VERTICES: u32 = 4;
 
 /// Key of a transfer pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -83,22 +85,36 @@ pub(crate) struct Transfer {
     pub inputs: wgpu::BindGroup,
     /// As `inputs`, with counted layers in place of the first texture.
     pub overdraw_inputs: Option<wgpu::BindGroup>,
-    /// Group 3 of transfer_lit, if smoke is lit at the target's resolution.
-    pub lit_inputs: Option<wgpu::BindGroup>,
+    /// Present if smoke is lit at the target's resolution.
+    pub lit: Option<LitInputs>,
+}
+
+/// Inputs of transfer_lit.
+#[derive(Debug)]
+pub(crate) struct LitInputs {
+    /// Group 3.
+    pub group: wgpu::BindGroup,
+    /// Number of tiles, if it draws tiles in place of the box.
+    pub tiles: Option<u32>,
 }
 
 impl Transfer {
     /// Draws the box for a debug view. Draws nothing for one that was not planned.
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, debug_view: DebugView) {
         let Some(pipeline) = &self.pipelines[debug_view as usize] else { return };
-        let inputs = match debug_view {
-            DebugView::Overdraw => self.overdraw_inputs.as_ref(),
-            debug_view if debug_view.shows_lit_smoke() => self.lit_inputs.as_ref().or(Some(&self.inputs)),
+        let lit = self.lit.as_ref().filter(|_| debug_view.shows_lit_smoke());
+        let inputs = match (debug_view, lit) {
+            (DebugView::Overdraw, _) => self.overdraw_inputs.as_ref(),
+            (_, Some(lit)) => Some(&lit.group),
             _ => Some(&self.inputs),
+        };
+        let (vertices, instances) = match lit.and_then(|lit| lit.tiles) {
+            Some(tiles) => (TILE_VERTICES, tiles),
+            None => (BOX_VERTICES, 1),
         };
         pass.set_pipeline(pipeline);
         self.groups.bind_for_lighting(pass);
         pass.set_bind_group(3, inputs, &[]);
-        pass.draw(0..BOX_VERTICES, 0..1);
+        pass.draw(0..vertices, 0..instances);
     }
 }

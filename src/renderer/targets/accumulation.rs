@@ -7,6 +7,8 @@ use wgpu::TextureUsages;
 
 use super::attachments::{Attachment, attachments};
 use super::texture_allocator::TextureAllocator;
+use crate::formula::smoke_tiles::CELL_SIDE;
+use crate::frame::MAX_LIGHTS;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::settings::{AccumulationFormat, DepthSource};
 use crate::view_setup::AttachmentSet;
@@ -23,6 +25,10 @@ pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::D
 
 /// Format of lit smoke: light is HDR, whatever the format of the normals.
 pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// Format of the cells with smoke, and of the glow of lights.
+pub(crate) const CELLS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+pub(crate) const GLOWS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// Properties that decide, in addition to the size, whether a system's textures can be reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +64,9 @@ pub(crate) struct AccumulationTarget {
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
     /// Light times amount in rgb and amount in a, if smoke is lit at this resolution.
     pub lit: Option<wgpu::TextureView>,
+    /// Cells of the lit smoke that hold some, and the glow of lights, if compute shaders light it.
+    pub smoke_cells: Option<wgpu::TextureView>,
+    pub glows: Option<wgpu::TextureView>,
     /// Change of the lit smoke with depth.
     pub depth_slopes: Option<wgpu::TextureView>,
     /// `None` if sprites are compared with the host's own depth.
@@ -123,6 +132,11 @@ impl AccumulationTarget {
         let overdraw = key.overdraw.then(|| create(AttachmentSet::NORMAL_AND_AMOUNT, false));
         textures.written = written(key.computes_texels);
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
+        let computes_light = key.lit && key.computes_texels;
+        let cells = size.map(|side| side.div_ceil(CELL_SIDE));
+        let smoke_cells = computes_light.then(|| textures.create_whole("haze smoke cells", CELLS_FORMAT, cells));
+        let lights = UVec2::new(MAX_LIGHTS as u32, 2);
+        let glows = computes_light.then(|| textures.create_whole("haze glows", GLOWS_FORMAT, lights));
         let depth_slopes = key.depth_slopes.then(|| textures.create_whole("haze depth slopes", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;
         textures.written = written(key.computes_depth);
@@ -139,6 +153,8 @@ impl AccumulationTarget {
             attachments,
             overdraw,
             lit,
+            smoke_cells,
+            glows,
             depth_slopes,
             reduced_depth,
             depth_copy,

@@ -26,7 +26,7 @@ use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_gather::{self, TileGatherKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
 use crate::renderer::pass::tile_refine::{self, TileRefineKey};
-use crate::renderer::targets::{COMPUTED_DEPTH_FORMAT, LIT_FORMAT};
+use crate::renderer::targets::{CELLS_FORMAT, COMPUTED_DEPTH_FORMAT, GLOWS_FORMAT, LIT_FORMAT};
 
 /// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
 #[derive(Debug)]
@@ -248,7 +248,8 @@ impl TiledLayouts {
         let density = texture_type(filterable, wgpu::TextureViewDimension::D3);
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let volume = target(SHADOW_FORMAT, wgpu::TextureViewDimension::D3);
-        let lit = target(LIT_FORMAT, wgpu::TextureViewDimension::D2);
+        let flat = |format| target(format, wgpu::TextureViewDimension::D2);
+        let lit = flat(LIT_FORMAT);
         let layout = |label, types: &[wgpu::BindingType]| {
             let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
                 binding,
@@ -272,11 +273,11 @@ impl TiledLayouts {
                 "haze shadow_visibility inputs",
                 &[uniform_of(size_of::<ShadowVisibilityUniform>()), map, map, map, volume],
             ),
-            depth_downsample: layout(
-                "haze depth_downsample target",
-                &[target(COMPUTED_DEPTH_FORMAT, wgpu::TextureViewDimension::D2)],
+            depth_downsample: layout("haze depth_downsample target", &[flat(COMPUTED_DEPTH_FORMAT)]),
+            light_target: layout(
+                "haze light_target inputs",
+                &[transfer_types().as_slice(), &[lit, flat(CELLS_FORMAT), flat(GLOWS_FORMAT)]].concat(),
             ),
-            light_target: layout("haze light_target inputs", &[transfer_types().as_slice(), &[lit]].concat()),
             depth_slopes: layout("haze depth_slopes inputs", &[depth, depth, lit]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),

@@ -1,5 +1,5 @@
 //! Formula tests of `shaders/lib/lit_smoke.wgsl`, `shaders/lib/diffuse.wgsl`, `shaders/lib/accumulated.wgsl`,
-//! `shaders/lib/bindings.wgsl` and `shaders/specular_scatter.wgsl`.
+//! `shaders/lib/bindings.wgsl` and `shaders/lib/glow.wgsl`.
 
 use glam::{IVec2, Vec2, Vec3, Vec4};
 use haze::formula::six_way::SixWay;
@@ -506,7 +506,7 @@ fn lit_surfaces() -> Vec<Formula> {
 fn specular_scatter() -> Vec<Formula> {
     vec![Formula {
         name: "light_visibility",
-        file: "specular_scatter.wgsl",
+        file: "lib/glow.wgsl",
         wgsl: "y(0, light_visibility(vec2f(x(0), x(1)), x(2), x(3)));",
         reference: |x| vec![with_target(&DEFAULTS, |_| {}, |target| target.light_visibility(v2(x), x[2], x[3]))],
         cases: random(100, &[(0.0, 8.0), (0.0, 4.0), (0.5, 3.0), (0.1, 0.6)]),

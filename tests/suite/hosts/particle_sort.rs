@@ -81,6 +81,31 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
     gpu().check().unwrap();
 }
 
+#[test]
+fn a_gpu_sorts_many_particles_of_the_cpu() {
+    if !is_tiled_available() {
+        return;
+    }
+    let mut scene = TestScene::new(SIZE);
+    let particles = repeated_particles(&scene, 33_000);
+    for path in [RenderPath::Raster, RenderPath::Forward] {
+        scene.settings.path = path;
+        let mut host = Host::new(gpu(), &scene).unwrap();
+        let mut drawn = |cooperative, particles: &[Particle]| {
+            host.renderer.context().set_cooperative_traversal(cooperative);
+            host.draw_particles(gpu(), &scene, Particles::Slice(particles)).unwrap();
+            let sort_buffers = host.renderer.memory_use().tiled.sorted;
+            assert_eq!(sort_buffers > 0, cooperative && particles.len() > 32_767, "{path:?}: {sort_buffers} bytes");
+            host.picture(gpu()).unwrap()
+        };
+        assert!(drawn(true, &particles[..9000]) == drawn(false, &particles[..9000]), "{path:?}");
+        let by_cpu = drawn(false, &particles);
+        let psnr = psnr(&drawn(true, &particles), &by_cpu);
+        assert!(psnr >= 90.0, "{path:?}: {psnr:.1} dB");
+    }
+    gpu().check().unwrap();
+}
+
 /// Buffer with a number that the GPU may have written.
 fn number_buffer(number: u32, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let usage = usage | wgpu::BufferUsages::COPY_DST;

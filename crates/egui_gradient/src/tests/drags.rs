@@ -124,3 +124,93 @@ fn a_drag_ends_if_the_host_replaces_the_stops() {
     harness.run_steps(2);
     assert_eq!(harness.state().row, before);
 }
+
+/// Presses at a position, moves to others, and calls `check` after each. Then releases.
+fn drag_through(
+    harness: &mut Harness<'_, Host>,
+    from: Pos2,
+    places: &[Pos2],
+    mut check: impl FnMut(&Harness<'_, Host>, usize),
+) {
+    harness.hover_at(from);
+    harness.step();
+    button(harness, from, true, NONE);
+    for (index, place) in places.iter().enumerate() {
+        harness.hover_at(*place);
+        harness.run_steps(2);
+        check(harness, index);
+    }
+    button(harness, places[places.len() - 1], false, NONE);
+    harness.run_steps(2);
+}
+
+#[test]
+fn a_stop_dragged_off_the_strip_is_removed_and_comes_back_with_the_pointer() {
+    let mut harness = host(&[(0.0, 0), (0.5, 20), (1.0, 30)]);
+    let from = handle(&harness, 1).center();
+    let (near, off) = (from + Vec2::new(30.0, 4.0), from + Vec2::new(30.0, 70.0));
+    let counts = [3, 2, 3, 2];
+    drag_through(&mut harness, from, &[near, off, near, off], |harness, index| {
+        assert_eq!(harness.state().row.stops.len(), counts[index], "{index}");
+        let says = harness.query_all_by_label_contains("Release to delete #141414").next().is_some();
+        assert_eq!(says, counts[index] == 2, "{index}");
+    });
+    assert_eq!((greys(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop"]));
+    // Brought back before the release, it is moved.
+    let from = handle(&harness, 1).center();
+    let (off, near) = (from + Vec2::new(-40.0, -90.0), from - Vec2::new(40.0, 0.0));
+    drag_through(&mut harness, from, &[off, near], |_, _| {});
+    assert_eq!((greys(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop", "move a stop"]));
+    // Escape restores it, and the last stop cannot be removed.
+    let from = handle(&harness, 1).center();
+    hold(&mut harness, from, 0.0);
+    harness.hover_at(from + Vec2::new(0.0, 80.0));
+    harness.run_steps(2);
+    assert_eq!(harness.state().row.stops.len(), 1);
+    key(&mut harness, Key::Escape, NONE);
+    button(&mut harness, from, false, NONE);
+    harness.run_steps(2);
+    assert_eq!((greys(&harness), steps(&harness).len()), (vec![0, 30], 2));
+    let mut harness = host(&[(0.5, 20)]);
+    let from = handle(&harness, 0).center();
+    drag_through(&mut harness, from, &[from + Vec2::new(0.0, 90.0)], |_, _| {});
+    assert_eq!(greys(&harness), [20]);
+}
+
+#[test]
+fn the_middle_between_two_stops_is_dragged() {
+    let mut harness = host(&[(0.0, 0), (0.4, 200), (1.0, 30)]);
+    let width = strip(&harness).width();
+    let middle = harness.get_by_label("middle between stop 1 and 2").rect().center();
+    let color = {
+        let row = harness.state().row.clone();
+        let gradient = stop_operations::gradient(&row.stops, haze_author::ramp::Blend::default()).unwrap();
+        gradient_strip::color_at(&gradient, 0.2).0[0]
+    };
+    drag(&mut harness, middle, 0.1 * width, NONE);
+    assert_eq!((greys(&harness), steps(&harness)), (vec![0, color, 200, 30], vec!["add a stop"]));
+    assert!((places(&harness)[1] - 0.3).abs() < 0.01, "{:?}", places(&harness));
+    // No mark where there is no room for it.
+    assert!(harness.query_by_label("middle between stop 2 and 3").is_none());
+}
+
+#[test]
+fn a_simpler_gradient_is_chosen_by_its_error() {
+    let mut harness = host(&[(0.0, 0), (0.25, 50), (0.5, 100), (0.75, 60), (1.0, 20)]);
+    harness.get_by_label("Simplify").click();
+    harness.run_steps(3);
+    harness.get_by_label_contains("3 stops, error").click();
+    harness.run_steps(3);
+    assert_eq!((harness.state().row.stops.len(), steps(&harness)), (3, vec!["simplify"]));
+}
+
+#[test]
+fn a_stop_under_the_pointer_is_pointed_at_and_its_tooltip_is_one_line() {
+    let mut harness = host(&[(0.0, 0), (0.5, 20), (1.0, 30)]);
+    let middle = handle(&harness, 1).center();
+    harness.hover_at(middle);
+    harness.run_steps(8);
+    assert_eq!(harness.state().pointed_at, Some(0.5));
+    let tooltip = harness.get_by_label_contains("#141414 at 0.5000").rect();
+    assert!(tooltip.height() < 24.0, "{tooltip}");
+}

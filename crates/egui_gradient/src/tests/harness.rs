@@ -15,6 +15,7 @@ pub struct Host {
     pub steps: Vec<&'static str>,
     pub changes: usize,
     pub refused: Vec<String>,
+    pub pointed_at: Option<f32>,
 }
 
 pub fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
@@ -28,6 +29,7 @@ pub fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
         host.changes += usize::from(edited.is_changed);
         host.steps.extend(edited.committed);
         host.refused.extend(edited.refused);
+        host.pointed_at = edited.pointed_at;
     };
     let mut harness = Harness::builder()
         .with_size(Vec2::new(330.0, 260.0))

@@ -46,6 +46,8 @@ impl KeyframeEdit {
         let of = |preset: &Preset| -> HashMap<String, FieldValue> {
             field_values(preset).into_iter().filter(|(path, _)| keyed.contains(path)).collect()
         };
+        // Canceling a drag brings the keyframes from before it back; they are not written again.
+        let is_restored = !has_other_lists && preset.animation != self.shown.animation;
         let (own, shown, edited) = (of(&self.before), of(&self.shown), of(preset));
         for_each_field(preset, &mut |path, field| {
             if let Some(value) = own.get(&field_path(path)) {
@@ -53,7 +55,8 @@ impl KeyframeEdit {
             }
         });
         let mut written = None;
-        for (setting, value) in edited.iter().filter(|(setting, value)| shown.get(*setting) != Some(value)) {
+        let is_changed = |(setting, value): &(&String, &FieldValue)| shown.get(*setting) != Some(value);
+        for (setting, value) in edited.iter().filter(|_| !is_restored).filter(is_changed) {
             if let Some(value) = KeyValue::of_field(value) {
                 written = Some(set_key(preset, setting, self.time, value));
             }

@@ -4,7 +4,6 @@ pub mod copied_assets;
 pub mod display_names;
 pub mod history;
 pub mod keyframes;
-pub mod light_angles;
 pub mod light_defaults;
 pub mod light_roles;
 pub mod loaded_backdrop;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use egui_gradient::GradientEditor;
-use haze::preset::{AssetFolders, Preset};
+use haze::preset::{AssetFolders, MaterialNames, Preset};
 use haze::ramp::Ramp;
 use haze::settings::{FieldValue, field_values, set_field};
 use haze::{Error, MaterialAssets, builtin};
@@ -161,18 +161,7 @@ impl RampEdits {
     /// Replaces loaded ramps by their edited versions.
     pub fn apply(&self, preset: &Preset, materials: &mut [MaterialAssets]) {
         for (system, assets) in preset.systems.iter().zip(materials) {
-            let names = &system.material;
-            for (name, ramp) in [
-                (&names.diffuse_ramp, &mut assets.diffuse_ramp),
-                (&names.backlight_ramp, &mut assets.backlight_ramp),
-                (&names.shadow_ramp, &mut assets.shadow_ramp),
-                (&names.soft_scatter_ramp, &mut assets.soft_scatter_ramp),
-                (&names.specular_ramp, &mut assets.specular_ramp),
-                (&names.coverage_ramp, &mut assets.coverage_ramp),
-                (&names.age_ramp, &mut assets.age_ramp),
-                (&names.heat_ramp, &mut assets.heat_ramp),
-                (&names.fire_ramp, &mut assets.fire_ramp),
-            ] {
+            for (_, name, ramp) in ramp_slots(&system.material, assets) {
                 if let Some((_, live)) = self.known.get(name).and_then(|known| known.live.as_ref()) {
                     *ramp = live.clone();
                 }
@@ -204,6 +193,24 @@ impl EditedRamp {
         let RampOrigin::Recipe(recipe) = &self.source else { return false };
         self.written.as_ref() != Some(changed.unwrap_or(recipe))
     }
+}
+
+/// Field, name and image of a ramp.
+pub type RampSlot<'a> = (&'static str, &'a String, &'a mut Ramp);
+
+/// Returns the ramps of a material.
+pub fn ramp_slots<'a>(names: &'a MaterialNames, assets: &'a mut MaterialAssets) -> [RampSlot<'a>; 9] {
+    [
+        ("diffuse_ramp", &names.diffuse_ramp, &mut assets.diffuse_ramp),
+        ("backlight_ramp", &names.backlight_ramp, &mut assets.backlight_ramp),
+        ("shadow_ramp", &names.shadow_ramp, &mut assets.shadow_ramp),
+        ("soft_scatter_ramp", &names.soft_scatter_ramp, &mut assets.soft_scatter_ramp),
+        ("specular_ramp", &names.specular_ramp, &mut assets.specular_ramp),
+        ("coverage_ramp", &names.coverage_ramp, &mut assets.coverage_ramp),
+        ("age_ramp", &names.age_ramp, &mut assets.age_ramp),
+        ("heat_ramp", &names.heat_ramp, &mut assets.heat_ramp),
+        ("fire_ramp", &names.fire_ramp, &mut assets.fire_ramp),
+    ]
 }
 
 /// Name that a preset has for the ramp in a field of a system's material.

@@ -30,6 +30,8 @@ pub enum ExportKind {
     Sequence,
     Flipbook,
     Gif,
+    /// Sheets of color, normals, motion vectors and fire, for an engine. Not on a page.
+    EngineFlipbook,
     /// Ramps and lighting formula of the selected system, for an engine. Not on a page.
     Material,
     DebugView,
@@ -52,6 +54,7 @@ impl ExportKind {
             Self::Sequence => ("frames", ""),
             Self::Flipbook => ("flipbook", ".png"),
             Self::Gif => ("", ".gif"),
+            Self::EngineFlipbook => ("engine_flipbook", ""),
             Self::Material => ("material", ""),
             Self::DebugView => ("debug_views", ".png"),
             Self::Seeds => ("seeds", ".png"),
@@ -89,9 +92,11 @@ pub struct ExportOptions {
     pub rate: f32,
     /// Rows (`x`) and columns (`y`) of a flipbook.
     pub cells: UVec2,
+    /// Size of a frame of a flipbook for an engine, pixels.
+    pub frame_size: UVec2,
     pub file: FileKind,
     pub format: ImageFormat,
-    /// Of a material.
+    /// Of a material, and of a flipbook for an engine.
     pub engine: Engine,
     /// System of a material. The selected one, when the export begins.
     pub system: usize,
@@ -105,6 +110,7 @@ impl Default for ExportOptions {
             last: 31,
             rate: 25.0,
             cells: UVec2::new(4, 8),
+            frame_size: UVec2::splat(256),
             file: FileKind::default(),
             format: ImageFormat::default(),
             engine: Engine::default(),
@@ -254,7 +260,8 @@ impl ExportJob {
     }
 
     fn begin(&mut self, product: ExportKind, path: PathBuf, session: &Session) {
-        let mut size = self.options.size;
+        let is_for_engine = product == ExportKind::EngineFlipbook;
+        let mut size = if is_for_engine { self.options.frame_size } else { self.options.size };
         if product == ExportKind::Image {
             // A single image has the aspect ratio of the viewport.
             size.x = ((size.y as f32 * session.view.aspect).round() as u32).clamp(1, MAX_PIXELS);
@@ -375,6 +382,12 @@ async fn make(
         ExportKind::Gif => {
             let frames = Frames { format: SCENE, ..frames };
             render_job::write_gif(backend, shot, &frames, path, watch).await?;
+            return Ok(ExportResult::Written(path.clone()));
+        }
+        ExportKind::EngineFlipbook => {
+            render_job::check_flipbook(shot.size, &frames, options.cells)?;
+            let engine = (options.engine, options.cells);
+            render_job::write_engine_flipbook(backend, shot, &frames, engine, path, watch).await?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::Material => {

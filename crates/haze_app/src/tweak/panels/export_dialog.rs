@@ -87,23 +87,31 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
         ("Sequence", ExportKind::Sequence),
         ("Flipbook", ExportKind::Flipbook),
         ("GIF", ExportKind::Gif),
+        ("Flipbook with Normals", ExportKind::EngineFlipbook),
         ("Material", ExportKind::Material),
         ("Debug Views", ExportKind::DebugView),
         ("Nine Seeds", ExportKind::Seeds),
         ("Values of a Setting", ExportKind::Values(values)),
     ];
     ui.horizontal_wrapped(|ui| {
-        let is_offered = |product: &ExportKind| !IS_PAGE || *product != ExportKind::Material;
+        let is_for_engine = |product: &ExportKind| matches!(product, ExportKind::Material | ExportKind::EngineFlipbook);
+        let is_offered = |product: &ExportKind| !IS_PAGE || !is_for_engine(product);
         for (name, product) in products.into_iter().filter(|(_, product)| is_offered(product)) {
             ui.selectable_value(&mut export_job.product, product, name);
         }
     });
     let (product, options) = (&mut export_job.product, &mut export_job.options);
-    let is_moving = matches!(product, ExportKind::Sequence | ExportKind::Flipbook | ExportKind::Gif);
+    let is_for_engine = *product == ExportKind::EngineFlipbook;
+    let has_cells = is_for_engine || *product == ExportKind::Flipbook;
+    let is_moving = has_cells || matches!(product, ExportKind::Sequence | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
         if *product == ExportKind::Material {
             choices(ui, "Engine", &mut options.engine, &ENGINES);
             return;
+        }
+        if is_for_engine {
+            let about = "Conventions of normals and motion vectors; a README tells how to use the files";
+            choices(ui, "Engine", &mut options.engine, &ENGINES.map(|(name, engine, _)| (name, engine, about)));
         }
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
             let label = ui.label(name).id;
@@ -114,11 +122,12 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
             });
             ui.end_row();
         };
-        row("Size", [(&mut options.size.x, 16..=MAX_PIXELS), (&mut options.size.y, 16..=MAX_PIXELS)]);
+        let size = if is_for_engine { &mut options.frame_size } else { &mut options.size };
+        row("Size", [(&mut size.x, 16..=MAX_PIXELS), (&mut size.y, 16..=MAX_PIXELS)]);
         if is_moving {
             row("Frames", [(&mut options.first, 0..=99_999), (&mut options.last, 0..=99_999)]);
         }
-        if *product == ExportKind::Flipbook {
+        if has_cells {
             row("Rows × columns", [(&mut options.cells.x, 1..=64), (&mut options.cells.y, 1..=64)]);
         }
         if is_moving {

@@ -44,6 +44,9 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
         ui.separator();
         entry(ui, Action::Screenshot);
         entry(ui, Action::Seeds);
+        if !IS_PAGE {
+            entry(ui, Action::EngineFlipbook);
+        }
         entry(ui, Action::Export);
         if !IS_PAGE {
             ui.separator();

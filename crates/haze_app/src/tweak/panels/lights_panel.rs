@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Ui};
 use glam::UVec2;
+use haze::formula::color::luminance;
 use haze::frame::MAX_LIGHTS;
 use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind, LightRole};
@@ -9,13 +10,14 @@ use haze::{Bounds, Light, LightKind, LightRole};
 use super::comparison_bar::width;
 use super::rows::color_popup::swatch;
 use super::rows::setting_rows::RowContext;
-use super::rows::{Row, setting_rows, value_control};
+use super::rows::{self, Row, setting_rows, value_control};
 use crate::tweak::document::display_names::display_name;
-use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
 use crate::tweak::document::light_defaults::{kind_name, light_name, new_light};
 use crate::tweak::document::light_roles::{keep_one_key, light_of};
 use crate::tweak::session::light_view::LightView;
 use crate::tweak::session::smoke_geometry::{SmokeGeometry, place_behind};
+use haze_author::daylight::{irradiance, set_brightness};
+use haze_author::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
 
 /// Draws the list and the settings of the selected light. `seen` gives the smoke that is shown, and the size of the
 /// image.
@@ -24,7 +26,7 @@ pub fn panel(
     context: &mut RowContext<'_>,
     preset: &mut Preset,
     shown: &mut LightView,
-    seen: (&dyn Fn() -> SmokeGeometry, UVec2),
+    seen: (&SmokeGeometry, UVec2),
 ) {
     shown.follow(&preset.lights);
     // If a setting of a light was searched for, that light is selected.
@@ -34,6 +36,8 @@ pub fn panel(
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
     ui.horizontal_wrapped(|ui| tools(ui, preset, shown, seen));
+    let place = seen.0.bounds().centre();
+    let all: f32 = preset.lights.iter().map(|light| luminance(irradiance(light, place))).sum();
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
         ui.weak(if preset.lights.is_empty() { "This preset has no lights." } else { "Select a light to edit it." });
@@ -42,6 +46,7 @@ pub fn panel(
     ui.separator();
     let before = light.role;
     role(ui, context, index, light);
+    at_smoke(ui, context, index, light, (place, all));
     if light.kind != LightKind::Point {
         angles(ui, context, index, light);
     }
@@ -90,6 +95,46 @@ fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Lig
     context.requests.extend(request.map(|request| (request, path)));
 }
 
+const AT_SMOKE: &str = "Light that arrives at the centre of the smoke, in one unit for all lights: the intensity of a white sun \
+     that is as bright there. Shadows and other smoke are left out. Times π it is lux, if intensities are candela and lux \
+     divided by π. A change sets the intensity.";
+
+/// Draws the brightness of a light at the smoke, which sets its intensity. `place`: centre of the smoke. `all`: brightness of all
+/// lights there.
+fn at_smoke(
+    ui: &mut Ui,
+    context: &mut RowContext<'_>,
+    index: usize,
+    light: &mut Light,
+    (place, all): (glam::Vec3, f32),
+) {
+    let mut brightness = luminance(irradiance(light, place));
+    let path = format!("lights[{index}].intensity");
+    let row = Row {
+        name: "at the smoke",
+        tooltip: AT_SMOKE,
+        is_changed: context.changed.contains(&path),
+        second: context.second.map(|_| None),
+        sheet: None,
+        key: None,
+        reason_without_effect: (light.intensity > 0.0 && brightness <= 0.0).then_some("the smoke is out of reach"),
+    };
+    let (share, refused) = (brightness / all, &mut context.refused);
+    let request = row.show(ui, |ui, label| {
+        if value_control::number(ui, label, &mut brightness, (&(0.0..=1.0e9), Some((0.0, 10.0))), "", refused) {
+            set_brightness(light, place, brightness);
+        }
+    });
+    context.requests.extend(request.map(|request| (request, path)));
+    if share.is_finite() && row.reason_without_effect.is_none() {
+        rows::note(ui, if context.second.is_some() { 2.0 } else { 1.0 }, |ui| {
+            let text = egui::RichText::new(format!("{:.0} % of all lights there", 100.0 * share)).weak();
+            // A longer line would widen a narrow panel.
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(AT_SMOKE);
+        });
+    }
+}
+
 /// Draws a light of the list.
 fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
     let name = light_name(index, light);
@@ -123,12 +168,12 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
 }
 
 /// Draws the buttons for the list and the selected light.
-fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&dyn Fn() -> SmokeGeometry, UVec2)) {
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&SmokeGeometry, UVec2)) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add light", |ui| {
             for &kind in LightKind::ALL {
                 if ui.button(kind_name(kind)).clicked() {
-                    let light = beside(new_light(kind, &preset.lights), &preset.camera, &smoke().bounds());
+                    let light = beside(new_light(kind, &preset.lights), &preset.camera, &smoke.bounds());
                     let end = preset.lights.len();
                     shown.insert(preset, end, light);
                 }
@@ -146,7 +191,6 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
     }
     let behind = ui.button("Move behind smoke").on_hover_text("Moves the light behind the smoke, seen from the camera");
     if behind.clicked() {
-        let smoke = smoke();
         let (eye, point) = (preset.camera.position, smoke.visible_centre(&preset.camera, size));
         if let Some(light) = preset.lights.get_mut(index) {
             place_behind(light, eye, point, &smoke.bounds);
@@ -203,5 +247,53 @@ fn angles(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut L
     if edited != before {
         let elevation = edited.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION);
         light.direction = from_angles(Angles { elevation, ..edited });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Key, Modifiers, Role, Theme, Vec2};
+    use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+    use super::*;
+    use crate::tweak::window::testing::window;
+
+    #[test]
+    fn lights_of_all_kinds_are_compared_and_set_in_one_unit() {
+        let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+        harness.get_by_label("Light").click();
+        harness.run_steps(3);
+        let mut shares = 0.0;
+        for (light, name) in ["Key (Point 1)", "Fill (Sun 2)", "Practical (Point 3)"].into_iter().enumerate() {
+            harness.get_by_label(name).click();
+            harness.run_steps(3);
+            let share = harness.get_by_label_contains("% of all lights there").accesskit_node().value().unwrap();
+            shares += share.split(' ').next().unwrap().parse::<f32>().unwrap();
+            let sliders = harness.get_all_by_label("At the smoke");
+            let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider).unwrap();
+            slider.set_value_accesskit(2.0);
+            harness.run_steps(3);
+            let session = &harness.state().session;
+            let place = session.smoke.bounds().centre();
+            let brightness = luminance(irradiance(&session.document.preset.lights[light], place));
+            assert!((brightness - 2.0).abs() < 0.01, "{name}: {brightness}");
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+            harness.run_steps(3);
+        }
+        assert!((shares - 100.0).abs() < 2.0, "{shares}");
+        assert!(!harness.state().session.document.is_dirty());
+    }
+
+    #[test]
+    fn a_selected_light_does_not_widen_the_narrowest_panel() {
+        let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
+        harness.get_by_label("Light").click();
+        harness.run_steps(3);
+        for light in 0..3 {
+            harness.state_mut().session.view.lights.selected = Some(light);
+            harness.run_steps(5);
+            let (tab, image) = (harness.get_by_label("Look").rect(), harness.get_by_label("viewport").rect());
+            assert!(tab.left() >= image.right(), "{light}: {tab} {image}");
+        }
     }
 }

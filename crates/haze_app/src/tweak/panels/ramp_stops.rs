@@ -4,8 +4,12 @@ use std::path::Path;
 
 use eframe::egui::{self, Color32, Ui};
 use egui_gradient::DisplayOptions;
+use glam::Vec2;
+use haze::builtin;
+use haze::preset::AssetFolders;
 use haze_author::ramp::{Blend, RampRecipe, RampRow};
 
+use super::gradient_drag::{self, DraggedGradient};
 use super::rows::value_control;
 use crate::tweak::document::ramp_edits::RampOrigin;
 use crate::tweak::session::{CopiedImage, CopyRequest, Session};
@@ -36,8 +40,8 @@ pub fn has_stops(session: &mut Session, ramp: NamedRamp<'_>) -> bool {
     matches!(session.ramps.source(ramp.name, &folders), RampOrigin::Recipe(_))
 }
 
-/// Draws the editor of a ramp, and returns the coordinate under the pointer; the outer `None` means that the ramp has
-/// no stops. Histograms are shown for the axis of the edited gradient: rows run across, the gradient that multiplies
+/// Draws the editor of a ramp, and returns the place under the pointer; the outer `None` means that the ramp has no stops.
+/// Histograms are shown for the axis of the edited gradient: rows run across, the gradient that multiplies
 /// them runs upwards.
 pub fn editor(
     ui: &mut Ui,
@@ -45,7 +49,7 @@ pub fn editor(
     ramp: NamedRamp<'_>,
     across: &AxisSamples,
     up: &AxisSamples,
-) -> Option<Option<f32>> {
+) -> Option<Option<Vec2>> {
     let folders = session.folders();
     let RampOrigin::Recipe(read) = session.ramps.source(ramp.name, &folders).clone() else { return None };
     let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(&read).clone();
@@ -55,8 +59,20 @@ pub fn editor(
     let histograms: Vec<_> = bins.iter().map(|(color, bins)| (*color, bins.as_slice())).collect();
     let options = DisplayOptions { blend: recipe.blend, histograms: &histograms, marks };
     let mut shown = shown(&recipe, *index)?;
-    let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options)).inner;
+    let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options));
+    let (place, edited) = (edited.response.rect, edited.inner);
     let index = *index;
+    if let Some(dropped) = gradient_drag::dropped(ui, place) {
+        session.document.name_gradient_step(ramp.name, "copy a gradient");
+        if recipe.rows.len() == 1 && recipe.times.is_empty() {
+            recipe.blend = dropped.blend;
+        }
+        match recipe.rows.get_mut(index) {
+            Some(row) => row.stops.clone_from(&dropped.stops),
+            None => recipe.times.clone_from(&dropped.stops),
+        }
+        is_changed = true;
+    }
     is_changed |= ui.horizontal(|ui| blend(ui, &mut recipe.blend, ramp.field)).inner;
     if let Some(step) = edited.step {
         session.document.name_gradient_step(ramp.name, step);
@@ -68,6 +84,8 @@ pub fn editor(
         }
         is_changed = true;
     }
+    // The gradient that multiplies the rows has no place of its own.
+    let row = recipe.rows.get(index).map(|row| row.at);
     if is_changed {
         let ramps = &mut session.document.recipes.ramps;
         // A recipe that equals the one on disk is no change, and no step.
@@ -82,7 +100,32 @@ pub fn editor(
     } else if is_changed {
         session.messages.clear("ramp");
     }
-    Some(edited.pointed_at)
+    Some(edited.pointed_at.zip(row).map(|(at, row)| Vec2::new(at, row)))
+}
+
+/// Returns the recipe of a ramp as it is edited, or that of a built-in ramp.
+fn recipe_of(session: &mut Session, name: &str, folders: &AssetFolders) -> Option<RampRecipe> {
+    match session.ramps.source(name, folders) {
+        RampOrigin::Recipe(read) => {
+            let read = read.clone();
+            Some(session.document.recipes.ramps.get(name).cloned().unwrap_or(read))
+        }
+        RampOrigin::BuiltIn => {
+            let builtin = builtin::find(builtin::RAMPS, name)?;
+            RampRecipe::parse(Path::new(name), builtin.recipe).ok()
+        }
+        RampOrigin::Painted { .. } | RampOrigin::Missing => None,
+    }
+}
+
+/// Draws the grip with which the shown gradient is dragged onto another ramp, if it has one.
+pub fn grip(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
+    let folders = session.folders();
+    let Some(recipe) = recipe_of(session, ramp.name, &folders) else { return };
+    let index = session.ramps.editor(ramp.field).1;
+    if let Some(row) = shown(&recipe, index).or_else(|| shown(&recipe, 0)) {
+        gradient_drag::grip(ui, ramp.name, DraggedGradient { stops: row.stops, blend: recipe.blend });
+    }
 }
 
 /// Draws the choice of the color space for blending. Returns true if it was changed.

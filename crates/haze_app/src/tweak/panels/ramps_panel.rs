@@ -9,6 +9,7 @@ use haze::ramp::Ramp;
 use haze::settings::{ImageRole, RampFilter, set_field};
 use haze_reference::SystemProbe;
 
+use super::look_browser;
 use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
 use super::rows::picture_gallery::gallery;
 use crate::tweak::document::display_names::display_name;
@@ -71,7 +72,11 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
             continue;
         }
         let ramp = NamedRamp { system: index, field, name };
-        ramp_stops::offer_stops(ui, session, ramp);
+        ui.horizontal_wrapped(|ui| {
+            look_browser::button(ui, session, index, field);
+            ramp_stops::offer_stops(ui, session, ramp);
+            ramp_stops::grip(ui, session, ramp);
+        });
         let spoken = display_name(field);
         let ink = ui.visuals().text_color();
         if let Some(two_axes) = two_axes(field, material) {
@@ -89,7 +94,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         }
         let across = (bins, marks);
         let edited = ramp_stops::editor(ui, session, ramp, &across, &AxisSamples::default());
-        let at = edited.unwrap_or_else(|| {
+        let at = edited.map(|place| place.map(|place| place.x)).unwrap_or_else(|| {
             let at = strip(ui, &spoken, picture, filter, &across.1);
             let name = if is_diffuse(field) { "Histogram of N·L" } else { "Histogram of amounts" };
             histogram(ui, (name, ui.available_width()), &across.0);
@@ -331,17 +336,18 @@ fn two_axis_ramp(
     };
     let of_lights = histograms(0);
     let across: AxisSamples = samples(0, &of_lights);
-    if ramp_stops::has_stops(session, named) {
+    let edited = if ramp_stops::has_stops(session, named) {
         ui.weak(two_axes.axes);
-        ramp_stops::editor(ui, session, named, &across, &samples(1, &histograms(1)));
+        ramp_stops::editor(ui, session, named, &across, &samples(1, &histograms(1))).flatten()
     } else {
         histogram(ui, (two_axes.histogram, width), &across.0);
         ui.weak(two_axes.axes);
-    }
+        None
+    };
     if ramp != TwoAxisRamp::Fire && !lookups.is_forward {
         legend(ui, session, &of_lights);
     }
-    place
+    place.or(edited.map(|at| RampPlace::TwoAxes(ramp, at)))
 }
 
 /// Draws the title of a ramp and the choice of its image.

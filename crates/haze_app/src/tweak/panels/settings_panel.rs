@@ -8,12 +8,11 @@ use haze_author::backdrop::Backdrop;
 use super::rows::key_mark::KeyMarks;
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
 use super::rows::{RowRequest, setting_rows, soft_fade_plot};
-use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel};
+use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel, sun_panel};
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::session::Session;
 use crate::tweak::session::messages::truncate_middle;
 use crate::tweak::session::setting_search::SMOKE_TAB_GROUPS;
-use crate::tweak::session::smoke_geometry::SmokeGeometry;
 use crate::tweak::session::view_options::Tab;
 
 /// Tabs with their names and tooltips.
@@ -99,11 +98,10 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let edit = session.begin_edit();
     let mut shown = std::mem::take(&mut session.view.lights);
     let keys = KeyMarks::new(&session.document.preset, session.playback.time);
-    let whole = || {
-        let mut smoke = SmokeGeometry::default();
-        smoke.of(session);
-        smoke
-    };
+    let mut smoke_shown = std::mem::take(&mut session.smoke);
+    if session.view.tab == Tab::Light {
+        session.measure(&mut smoke_shown);
+    }
     let mut context = RowContext {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
@@ -124,7 +122,9 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
     egui::ScrollArea::vertical().id_salt(session.view.tab).auto_shrink(false).show(ui, |ui| match session.view.tab {
         Tab::Look => look_panel::panel(ui, &mut context, preset, &mut shown, system),
         Tab::Light => {
-            lights_panel::panel(ui, &mut context, preset, &mut shown, (&whole, session.view.size));
+            sun_panel::panel(ui, &mut context, preset, &mut shown, smoke_shown.bounds().centre());
+            ui.separator();
+            lights_panel::panel(ui, &mut context, preset, &mut shown, (&smoke_shown, session.view.size));
             ui.separator();
             surroundings(ui, &mut context, preset, &backdrop);
         }
@@ -137,6 +137,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
     session.document.preset = edited;
     session.end_edit(edit);
     session.view.lights = shown;
+    session.smoke = smoke_shown;
     session.report_refused_input(refused, is_edited);
     let mut sheet = None;
     for (request, path) in requests {

@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
+use glam::UVec2;
 use haze::Error;
 #[cfg(not(target_arch = "wasm32"))]
 use haze::FieldError;
+#[cfg(not(target_arch = "wasm32"))]
+use haze::image::CompressionEffort;
 use haze::shader::Sources;
 use haze_demo::shot::Shot;
 
@@ -12,6 +15,8 @@ use super::IS_PAGE;
 #[cfg(not(target_arch = "wasm32"))]
 use super::file_io::make_folder;
 use crate::backend::Backend;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::flipbook_export::{FlipbookExport, FlipbookOptions};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::material_export::MaterialExport;
 #[cfg(target_arch = "wasm32")]
@@ -69,6 +74,35 @@ pub fn write_material(shot: &Shot, system: usize, engine: Engine, folder: &Path)
     let export = MaterialExport::new(&shot.preset.name, (system, found), images, engine)?;
     make_folder(folder)?;
     export.write(folder)
+}
+
+/// Writes sheets of color, normals, motion vectors and fire into a folder. `engine`: with the rows and columns of a sheet.
+#[cfg(not(target_arch = "wasm32"))]
+pub async fn write_engine_flipbook(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    (engine, cells): (Engine, UVec2),
+    folder: &Path,
+    progress: &ExportProgress<'_>,
+) -> Result<(), Error> {
+    let options = FlipbookOptions { engine, cells, loop_fade: 0, has_six_way: false };
+    let export = FlipbookExport::render(backend, shot, frames, options, progress, folder).await?;
+    make_folder(folder)?;
+    export.write(folder, CompressionEffort::Quick)
+}
+
+/// A page offers no flipbooks for engines.
+#[cfg(target_arch = "wasm32")]
+pub async fn write_engine_flipbook(
+    _: &Backend,
+    _: &Shot,
+    _: &Frames,
+    _: (Engine, UVec2),
+    folder: &Path,
+    _: &ExportProgress<'_>,
+) -> Result<(), Error> {
+    Err(Error::Io { path: folder.into(), error: std::io::ErrorKind::Unsupported.into() })
 }
 
 /// A page offers no materials.

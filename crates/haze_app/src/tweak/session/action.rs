@@ -19,6 +19,7 @@ pub enum Action {
     Screenshot,
     Export,
     Seeds,
+    EngineFlipbook,
     Undo,
     Redo,
     Find,
@@ -88,6 +89,7 @@ const fn entry(action: Action, name: &'static str, modifiers: Modifiers, key: Ke
 }
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+const COMMAND_ALT: Modifiers = Modifiers::COMMAND.plus(Modifiers::ALT);
 
 /// Entries with more modifiers come first, because egui matches a shortcut without Shift also while Shift is held.
 pub const ACTIONS: &[ActionEntry] = &[
@@ -100,6 +102,7 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Action::Paste, "Paste Preset", COMMAND_SHIFT, Key::V),
     entry(Action::Screenshot, "Save Image…", Modifiers::NONE, Key::F12),
     entry(Action::Seeds, "Compare Nine Seeds", COMMAND_SHIFT, Key::E),
+    entry(Action::EngineFlipbook, "Flipbook with Normals…", COMMAND_ALT, Key::E),
     entry(Action::Export, "Export…", Modifiers::COMMAND, Key::E),
     entry(Action::Redo, "Redo", COMMAND_SHIFT, Key::Z),
     entry(Action::Undo, "Undo", Modifiers::COMMAND, Key::Z),

@@ -6,6 +6,7 @@ pub mod first_run_hints;
 pub mod inspection;
 pub mod light_view;
 pub mod look_controls;
+pub mod look_thumbnails;
 pub mod macro_param;
 pub mod messages;
 pub mod picture_thumbnails;
@@ -51,10 +52,12 @@ use comparison::CompareState;
 use first_run_hints::FirstRunHints;
 use inspection::Inspection;
 use light_view::LightView;
+use look_thumbnails::LookThumbnails;
 use messages::Messages;
 use picture_thumbnails::PictureThumbnails;
 use playback::Playback;
 use setting_search::SettingSearch;
+use smoke_geometry::SmokeGeometry;
 use sprite_preview::SpritePreview;
 use view_options::{Tab, ViewOptions};
 
@@ -75,6 +78,8 @@ pub struct Session {
     /// Descriptions of the debug views.
     pub debug_view_tooltips: Tooltips,
     pub thumbnails: PictureThumbnails,
+    /// Looks of a ramp, while they are shown.
+    pub looks: LookThumbnails,
     /// Flipbook on the Sprite tab.
     pub flipbook: Option<SpritePreview>,
     /// Repaints the window from threads that run for longer than one window is open.
@@ -83,6 +88,8 @@ pub struct Session {
     pub assets: Option<PathBuf>,
     /// Path of a screenshot; the window closes once it is written.
     pub screenshot: Option<PathBuf>,
+    /// Smoke at the shown time, for panels that measure it.
+    pub smoke: SmokeGeometry,
     /// Images as last loaded without error.
     pub loaded_materials: LoadedMaterials,
     pub particle_files: LoadedParticles,
@@ -165,9 +172,11 @@ impl Session {
             tooltips: Tooltips::of::<Preset>(),
             debug_view_tooltips: Tooltips::of::<DebugView>(),
             thumbnails: PictureThumbnails::default(),
+            looks: LookThumbnails::default(),
             flipbook: None,
             repaint: RepaintHandle::default(),
             screenshot: None,
+            smoke: SmokeGeometry::default(),
             loaded_materials: LoadedMaterials::new(preset, materials),
             particle_files: LoadedParticles::new(preset, particles),
             backdrop: LoadedBackdrop::new(preset, backdrop),
@@ -188,6 +197,7 @@ impl Session {
     pub fn attach_window(&mut self, context: &egui::Context) {
         self.repaint.follow(context);
         (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
+        self.looks = LookThumbnails::default();
     }
 
     /// Returns the folders where images are looked up.
@@ -215,6 +225,11 @@ impl Session {
     /// Returns the preset with the values of its tracks at the time of the playback.
     pub fn preset_now(&self) -> Preset {
         self.document.preset.at(self.playback.time)
+    }
+
+    /// Returns the smoke that is shown, measured unless `known` has it already.
+    pub fn measure<'a>(&self, known: &'a mut SmokeGeometry) -> &'a SmokeGeometry {
+        known.at(&self.preset_now(), self.particle_frames(), self.playback.time)
     }
 
     fn shot_of(&self, mut preset: Preset, size: UVec2) -> Shot {
@@ -451,6 +466,7 @@ impl Session {
         (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
         self.ramps = RampEdits::default();
         self.copy_request = None;
+        self.looks.close();
         self.sprites.forget();
         let stale = ["preset", "ramp", "sprite", "pictures", "caches", "backdrop", "file"];
         stale.into_iter().for_each(|about| self.messages.clear(about));

@@ -6,8 +6,6 @@ use haze::preset::{Camera, Preset, PresetSystem};
 use haze::{Bounds, Light, LightKind, Particle};
 use haze_author::particle_files::{self, ParticleFrames};
 
-use super::Session;
-
 /// Particles and bounds of a preset's systems, cached until the systems or the time change.
 #[derive(Default)]
 pub struct SmokeGeometry {
@@ -19,12 +17,8 @@ pub struct SmokeGeometry {
 }
 
 impl SmokeGeometry {
-    /// Returns the smoke that a session shows.
-    pub fn of(&mut self, session: &Session) -> &Self {
-        self.at(&session.preset_now(), session.particle_frames(), session.playback.time)
-    }
-
-    fn at(&mut self, preset: &Preset, caches: Vec<Option<ParticleFrames>>, time: f32) -> &Self {
+    /// Returns the smoke of a preset at a time. `caches`: particles of the systems that have particle files.
+    pub fn at(&mut self, preset: &Preset, caches: Vec<Option<ParticleFrames>>, time: f32) -> &Self {
         let is_same = self.of.as_ref().is_some_and(|(systems, its, at)| {
             *at == time.to_bits() && *systems == preset.systems && ParticleFrames::share_all_memory(its, &caches)
         });

@@ -2,7 +2,7 @@
 
 use haze::sprite::Sprite;
 
-use crate::tweak::document::light_angles::Angles;
+use haze_author::light_angles::Angles;
 
 /// Channel of a sprite that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -51,13 +51,18 @@ fn entries(
 ) -> Option<InView> {
     for (kind, name) in ADDED {
         if ui.button(name).clicked() {
-            let middle = smoke.of(session).bounds().centre();
+            let middle = session.measure(smoke).bounds().centre();
             let light = here(new_light(kind, &session.document.preset.lights), at, projection, middle);
             session.add_light(light);
         }
     }
-    ui.separator();
     let mut asked = None;
+    let rim = ui.button("Add Rim Light").on_hover_text("Adds a light behind the smoke, which draws its outline");
+    if rim.clicked() {
+        session.view.lights.selected = None;
+        asked = Some(InView::Behind);
+    }
+    ui.separator();
     for (action, name) in [(InView::Behind, "Move Light behind Smoke"), (InView::Frame, "Frame Smoke")] {
         if ui.button(name).clicked() {
             asked = Some(action);

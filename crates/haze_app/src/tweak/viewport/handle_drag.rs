@@ -7,7 +7,7 @@ use haze::{Light, LightKind};
 use super::light_handle::{Cone, Handle, UNITS};
 use super::light_marker::light_position;
 use super::screen_projection::ScreenProjection;
-use crate::tweak::document::light_angles::{Angles, from_angles, to_angles};
+use haze_author::light_angles::{Angles, from_angles, to_angles};
 
 /// Steps of snapping with Ctrl, in metres and in degrees.
 const SNAP_METRES: f32 = 0.1;

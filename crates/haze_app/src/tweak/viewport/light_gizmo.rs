@@ -2,6 +2,7 @@
 
 use eframe::egui::{Color32, CursorIcon, Key, Pos2, Response, Ui};
 use glam::Vec3;
+use haze::preset::Track;
 use haze::{Light, LightKind};
 
 use super::handle_drag::HandleDrag;
@@ -15,6 +16,8 @@ use crate::tweak::session::Session;
 #[derive(Default)]
 pub struct LightGizmo {
     drag: Option<HandleDrag>,
+    /// Keyframes and time of the playback before the drag.
+    before: (Vec<Track>, f32),
     hovered: Option<Handle>,
     /// The button that started the drag is still down.
     is_busy: bool,
@@ -39,8 +42,7 @@ impl LightGizmo {
             (pointer.interact_pos(), pointer.primary_pressed(), pointer.primary_down(), input.modifiers)
         });
         let selected = session.view.lights.selected.filter(|_| session.view.lights.turn.is_none());
-        let light =
-            selected.and_then(|index| session.document.preset.lights.get_mut(index).map(|light| (index, light)));
+        let light = selected.and_then(|index| session.document.preset.lights.get(index).map(|light| (index, light)));
         let at = pointer.filter(|_| response.contains_pointer() || self.drag.is_some());
         let was_busy = self.is_busy;
         self.is_busy &= down;
@@ -51,9 +53,16 @@ impl LightGizmo {
                 (under, at, pressed && response.is_pointer_button_down_on() && !held.alt)
             {
                 self.drag = Some(HandleDrag::new(index, handle, *light, projection, at));
+                self.before = (session.document.preset.animation.clone(), session.playback.time);
                 self.is_busy = true;
             }
-            self.drag(ui, index, light, projection, pointer.filter(|_| down), held);
+            if let Some(light) = session.document.preset.lights.get_mut(index)
+                && self.drag(ui, index, light, projection, pointer.filter(|_| down), held)
+            {
+                let (tracks, time) = std::mem::take(&mut self.before);
+                session.document.preset.animation = tracks;
+                session.playback.time = time;
+            }
             self.hovered = self.drag.as_ref().map(|drag| drag.handle).or(under.filter(|_| !down));
             if self.hovered.is_some() {
                 ui.ctx().set_cursor_icon(if self.drag.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
@@ -69,6 +78,7 @@ impl LightGizmo {
         self.is_busy || was_busy
     }
 
+    /// Moves the light. Returns true if the drag is canceled.
     fn drag(
         &mut self,
         ui: &Ui,
@@ -77,20 +87,22 @@ impl LightGizmo {
         projection: &ScreenProjection,
         pointer: Option<Pos2>,
         held: eframe::egui::Modifiers,
-    ) {
+    ) -> bool {
         // The light was changed by undo or by other means, so the drag ends.
         let Some(drag) = self.drag.as_mut().filter(|drag| drag.index == index && drag.left == *light) else {
             self.drag = None;
-            return;
+            return false;
         };
         if ui.input_mut(|input| input.consume_key(eframe::egui::Modifiers::NONE, Key::Escape)) {
             *light = drag.before;
             self.drag = None;
+            return true;
         } else if let Some(pointer) = pointer {
             *light = drag.drag(projection, pointer, held);
         } else {
             self.drag = None;
         }
+        false
     }
 
     pub fn is_dragging(&self) -> bool {

@@ -21,7 +21,7 @@ mod toolbar;
 
 use eframe::egui::{self, Response, Sense, Ui};
 use glam::UVec2;
-use haze::{Bounds, LightKind};
+use haze::{Bounds, Light, LightKind, LightRole};
 
 use crate::tweak::document::light_defaults::new_light;
 use crate::tweak::session::Session;
@@ -99,7 +99,7 @@ impl Viewport {
         let painter = ui.painter_at(rect);
         let outlined = OutlinedPainter(&painter);
         if session.view.overlays.is_any() {
-            let smoke = self.smoke.of(session);
+            let smoke = session.measure(&mut self.smoke);
             overlay::draw(&outlined, &projection, &session.view, smoke, &renderer.texels());
         }
         self.gizmo.draw(&outlined, &projection, session);
@@ -165,7 +165,7 @@ impl Viewport {
             InView::Behind => self.place_behind(session, None),
             InView::Overlay(overlay) => session.view.overlays.toggle(overlay),
             InView::Turntable => {
-                let middle = self.smoke.of(session).bounds().centre();
+                let middle = session.measure(&mut self.smoke).bounds().centre();
                 let turn = &mut session.view.lights.turn;
                 *turn = if turn.is_some() { None } else { Some(LightTurn { middle, angle: 0.0 }) };
             }
@@ -175,7 +175,7 @@ impl Viewport {
 
     /// Puts the selected light, or a new one, behind the smoke on the ray, or else behind the smoke in the image.
     fn place_behind(&mut self, session: &mut Session, at: Option<Ray>) {
-        let smoke = self.smoke.of(session);
+        let smoke = session.measure(&mut self.smoke);
         let preset = &mut session.document.preset;
         let met = at.and_then(|ray| smoke.centre_on_ray(ray.origin, ray.direction));
         let point = met.unwrap_or_else(|| smoke.visible_centre(&preset.camera, session.view.size));
@@ -184,14 +184,14 @@ impl Viewport {
         if let Some(light) = selected {
             return place_behind(light, eye, point, &smoke.bounds);
         }
-        let mut light = new_light(LightKind::Point, &preset.lights);
+        let mut light = Light { role: LightRole::Rim, ..new_light(LightKind::Point, &preset.lights) };
         place_behind(&mut light, eye, point, &smoke.bounds);
         session.add_light(light);
     }
 
     /// Frames the selected light, or all smoke.
     fn frame(&mut self, session: &mut Session) {
-        let mut bounds = self.smoke.of(session).bounds();
+        let mut bounds = session.measure(&mut self.smoke).bounds();
         let preset = &mut session.document.preset;
         let selected = session.view.lights.selected.and_then(|index| preset.lights.get(index));
         let light = selected.filter(|light| light.kind != LightKind::Directional);

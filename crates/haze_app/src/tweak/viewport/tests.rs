@@ -145,7 +145,7 @@ fn lights_are_added_duplicated_and_deleted_by_panel_and_by_key() {
     harness.run();
     let session = &harness.state().session;
     let mut behind = session.document.preset.lights[1];
-    let bounds = SmokeGeometry::default().of(session).bounds();
+    let bounds = session.measure(&mut SmokeGeometry::default()).bounds();
     let is_behind = projection(&harness).depth(behind.position) > projection(&harness).depth(bounds.centre());
     assert!(is_behind && selected(&harness) == Some(1));
     // A direction that is set by angles keeps its azimuth at any elevation.
@@ -188,7 +188,7 @@ fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
     let mut harness = lit(Light::default());
     let session = &harness.state().session;
     let mut smoke = SmokeGeometry::default();
-    let sprites = &smoke.of(session).systems[0];
+    let sprites = &session.measure(&mut smoke).systems[0];
     let in_view = |at: &Pos2| viewport(&harness).shrink(40.0).contains(*at);
     let seen =
         sprites.iter().filter(|sprite| projection(&harness).project(sprite.position).is_some_and(|at| in_view(&at)));

@@ -152,7 +152,7 @@ impl Window {
         }
         // Escape closes the topmost item first.
         if ui.input(|input| input.key_pressed(egui::Key::Escape))
-            && (self.export_job.dismiss() || self.session.hints.dismiss())
+            && (self.export_job.dismiss() || self.session.looks.close() || self.session.hints.dismiss())
         {
             ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
         }
@@ -189,6 +189,7 @@ impl Window {
             },
             Action::Screenshot => self.export_job.order(ExportKind::Image, session),
             Action::Seeds => self.export_job.order(ExportKind::Seeds, session),
+            Action::EngineFlipbook => self.export_job.order(ExportKind::EngineFlipbook, session),
             Action::Export => self.export_job.is_open = !self.export_job.is_open,
             Action::Paste => context.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Undo => session.undo(),
@@ -279,6 +280,7 @@ impl Window {
             self.session.hints.record_rect(WindowPart::Image, rect);
             self.viewport.show(ui, &mut self.session, &self.renderer);
             inspector::panel(ui, rect, &self.session);
+            panels::look_browser::panel(ui, &mut self.session, rect);
         });
         if let Some(probe_job) = &mut self.probe_job {
             probe_job.update(ui, &mut self.session, &self.renderer);

@@ -1,6 +1,7 @@
 //! Tests of the whole window: actions on controls are checked in the image.
 
 mod idle_cost;
+mod task_script;
 
 use eframe::egui::{Key, Modifiers, Pos2, Rect, Role, Theme, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -267,7 +268,7 @@ fn time_is_played_and_stepped() {
 fn write_images_of_every_tab() {
     let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) else { return };
     let wanted = std::env::var("HAZE_SIZE").ok();
-    let sizes = [(1280, 800), (2560, 1440), (640, 400)]
+    let sizes = [(1280, 800), (1400, 900), (2560, 1440), (640, 400)]
         .into_iter()
         .filter(|(width, height)| wanted.as_ref().is_none_or(|wanted| *wanted == format!("{width}x{height}")));
     for (size, theme) in sizes.flat_map(|size| [(size, Theme::Dark), (size, Theme::Light)]) {
@@ -285,6 +286,16 @@ fn write_images_of_every_tab() {
             }
             save(&mut harness, name);
         }
+        harness.get_by_label("Ramps").click();
+        harness.run_steps(4);
+        harness.get_by_label("Looks: Diffuse ramp").click();
+        for _ in 0..40 {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            harness.step();
+        }
+        save(&mut harness, "looks");
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
         harness.get_by_label("Light").click();
         harness.run_steps(4);
         harness.get_by_label("Key (Point 1)").click();
@@ -293,6 +304,15 @@ fn write_images_of_every_tab() {
         save(&mut harness, "color");
         harness.key_press(Key::Escape);
         harness.run_steps(2);
+        for time in ["Add a sun", "Sunset", "Moonlit"] {
+            harness.get_by_label(time).click();
+            harness.run_steps(4);
+            save(&mut harness, time);
+        }
+        for _ in 0..3 {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+            harness.run_steps(2);
+        }
         harness.get_by_label("Look").click();
         harness.get_by_label("Inspect").click();
         harness.run_steps(3);

@@ -280,3 +280,33 @@ fn one_click_turns_on_a_ramp_that_is_not_used() {
     let undo = harness.state().session.document.history().undo_name().map(str::to_owned);
     assert_eq!(undo.as_deref(), Some("Backlight of smoke"));
 }
+
+#[test]
+fn a_gradient_is_dragged_from_one_ramp_onto_another() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    harness.state_mut().session.document.preset.systems[0].settings.diffuse.backlight = haze::settings::Backlight::Ramp;
+    harness.run_steps(5);
+    let name = harness.state().session.document.preset.systems[0].material.backlight_ramp.clone();
+    let from = harness.get_by_label(&format!("Drag to copy: {name}")).rect().center();
+    let to = strip(&harness).center();
+    let before = folder.recipe();
+    harness.hover_at(from);
+    harness.run_steps(2);
+    harness.drag_at(from);
+    harness.run_steps(2);
+    for share in [0.2, 0.6, 1.0] {
+        harness.hover_at(from + share * (to - from));
+        harness.run_steps(2);
+    }
+    harness.drop_at(to);
+    harness.run_steps(5);
+    let source = haze::builtin::find(haze::builtin::RAMPS, &name).unwrap();
+    let source = RampRecipe::parse(Path::new(""), source.recipe).unwrap();
+    assert_eq!(folder.recipe().rows[0].stops, source.rows[0].stops);
+    assert!(folder.is_baked());
+    assert_eq!(harness.state().session.document.history().undo_name(), Some("Copy a gradient: mine.png"));
+    harness.state_mut().session.undo();
+    harness.run_steps(5);
+    assert_eq!(folder.recipe(), before);
+}

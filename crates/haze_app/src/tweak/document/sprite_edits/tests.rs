@@ -16,9 +16,9 @@ use haze::sprite::Sprite;
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
 
 use super::sprite_source::recipe_of_built_in;
-use crate::tweak::document::light_angles::Angles;
 use crate::tweak::window::Window;
 use crate::tweak::window::testing::{brightness, picture, window};
+use haze_author::light_angles::Angles;
 
 const LONG: Duration = Duration::from_secs(30);
 

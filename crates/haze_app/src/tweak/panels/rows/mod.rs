@@ -1,7 +1,6 @@
 //! One row of a panel: mark, name, control.
 
 pub mod color_popup;
-mod color_temperature;
 pub mod copy_icon;
 mod curve_editor;
 pub mod icon_button;

@@ -3,10 +3,10 @@
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2};
 use haze::{MaterialAssets, Settings};
 
-use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles};
 use crate::tweak::panels::rows::icon_button::{self, Icon};
 use crate::tweak::session::sprite_preview::{SpritePreview, View};
 use crate::tweak::session::sprite_view::{SPRITE_CHANNELS, SpriteChannel, SpriteView};
+use haze_author::light_angles::{Angles, MAX_ELEVATION, from_angles};
 
 /// Largest side of the image in points and in pixels. The image is small, because the CPU draws it.
 const SIDE: f32 = 300.0;

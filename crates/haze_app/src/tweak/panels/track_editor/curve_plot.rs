@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use eframe::egui::{self, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2};
+use eframe::egui::{self, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, pos2};
 use haze::preset::{KeyValue, Track};
 use haze::settings::{FieldValue, field_values};
 
@@ -21,8 +21,16 @@ const STEP: f32 = 3.0;
 const COMPONENTS: [Color32; 3] =
     [Color32::from_rgb(226, 82, 82), Color32::from_rgb(104, 178, 62), Color32::from_rgb(86, 140, 236)];
 
-/// Point that is dragged: keyframe, component, and the scale of the plot, which stays meanwhile.
-type Dragged = (usize, usize, RangeInclusive<f32>);
+/// Point that is pressed or dragged.
+#[derive(Clone)]
+struct Dragged {
+    key: usize,
+    component: usize,
+    /// Scale of the plot, which stays meanwhile.
+    span: RangeInclusive<f32>,
+    /// From the pointer to the point, when it was pressed.
+    offset: Vec2,
+}
 
 /// Draws the curve of a track and changes it.
 pub fn curve(ui: &mut Ui, session: &mut Session, setting: &str, axis: &TimeAxis, height: f32) {
@@ -41,16 +49,21 @@ pub fn curve(ui: &mut Ui, session: &mut Session, setting: &str, axis: &TimeAxis,
     let dragged_id = response.id.with("dragged");
     let dragged: Option<Dragged> = ui.data(|data| data.get_temp(dragged_id));
     let all = steady.iter().chain(&flickering).chain(track.keys.iter().map(|key| &key.value));
-    let span = dragged.as_ref().map_or_else(|| span(all.flat_map(&numbers)), |(_, _, span)| span.clone());
+    let span = dragged.as_ref().map_or_else(|| span(all.flat_map(&numbers)), |dragged| dragged.span.clone());
     let plot = Plot { rect, axis, span };
     let (pointer, is_pressed) = ui.input(|input| (input.pointer.interact_pos(), input.pointer.primary_down()));
     let begun = pointer.filter(|_| is_pressed && response.is_pointer_button_down_on());
     match begun.and_then(|at| dragged.or_else(|| plot.nearest(&track, at, &numbers))) {
-        Some((key, component, span)) => {
-            if let Some(at) = begun {
-                drag(session, setting, (key, component), (axis.time(at.x), plot.value(at.y)));
+        Some(dragged) => {
+            // A press alone moves nothing.
+            let is_moved = ui.input(|input| {
+                let origin = input.pointer.press_origin();
+                input.pointer.is_decidedly_dragging() && origin != input.pointer.interact_pos()
+            });
+            if let Some(at) = begun.filter(|_| is_moved).map(|at| at + dragged.offset) {
+                drag(session, setting, (dragged.key, dragged.component), (axis.time(at.x), plot.value(at.y)));
             }
-            ui.data_mut(|data| data.insert_temp(dragged_id, (key, component, span)));
+            ui.data_mut(|data| data.insert_temp(dragged_id, dragged));
         }
         None => ui.data_mut(|data| data.remove::<Dragged>(dragged_id)),
     }
@@ -155,10 +168,11 @@ impl Plot<'_> {
     fn nearest(&self, track: &Track, at: Pos2, numbers: &dyn Fn(&KeyValue) -> Vec<f32>) -> Option<Dragged> {
         let points = track.keys.iter().enumerate().flat_map(|(index, key)| {
             let places = numbers(&key.value).into_iter().map(|value| self.place(key.time, value));
-            places.enumerate().map(move |(component, place)| (index, component, place.distance(at))).collect::<Vec<_>>()
+            places.enumerate().map(move |(component, place)| (index, component, place - at)).collect::<Vec<_>>()
         });
-        let nearest = points.min_by(|a, b| a.2.total_cmp(&b.2)).filter(|(.., distance)| *distance <= REACH)?;
-        Some((nearest.0, nearest.1, self.span.clone()))
+        let nearest = points.min_by(|a, b| a.2.length().total_cmp(&b.2.length()));
+        let (key, component, offset) = nearest.filter(|(.., offset)| offset.length() <= REACH)?;
+        Some(Dragged { key, component, span: self.span.clone(), offset })
     }
 
     /// Draws a line for each component.

@@ -44,13 +44,14 @@ pub fn lane(ui: &mut Ui, session: &mut Session, setting: &str, axis: &TimeAxis) 
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
         change = Some(Change::Seek((axis.time(at.x) * 100.0).round() / 100.0));
     }
+    let here = keyframes::key_at(&track, axis.now);
     for (index, key) in track.keys.iter().enumerate() {
         let center = pos2(axis.x(key.time), rect.center().y);
         let place = Rect::from_center_size(center, egui::vec2(2.0 * RADIUS + 3.0, ROW));
         let mark = ui.interact(place, ui.scope_id().with((setting, index)), Sense::click_and_drag());
         let text = format!("Keyframe {} of {title} at {:.2} s", index + 1, key.time);
         mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &text));
-        let is_here = (key.time - track.wrapped(axis.now)).abs() < 1.0e-3;
+        let is_here = here == Some(index);
         let radius = if mark.hovered() || mark.dragged() { RADIUS + 1.5 } else { RADIUS };
         diamond(&painter, center, radius, color(), is_here || mark.dragged());
         if let Some(at) = mark.interact_pointer_pos().filter(|_| mark.dragged()) {

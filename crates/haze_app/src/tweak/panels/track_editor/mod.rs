@@ -2,13 +2,13 @@
 
 mod curve_plot;
 mod lane;
+mod ruler;
 mod time_axis;
 mod track_options;
 
 use eframe::egui::{self, Ui};
 
 use super::rows::key_mark;
-use crate::tweak::document::keyframes::key_at;
 use crate::tweak::document::preset_diff::setting_title;
 use crate::tweak::session::Session;
 use lane::ROW;
@@ -26,7 +26,7 @@ const NAMES: f32 = 236.0;
 /// Returns the height that shows all tracks.
 pub fn filled_height(session: &Session) -> f32 {
     let curve = if session.view.tracks.selected.is_some() { CURVE + GAP } else { 0.0 };
-    session.document.preset.animation.len() as f32 * (ROW + GAP) + curve + MARGINS
+    session.document.preset.animation.len() as f32 * (ROW + GAP) + curve + ruler::HEIGHT + GAP + MARGINS
 }
 
 /// Draws the tracks.
@@ -35,11 +35,12 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     let settings: Vec<_> = session.document.preset.animation.iter().map(|track| track.setting.clone()).collect();
     let selected = session.view.tracks.selected.clone().filter(|selected| settings.contains(selected));
     session.view.tracks.selected = selected;
+    // Beside the scroll bar.
+    let width = ui.available_width() - ui.spacing().scroll.bar_width - 4.0;
+    let axis = TimeAxis::new(ui.cursor().left() + NAMES, (width - NAMES).max(40.0), session);
+    ruler::ruler(ui, session, &axis);
     let area = egui::ScrollArea::vertical().id_salt("tracks").auto_shrink(false).min_scrolled_height(0.0);
     area.show(ui, |ui| {
-        // Beside the scroll bar.
-        let width = ui.available_width() - ui.spacing().scroll.bar_width - 4.0;
-        let axis = TimeAxis::new(ui.cursor().left() + NAMES, (width - NAMES).max(40.0), session);
         for setting in &settings {
             ui.horizontal(|ui| {
                 name(ui, session, setting);
@@ -61,8 +62,7 @@ fn name(ui: &mut Ui, session: &mut Session, setting: &str) {
     ui.spacing_mut().item_spacing.x = 0.0;
     let (preset, time) = (&session.document.preset, session.playback.time);
     let title = setting_title(preset, setting);
-    let here = preset.animation.iter().find(|track| track.setting == setting).and_then(|track| key_at(track, time));
-    let state = if here.is_some() { key_mark::KeyState::Here } else { key_mark::KeyState::Elsewhere };
+    let state = key_mark::KeyMarks::new(preset, time).of(setting).state;
     let is_selected = session.view.tracks.selected.as_deref() == Some(setting);
     let button = egui::Button::selectable(is_selected, &title).truncate().right_text("");
     let button =

@@ -251,3 +251,65 @@ fn nothing_is_clipped_in_the_smallest_window() {
     assert!(lane.right() <= size.x && lane.top() >= picture.bottom(), "{lane} {picture}");
     assert!(picture.height() > 80.0, "{picture}");
 }
+
+fn curve(harness: &Harness<'_, Window>) -> Rect {
+    harness.get_by_label_contains("Curve of lights[0].intensity").rect()
+}
+
+#[test]
+fn a_press_on_a_point_of_the_curve_moves_nothing_until_it_is_dragged() {
+    let mut harness = rising();
+    harness.state_mut().session.view.tracks.select(INTENSITY);
+    harness.run_steps(4);
+    let before = preset(&harness).clone();
+    let (key, plot) = (keyframe(&harness, 2).center(), curve(&harness));
+    // A few points beside the mark, and within its reach. The highest value has a margin of 0.08 of the range above it.
+    let point = pos2(key.x - 3.0, plot.top() + plot.height() * 0.08 / 1.16 + 2.0);
+    harness.hover_at(point);
+    harness.run_steps(2);
+    harness.event(egui_button(point, PointerButton::Primary, true));
+    harness.run_steps(3);
+    assert_eq!(*preset(&harness), before);
+    // The point keeps its distance from the pointer.
+    let to = point + Vec2::new(0.0, 30.0);
+    harness.event(eframe::egui::Event::PointerMoved(to));
+    harness.run_steps(3);
+    harness.event(egui_button(to, PointerButton::Primary, false));
+    harness.run_steps(3);
+    let keys = &track(&harness, INTENSITY).unwrap().keys;
+    assert!((keys[1].time - 4.0).abs() < 0.011, "{keys:?}");
+    let KeyValue::Number(value) = keys[1].value else { unreachable!() };
+    let expected = 50.0 - 30.0 / plot.height() * 1.16 * 40.0;
+    assert!((value - expected).abs() < 0.3, "{value} {expected}");
+}
+
+#[test]
+fn seconds_are_written_along_the_ruler_and_a_click_goes_there() {
+    let mut harness = rising();
+    let ruler = harness.get_by_label("Time ruler").rect();
+    assert!(ruler.bottom() <= keyframe(&harness, 1).top() + 1.0, "{ruler}");
+    let place = pos2(keyframe(&harness, 2).center().x, ruler.center().y);
+    click_at(&mut harness, place, PointerButton::Primary);
+    assert!((harness.state().session.playback.time - 4.0).abs() < 0.02);
+    let axis = |end: f32, width: f32| {
+        let mut session = crate::tweak::session::Session::open(std::path::Path::new("column"), None).unwrap();
+        session.playback.range = 0.0..=end;
+        super::TimeAxis::new(0.0, width, &session).labels(50.0)
+    };
+    assert_eq!(axis(10.0, 516.0), (vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0], 0));
+    let (times, decimals) = axis(1.0, 266.0);
+    assert_eq!((times.len(), decimals), (6, 1));
+}
+
+#[test]
+fn a_track_that_only_flickers_has_no_keyframes_elsewhere() {
+    use crate::tweak::panels::rows::key_mark::{KeyMarks, KeyState};
+    let mut harness = rising();
+    let session = &mut harness.state_mut().session;
+    session.document.preset.animation[0].flicker.amount = 0.5;
+    session.document.preset.animation[0].keys.clear();
+    assert_eq!(KeyMarks::new(&session.document.preset, 2.0).of(INTENSITY).state, KeyState::None);
+    harness.run_steps(4);
+    // Its diamond adds the first one.
+    assert!(harness.query_all_by_label_contains("Add Keyframe at 2.00 s: Intensity").next().is_some());
+}

@@ -35,6 +35,18 @@ impl TimeAxis {
         self.range.start() + share * (self.range.end() - self.range.start())
     }
 
+    /// Returns the times of labels, at least `gap` points apart, and the number of their decimals.
+    pub fn labels(&self, gap: f32) -> (Vec<f32>, usize) {
+        let seconds_per_point = (self.range.end() - self.range.start()) / (self.width - 2.0 * MARGIN).max(1.0);
+        let least = (gap * seconds_per_point).max(1.0e-3);
+        let power = 10.0_f32.powf(least.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|times| times * power).into_iter().find(|step| *step >= least * 0.999);
+        let step = step.unwrap_or(10.0 * power);
+        let (first, last) = ((self.range.start() / step).ceil() as i64, (self.range.end() / step).floor() as i64);
+        let decimals = (-step.log10().floor()).max(0.0) as usize;
+        ((first..=last.min(first + 1000)).map(|index| index as f32 * step).collect(), decimals)
+    }
+
     pub fn end(&self) -> f32 {
         *self.range.end()
     }

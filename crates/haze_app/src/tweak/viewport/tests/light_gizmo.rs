@@ -178,3 +178,36 @@ fn a_light_dragged_within_one_long_frame_ends_under_the_pointer() {
     assert!(projection(&harness).project(after).unwrap().distance(to) < 1.0, "{after}");
     assert_eq!(undo_name(&harness).as_deref(), Some("Position of Point 1"));
 }
+
+#[test]
+fn escape_during_a_drag_leaves_no_keyframe() {
+    let mut harness = lit(Light::default());
+    let session = &mut harness.state_mut().session;
+    let own = session.document.preset.lights[0].position;
+    for time in [0.0, 4.0] {
+        let value = KeyValue::Vector(own + Vec3::X * 0.2 * time);
+        set_key(&mut session.document.preset, "lights[0].position", time, value);
+    }
+    session.track(false);
+    session.playback.time = 2.0;
+    harness.run();
+    let before = harness.state().session.document.preset.clone();
+    let shown = harness.state().session.preset_now();
+    let shapes = handles(&shown.lights[0], &projection(&harness));
+    let Shape::Square(from) = shapes.into_iter().find(|shape| shape.0 == Handle::Centre).unwrap().1 else {
+        unreachable!()
+    };
+    harness.hover_at(from);
+    harness.run_steps(2);
+    harness.drag_at(from);
+    harness.run_steps(2);
+    harness.hover_at(from + vec2(50.0, -30.0));
+    harness.run_steps(3);
+    assert_eq!(harness.state().session.document.preset.animation[0].keys.len(), 3);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    harness.drop_at(from + vec2(50.0, -30.0));
+    harness.run_steps(3);
+    assert_eq!(harness.state().session.document.preset, before);
+    assert!((harness.state().session.playback.time - 2.0).abs() < 1e-6);
+}

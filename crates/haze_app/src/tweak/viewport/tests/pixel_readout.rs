@@ -137,6 +137,8 @@ fn pointing_at_a_ramp_with_two_axes_highlights_the_smoke_that_samples_it() {
         let mut harness = window(preset, SIZE, Theme::Dark);
         harness.get_by_label("Ramps").click();
         wait_for(&mut harness, |harness| harness.state().session.inspect.survey.is_some());
+        // The lookups of the image have arrived after the tab was drawn; their legend comes in the next frame.
+        harness.run_steps(2);
         harness.get_by_label(name).scroll_to_me();
         harness.run_steps(20);
         let viewport = harness.get_by_label("viewport").rect();
