@@ -22,6 +22,13 @@ pub fn six_way_hemisphere(positive: Vec3, negative: Vec3, axis: Vec3) -> f32 {
     0.5 * ((positive + negative).dot(Vec3::ONE) + axis.dot(positive - negative))
 }
 
+/// Light of the hemispheres above and below that is closest to that of an environment, of which a white matte surface with
+/// the normal n shows `mean` + `slope`·cos(n, up), and more that varies faster over n: the mean-square error over all
+/// normals is least. Light from one side is shared by both.
+pub fn hemisphere_light(mean: Vec3, slope: Vec3) -> [Vec3; 2] {
+    [(mean + slope).max(Vec3::ZERO), (mean - slope).max(Vec3::ZERO)]
+}
+
 /// Lookup position in the shadow ramp for light from a hemisphere: as from the side. `openness`: mean of 2^(-optical depth).
 pub fn openness_position(openness: f32) -> Vec2 {
     Vec2::new(saturate(1.0 - openness), 0.5)

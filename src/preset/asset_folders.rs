@@ -7,11 +7,11 @@ use super::sequence::exists;
 use crate::assets::{builtin, directory};
 use crate::error::Error;
 
-/// Folder of the preset's file, followed by one that presets share.
+/// Folder of the preset's file, followed by those that presets share.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AssetFolders {
     own: PathBuf,
-    shared: Option<PathBuf>,
+    shared: Vec<PathBuf>,
 }
 
 /// Images that come with the program. Their names have no extension.
@@ -31,12 +31,13 @@ impl AssetFolders {
 
     /// One folder alone. The empty path is the working directory.
     pub fn at(folder: &Path) -> Self {
-        Self { own: folder.into(), shared: None }
+        Self { own: folder.into(), shared: Vec::new() }
     }
 
-    /// Adds a folder that presets share, to be searched last.
-    pub fn with_shared(self, shared: Option<PathBuf>) -> Self {
-        Self { shared, ..self }
+    /// Adds folders that presets share, to be searched last.
+    pub fn with_shared(mut self, shared: impl IntoIterator<Item = PathBuf>) -> Self {
+        self.shared.extend(shared);
+        self
     }
 
     /// All paths that a file may have. The first that exists is used.
@@ -54,7 +55,7 @@ impl AssetFolders {
     }
 
     fn all(&self) -> impl Iterator<Item = &Path> {
-        std::iter::once(self.own.as_path()).chain(self.shared.as_deref())
+        std::iter::once(&self.own).chain(&self.shared).map(PathBuf::as_path)
     }
 
     fn missing(&self, file: &Path) -> Error {

@@ -18,6 +18,8 @@ pub use animation::{Ease, Flicker, KeyValue, Keyframe, MAX_KEYFRAMES, Track};
 pub use asset_folders::AssetFolders;
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};
+#[doc(hidden)]
+pub use environment::{backdrop_file_path, backdrop_kind};
 pub use image_cache::{ImageCache, MAX_IMAGE_BYTES};
 pub use image_source::ImageSource;
 pub use material_names::MaterialNames;

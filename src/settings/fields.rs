@@ -46,6 +46,29 @@ pub enum ImageRole {
     Noise,
 }
 
+/// Kind of a file that is shown around the smoke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
+pub enum BackdropKind {
+    /// glTF scene.
+    Scene,
+    /// Panorama of the sky.
+    Sky,
+}
+
+impl BackdropKind {
+    /// Every kind.
+    pub const ALL: [Self; 2] = [Self::Scene, Self::Sky];
+
+    /// Endings of its files.
+    pub const fn endings(self) -> [&'static str; 2] {
+        match self {
+            Self::Scene => ["glb", "gltf"],
+            Self::Sky => ["hdr", "exr"],
+        }
+    }
+}
+
 /// Visitor of the fields of a settings struct. Fields that are not numbers are ignored by default.
 pub trait FieldVisitor {
     /// Real number. `unit` is "" for a ratio.
@@ -82,6 +105,9 @@ pub trait FieldVisitor {
 
     /// Name of a particle file, or of one file per frame; empty for none.
     fn particles(&mut self, _name: &'static str, _value: &mut String) {}
+
+    /// Name of a file around the smoke; empty for none.
+    fn backdrop(&mut self, _name: &'static str, _value: &mut String, _kind: BackdropKind) {}
 
     /// Random seed. Every whole number is valid.
     fn seed(&mut self, _name: &'static str, _value: &mut u32) {}

@@ -29,7 +29,7 @@ pub use assign::set_field;
 pub use choice::choice;
 pub use choice::{Choice, UnknownChoice};
 pub use curve::{Curve, CurveError, MAX_CURVE_POINTS};
-pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
+pub use fields::{BackdropKind, FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Ambient, Backlight, CoverageMode, Diffuse, DiffuseMode, Fire, Lighting, RampFilter, SoftScatter, SoftScatterMode,
     SpecularScatter,

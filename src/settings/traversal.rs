@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::choice::Choice;
 use super::curve::Curve;
-use super::fields::{FieldVisitor, Fields, ImageRole};
+use super::fields::{BackdropKind, FieldVisitor, Fields, ImageRole};
 
 /// Name on the path to a field, and its index if it is in a list.
 pub type PathStep<'a> = (&'a str, Option<usize>);
@@ -181,6 +181,10 @@ impl FieldVisitor for FieldTraversal<'_> {
     }
 
     fn particles(&mut self, name: &'static str, value: &mut String) {
+        self.leaf(name, FieldRef::Text(value));
+    }
+
+    fn backdrop(&mut self, name: &'static str, value: &mut String, _: BackdropKind) {
         self.leaf(name, FieldRef::Text(value));
     }
 

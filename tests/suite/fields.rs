@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use haze::glam::Vec3;
 use haze::preset::{Preset, PresetSystem};
-use haze::settings::{Choice, Curve, FieldVisitor, Fields, ImageRole};
+use haze::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole};
 use haze::{Light, Settings};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
@@ -74,6 +74,9 @@ impl FieldVisitor for VisitedFields {
         self.field(name);
     }
     fn particles(&mut self, name: &'static str, _: &mut String) {
+        self.field(name);
+    }
+    fn backdrop(&mut self, name: &'static str, _: &mut String, _: BackdropKind) {
         self.field(name);
     }
     fn seed(&mut self, name: &'static str, _: &mut u32) {

@@ -6,6 +6,7 @@
 
 mod anchors;
 mod assets;
+mod backdrop;
 mod budget;
 mod column_error;
 mod corpus;

@@ -16,8 +16,10 @@ use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::TextureId;
 use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::texture::GpuImage;
+use haze::formula::ambient::hemisphere_light;
 use haze::wgpu;
 
+use crate::convert;
 use crate::environment::{ExtractedEnvironments, HemisphereLight};
 use crate::extract::ExtractedSmokes;
 
@@ -44,7 +46,9 @@ impl MapLight {
     pub fn hemispheres(&self, up: Vec3) -> HemisphereLight {
         let [x, y, z] = self.slope;
         let slope = x * up.x + y * up.y + z * up.z;
-        HemisphereLight { sky: (self.mean + slope).max(Vec3::ZERO), ground: (self.mean - slope).max(Vec3::ZERO) }
+        let light = hemisphere_light(convert::vec3(self.mean), convert::vec3(slope));
+        let [sky, ground] = light.map(|light| Vec3::from_array(light.to_array()));
+        HemisphereLight { sky, ground }
     }
 }
 

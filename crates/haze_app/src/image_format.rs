@@ -5,6 +5,7 @@ use haze::Error;
 use haze::image::Image;
 use haze::preset::SceneName;
 use haze::settings::DebugView;
+use haze_author::backdrop::Backdrop;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{encoded, exposure, rgba8, tonemap};
 use image::{DynamicImage, ImageBuffer, imageops};
@@ -28,7 +29,11 @@ impl Background {
     /// Returns true if images of a shot have no background.
     pub fn is_transparent(self, shot: &Shot) -> bool {
         match self {
-            Self::Auto => shot.preset.environment.scene == SceneName::Empty && shot.debug_view == DebugView::Final,
+            Self::Auto => {
+                let is_empty =
+                    shot.preset.environment.scene == SceneName::Empty && shot.backdrop == Backdrop::default();
+                is_empty && shot.debug_view == DebugView::Final
+            }
             Self::Scene => false,
             Self::Transparent => true,
         }

@@ -4,8 +4,9 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use haze::preset::{AssetFolders, Preset, image_file_path, particle_file_path};
+use haze::preset::{AssetFolders, Preset, backdrop_file_path, image_file_path, particle_file_path};
 use haze::settings::{FieldVisitor, Fields, ImageRole};
+use haze_author::backdrop::backdrop_names;
 
 /// Returns every path where an image that a preset names may lie.
 pub fn image_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
@@ -17,6 +18,13 @@ pub fn relative_image_paths(preset: &Preset) -> Vec<PathBuf> {
     let mut names = ImageNames(Vec::new());
     preset.clone().visit(&mut names);
     names.0.iter().filter_map(|name| image_file_path(name)).map(Path::to_path_buf).collect()
+}
+
+/// Returns every path where a scene or sky that a preset names may lie.
+pub fn backdrop_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
+    let names = backdrop_names(&preset.environment);
+    let files = names.into_iter().filter_map(|(kind, _, name)| backdrop_file_path(name, kind));
+    files.flat_map(|file| folders.candidate_paths(file)).collect()
 }
 
 /// Returns every particle file that a preset names, and the next file of each sequence, which may be written later.

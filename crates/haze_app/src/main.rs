@@ -2,6 +2,8 @@
 
 #![cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page has no command line"))]
 
+#[cfg(not(target_arch = "wasm32"))]
+mod backdrop_options;
 mod backend;
 #[cfg(not(target_arch = "wasm32"))]
 mod bake_job;

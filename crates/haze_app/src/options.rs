@@ -16,6 +16,7 @@ use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 use image::DynamicImage;
 
+use super::backdrop_options::BackdropArguments;
 use super::backend::Backend;
 use super::inputs::image_paths;
 use super::memory_check::check_memory;
@@ -67,6 +68,8 @@ pub struct ShotArguments {
     pub output: PathBuf,
     #[command(flatten)]
     assets: AssetsArguments,
+    #[command(flatten)]
+    backdrop: BackdropArguments,
     /// Compress more: takes about a second longer, for a file that is a tenth smaller.
     #[arg(long)]
     small: bool,
@@ -147,7 +150,8 @@ impl ShotArguments {
         }
         let shot = self.shot(preset)?;
         let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
-        let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
+        let inputs = pictures.iter().map(PathBuf::as_path).chain(shot.backdrop.files()).chain([self.preset.as_path()]);
+        let mut files = FileChecks::for_inputs(inputs);
         outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))?;
         Ok(shot)
     }
@@ -155,7 +159,8 @@ impl ShotArguments {
     /// Builds a shot of a changed preset.
     pub fn shot(&self, preset: Preset) -> Result<Shot, Error> {
         preset.validate()?;
-        Shot::from_folders(preset, &self.preset, &self.assets.folders(&self.preset)?, self.run.size)
+        let folders = self.assets.folders(&self.preset)?;
+        self.backdrop.apply(preset, |preset| Shot::from_folders(preset, &self.preset, &folders, self.run.size))
     }
 
     /// Effort to compress PNGs.

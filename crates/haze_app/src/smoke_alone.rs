@@ -4,6 +4,7 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use haze::image::Image;
 use haze::preset::SceneName;
+use haze_author::backdrop::Backdrop;
 use haze_demo::shot::Shot;
 
 /// Brightness of the second sky. Far above 1, so that half floats resolve the opacity of bright smoke too.
@@ -13,6 +14,7 @@ const BRIGHT: f32 = 64.0;
 pub fn before_two_skies(shot: &Shot) -> [Shot; 2] {
     [0.0, BRIGHT].map(|light| {
         let mut shot = shot.at_its_time().into_owned();
+        shot.backdrop = Backdrop::default();
         let environment = &mut shot.preset.environment;
         environment.scene = SceneName::Empty;
         (environment.zenith, environment.horizon) = (Vec3::splat(light), Vec3::splat(light));

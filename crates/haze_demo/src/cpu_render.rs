@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 
 use super::ray_caster;
 use super::scene::Scene;
-use super::shadow_views::{ShadowView, casters};
+use super::shadow_views::ShadowView;
 use super::shot::Shot;
 use haze::assets::image::Image;
 use haze::error::Error;
@@ -80,9 +80,8 @@ pub(super) struct ShadowLayers(Vec<(ShadowView, Vec<Image<f32>>)>);
 
 impl ShadowLayers {
     pub fn new(scene: &Scene, views: Vec<ShadowView>) -> Self {
-        let boxes: Vec<_> = casters(&scene.boxes).collect();
         let drawn = |view: ShadowView| {
-            let layers = view.clip_from_world.iter().map(|matrix| view.layer(&boxes, matrix)).collect();
+            let layers = view.clip_from_world.iter().map(|matrix| view.layer(scene, matrix)).collect();
             (view, layers)
         };
         Self(views.into_iter().map(drawn).collect())

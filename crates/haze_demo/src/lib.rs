@@ -1,5 +1,5 @@
-//! Demo scene for the smoke: boxes with procedural materials, lit by the preset's lights. A GPU and a CPU renderer draw
-//! the same image.
+//! Scene for the smoke, lit by the preset's lights: boxes with procedural materials, or an artist's own from a file. A GPU and
+//! a CPU renderer draw the same image.
 
 mod adapter_choice;
 mod address_space;
@@ -11,6 +11,8 @@ pub mod headless;
 pub mod image_metrics;
 mod layer_shots;
 mod layout;
+mod mesh_caster;
+mod mesh_renderer;
 mod occluders;
 mod offscreen_context;
 pub mod offscreen_renderer;
@@ -18,9 +20,11 @@ pub mod particle_scalar;
 pub mod puff_cloud;
 mod ray_caster;
 mod scene;
+mod scene_pipeline;
 mod scene_renderer;
 mod shading;
 mod shadow_views;
 pub mod shot;
 mod texture_readback;
 pub mod tonemap_pass;
+mod uploaded_backdrop;

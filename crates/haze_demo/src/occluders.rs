@@ -113,12 +113,13 @@ mod tests {
     use crate::scene::Scene;
     use haze::assets::noise::{pcg3d, unit};
     use haze::preset::Preset;
+    use haze_author::backdrop::Backdrop;
 
     #[test]
     fn omitting_non_occluders_does_not_change_the_light() {
         for name in ["column", "corridor", "colored_lights"] {
             let preset = Preset::load(name).unwrap();
-            let scene = Scene::new(&preset.environment, &preset.lights);
+            let scene = Scene::new(&preset.environment, &preset.lights, &Backdrop::default());
             let everything =
                 Scene { occluders: Occluders { masks: Image::new(UVec2::ONE, ALL_BOXES) }, ..scene.clone() };
             let (mut points, mut tested) = (0, 0);

@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use super::scene_renderer::{LINEAR_FORMAT, SceneRenderer};
+use super::scene_pipeline::LINEAR_FORMAT;
+use super::scene_renderer::SceneRenderer;
 use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
 use haze::frame::Material;

@@ -8,10 +8,12 @@ use glam::{UVec2, Vec3, Vec4};
 use super::capture::Capture;
 pub use super::offscreen_context::OffscreenContext;
 use super::offscreen_context::UploadedMaterial;
-use super::scene_renderer::{COLOR_FORMAT, DEPTH_FORMAT, SceneTargets, default_view, texture};
+use super::scene_pipeline::{COLOR_FORMAT, DEPTH_FORMAT, default_view, texture};
+use super::scene_renderer::SceneTargets;
 use super::shadow_views::ShadowView;
 use super::shot::{ParticleSource, Shot};
 pub use super::texture_readback::PendingImage;
+use super::uploaded_backdrop::UploadedBackdrop;
 use crate::headless::Headless;
 use haze::assets::image::Image;
 use haze::assets::material_assets::MaterialAssets;
@@ -21,6 +23,7 @@ use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, Shad
 use haze::preset::Environment;
 use haze::settings::DebugView;
 use haze::{Descriptor, LightingChoice, MemoryUse, PathChoice, Renderer, SceneDepthKind, Timing, WarmUp};
+use haze_author::backdrop::Backdrop;
 
 /// Off-screen renderer; see the module's documentation.
 #[derive(Debug)]
@@ -30,12 +33,13 @@ pub struct OffscreenRenderer {
     materials: Vec<Arc<UploadedMaterial>>,
     sized: Option<SizedTargets>,
     shadow_maps: ShadowMaps,
+    backdrop: Option<Arc<UploadedBackdrop>>,
 }
 
 /// Shadow maps of the scene, and what they were drawn of.
 #[derive(Debug, Default)]
 struct ShadowMaps {
-    environment: Option<Environment>,
+    of: Option<(Environment, Backdrop)>,
     maps: Vec<(ShadowView, wgpu::Texture)>,
 }
 
@@ -70,6 +74,7 @@ struct SizedTargets {
 #[derive(Clone, Debug, PartialEq)]
 struct SceneInputs {
     environment: Environment,
+    backdrop: Backdrop,
     lights: Vec<Light>,
     view: View,
     /// Indices of the lights that smoke shades.
@@ -95,6 +100,7 @@ impl OffscreenRenderer {
             materials: Vec::new(),
             sized: None,
             shadow_maps: ShadowMaps::default(),
+            backdrop: None,
         })
     }
 
@@ -126,7 +132,8 @@ impl OffscreenRenderer {
         OffscreenMemory {
             smoke: self.renderer.memory_use(),
             materials: self.materials.iter().map(|uploaded| uploaded.material.memory_use()).sum(),
-            scene: self.sized.as_ref().map_or(0, SizedTargets::bytes),
+            scene: self.sized.as_ref().map_or(0, SizedTargets::bytes)
+                + self.backdrop.as_ref().map_or(0, |backdrop| backdrop.bytes()),
         }
     }
 
@@ -155,17 +162,23 @@ impl OffscreenRenderer {
                 pictures: Default::default(),
             }),
         };
+        let backdrop = match self.backdrop.take() {
+            Some(held) if held.backdrop == shot.backdrop => held,
+            _ => scene.uploaded(&shot.backdrop),
+        };
+        let backdrop = &*self.backdrop.insert(backdrop);
         let view = shot.preset.camera.view(size);
         let views = shot.shadow_views();
         let held = &mut self.shadow_maps;
-        if held.environment != Some(shot.preset.environment) || !held.maps.iter().map(|(view, _)| view).eq(&views) {
+        let of = Some((shot.preset.environment.clone(), shot.backdrop.clone()));
+        if held.of != of || !held.maps.iter().map(|(view, _)| view).eq(&views) {
             let of_scene = shot.scene();
             let draw = |view: ShadowView| {
-                let map = scene.shadow_map(encoder, &of_scene, &view);
+                let map = scene.shadow_map(encoder, &of_scene, &view, backdrop);
                 (view, map)
             };
             held.maps = views.into_iter().map(draw).collect();
-            held.environment = Some(shot.preset.environment);
+            held.of = of;
         }
         let sources = shot.sources();
         let systems: Vec<_> = (0..)
@@ -200,15 +213,15 @@ impl OffscreenRenderer {
             ..FrameInput::new(view, scene_depth)
         };
         self.renderer.cast_shadow(encoder, &frame)?;
-        let environment = shot.preset.environment;
         let scene_inputs = SceneInputs {
-            environment,
+            environment: shot.preset.environment.clone(),
+            backdrop: shot.backdrop.clone(),
             lights: lights.clone(),
             view,
             shadowed: self.renderer.shadowed_lights().take(LIGHTS_PER_BLOCK).collect(),
         };
         if sized.scene_inputs.as_ref() != Some(&scene_inputs) {
-            scene.record(encoder, &mut sized.targets, &shot.scene(), &view, &scene_inputs.shadowed);
+            scene.record(encoder, &mut sized.targets, &shot.scene(), &view, &scene_inputs.shadowed, backdrop);
             sized.scene_inputs = Some(scene_inputs);
         }
         scene.shade(encoder, &sized.targets, self.renderer.scene_shadow());

@@ -6,6 +6,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::boxes::{SceneBox, Surface, box_interval};
 use super::camera_rays::CameraRays;
+use super::mesh_caster::MeshCaster;
 use super::occluders::{BoxMask, indices};
 use super::scene::{Scene, coefficients};
 use super::shading::{Lit, albedo};
@@ -15,8 +16,12 @@ use haze::frame::View;
 
 /// Renders depth 0..1 at pixel centres.
 pub(crate) fn render_depth(scene: &Scene, view: &View) -> Image<f32> {
-    let caster = RayCaster::new(scene, view);
     let mut depth = Image::new(view.size, 1.0);
+    if let Some(caster) = MeshCaster::new(scene, view) {
+        depth.for_each(|at, texel| *texel = caster.depth(at));
+        return depth;
+    }
+    let caster = RayCaster::new(scene, view);
     depth.for_each(|at, texel| *texel = caster.depth(at));
     depth
 }
@@ -30,6 +35,7 @@ pub(crate) fn render_color(
     through: impl Fn(Vec3, u32) -> Vec3 + Sync,
 ) -> Image<Vec4> {
     let caster = RayCaster::new(scene, view);
+    let mesh = MeshCaster::new(scene, view);
     let coefficients = coefficients(view);
     let mut color = Image::new(view.size, Vec4::ZERO);
     color.for_each(|at, texel| {
@@ -37,7 +43,11 @@ pub(crate) fn render_color(
         let world = caster.rays.eye + caster.rays.at_unit_depth((at.as_vec2() + 0.5) / caster.size) * view_depth;
         let is_sky = view_depth >= SKY_VIEW_DEPTH;
         let through = |light| if is_sky { Vec3::ONE } else { through(world, light) };
-        *texel = caster.color(at, &through).extend(1.0);
+        let color = match &mesh {
+            Some(mesh) => mesh.color(at, &through),
+            None => caster.color(at, &through),
+        };
+        *texel = color.extend(1.0);
     });
     color
 }

@@ -1,24 +1,25 @@
-//! GPU renderer of the demo scene. Three passes: paint (reflectance at 2x2 samples per pixel), depth (depth buffer and
-//! linear view depth at pixel centres), and light. With shadow of smoke, light keeps that of up to three lights apart, and
+//! GPU renderer of the demo scene, or of a scene from a file. Three passes: paint (reflectance at 2x2 samples per pixel), depth
+//! (depth buffer and linear view depth at pixel centres), and light. With shadow of smoke, light keeps that of up to three lights apart, and
 //! a fourth pass, shade, adds what of it comes through the smoke.
+
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use bytemuck::Zeroable as _;
 use glam::UVec2;
 
 use super::boxes::{MAX_BOXES, SceneBox};
+use super::mesh_renderer::MeshPipelines;
 use super::occluders::Occluders;
 use super::scene::{Scene, SceneUniform};
+use super::scene_pipeline::{COLOR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, ScenePipeline, default_view, texture};
 use super::shadow_views::{ShadowView, casters};
+use super::uploaded_backdrop::UploadedBackdrop;
 use haze::formula::depth::SKY_VIEW_DEPTH;
 use haze::formula::uniforms::LightUniform;
 use haze::frame::{MAX_LIGHTS, View};
 use haze::shader;
+use haze_author::backdrop::Backdrop;
 use wgpu::util::DeviceExt as _;
-
-pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a
 /// device.
@@ -41,6 +42,10 @@ pub(crate) struct SceneRenderer {
     shade: wgpu::RenderPipeline,
     /// Writes depth alone, as a light sees it.
     shadow: wgpu::RenderPipeline,
+    sky_sampler: wgpu::Sampler,
+    mesh: OnceLock<Arc<MeshPipelines>>,
+    /// Backdrops that existing renderers have uploaded.
+    backdrops: Mutex<Vec<Weak<UploadedBackdrop>>>,
     pub draws_linear: bool,
 }
 
@@ -55,6 +60,8 @@ pub(crate) struct SceneTargets {
     paint: wgpu::TextureView,
     paint_depth: wgpu::TextureView,
     paint_group: wgpu::BindGroup,
+    /// Normals at 2x2 samples per pixel, and the group of all samples, if the scene is a mesh.
+    mesh_samples: Option<(wgpu::TextureView, wgpu::BindGroup)>,
     /// With shadow of smoke: light of all other lights, and of those with shadow.
     parts: Option<LightParts>,
     /// Of the scene that was recorded last.
@@ -72,7 +79,9 @@ struct LightParts {
 impl SceneTargets {
     pub fn textures(&self) -> impl Iterator<Item = &wgpu::Texture> {
         let parts = self.parts.iter().flat_map(|parts| &parts.views);
+        let normals = self.mesh_samples.iter().map(|(normals, _)| normals);
         let views = [&self.depth, &self.paint, &self.paint_depth].into_iter().chain(&self.linear).chain(parts);
+        let views = views.chain(normals);
         std::iter::once(&self.color).chain(views.map(wgpu::TextureView::texture))
     }
 }
@@ -86,9 +95,13 @@ impl SceneRenderer {
         draws_linear: bool,
         shadow_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let source = shader::compose(concat!(include_str!("scene_materials.wgsl"), include_str!("scene.wgsl")))
-            .unwrap_or_default();
-        let source = source + &shader::scene_shadow_wgsl(2);
+        let source = shader::compose(concat!(
+            include_str!("scene_materials.wgsl"),
+            include_str!("scene.wgsl"),
+            include_str!("scene_boxes.wgsl"),
+            include_str!("scene_shade.wgsl")
+        ));
+        let source = source.unwrap_or_default() + &shader::scene_shadow_wgsl(2);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("demo scene"),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -113,13 +126,16 @@ impl SceneRenderer {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("demo scene"), entries })
         };
         let masks = texture(wgpu::TextureSampleType::Uint);
-        let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform), entry(3, masks)]);
+        let filterable = texture(wgpu::TextureSampleType::Float { filterable: true });
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let buffers = [entry(0, uniform), entry(1, uniform), entry(2, uniform)];
+        let scene_layout =
+            layout(&[&buffers[..], &[entry(3, masks), entry(4, filterable), entry(5, sampler)]].concat());
         let paint_layout = layout(&[entry(0, texture(wgpu::TextureSampleType::Float { filterable: false }))]);
         let unfilterable = texture(wgpu::TextureSampleType::Float { filterable: false });
         let parts_layout = layout(&[1, 2, 3, 4, 5].map(|binding| entry(binding, unfilterable)));
         let pipeline = |vertex, fragment, groups: &[_], depth| {
-            let fragment: Option<(&str, &[_])> = fragment;
-            scene_pipeline(&module, device, groups, vertex, fragment, depth)
+            ScenePipeline { groups, vertex, buffers: &[], fragment, depth }.create(device, &module)
         };
         let color = [COLOR_FORMAT; 4];
         let linear = draws_linear.then_some(("linear_fragment", &[LINEAR_FORMAT][..]));
@@ -136,6 +152,15 @@ impl SceneRenderer {
             parts_layout,
             scene_layout,
             paint_layout,
+            sky_sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("demo scene sky"),
+                address_mode_u: wgpu::AddressMode::Repeat,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+            mesh: OnceLock::new(),
+            backdrops: Mutex::default(),
             draws_linear,
             device: device.clone(),
             queue: queue.clone(),
@@ -167,6 +192,7 @@ impl SceneRenderer {
                 entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&paint) }],
             }),
             paint,
+            mesh_samples: None,
             parts: None,
             scene_group: None,
             buffers: [size_of::<SceneUniform>(), boxes, lights].map(buffer),
@@ -175,7 +201,7 @@ impl SceneRenderer {
 
     /// Records all passes of a scene but shade. At most once per targets and submission, since the uniforms are written by
     /// the queue. `apart`: indices of at most three lights that smoke shades; with any, [`shade`](Self::shade) completes
-    /// the scene.
+    /// the scene. `backdrop`: that of the scene, uploaded.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -183,6 +209,7 @@ impl SceneRenderer {
         scene: &Scene,
         view: &View,
         apart: &[usize],
+        backdrop: &UploadedBackdrop,
     ) {
         let uniform = scene.uniform(view, apart);
         let mut boxes = [SceneBox::default(); MAX_BOXES];
@@ -195,28 +222,38 @@ impl SceneRenderer {
             self.queue.write_buffer(buffer, 0, bytes);
         }
         let occluders = default_view(&self.occluder_texture(&scene.occluders));
-        let buffer = |binding: usize| wgpu::BindGroupEntry {
-            binding: binding as u32,
-            resource: targets.buffers[binding].as_entire_binding(),
+        let [scene_buffer, boxes, lights] = &targets.buffers;
+        let group = self.scene_group([scene_buffer, boxes, lights], &occluders, &backdrop.sky);
+        let mesh = backdrop.mesh.as_ref();
+        targets.mesh_samples = match (mesh, targets.mesh_samples.take()) {
+            (Some((pipelines, _)), None) => Some(self.mesh_samples(pipelines, targets)),
+            (Some(_), held) => held,
+            (None, _) => None,
         };
-        let masks = wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&occluders) };
-        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("demo scene"),
-            layout: &self.scene_layout,
-            entries: &[buffer(0), buffer(1), buffer(2), masks],
-        });
         let count = scene.boxes.len() as u32;
         {
-            let mut pass = begin_pass(encoder, &[&targets.paint], NO_BOX, Some(&targets.paint_depth));
+            let normals = targets.mesh_samples.as_ref().map(|(normals, _)| normals);
+            let views: Vec<_> = std::iter::once(&targets.paint).chain(normals).collect();
+            let mut pass = begin_pass(encoder, &views, NO_BOX, Some(&targets.paint_depth));
             pass.set_bind_group(0, &group, &[]);
-            pass.set_pipeline(&self.paint);
-            pass.draw(0..36, 0..count);
+            if let Some((pipelines, mesh)) = mesh {
+                pass.set_pipeline(&pipelines.paint);
+                mesh.draw(&mut pass);
+            } else {
+                pass.set_pipeline(&self.paint);
+                pass.draw(0..36, 0..count);
+            }
         }
         {
             let mut pass = begin_pass(encoder, targets.linear.as_ref().as_slice(), NO_SURFACE, Some(&targets.depth));
             pass.set_bind_group(0, &group, &[]);
-            pass.set_pipeline(&self.depth);
-            pass.draw(0..36, 0..count);
+            if let Some((pipelines, mesh)) = mesh {
+                pass.set_pipeline(&pipelines.depth);
+                mesh.draw(&mut pass);
+            } else {
+                pass.set_pipeline(&self.depth);
+                pass.draw(0..36, 0..count);
+            }
         }
         targets.parts = match targets.parts.take() {
             _ if apart.is_empty() => None,
@@ -224,13 +261,22 @@ impl SceneRenderer {
         };
         {
             let color = default_view(&targets.color);
+            let [light, light_parts] = match mesh {
+                Some((pipelines, _)) => [&pipelines.light, &pipelines.light_parts],
+                None => [&self.light, &self.light_parts],
+            };
             let (views, pipeline) = match &targets.parts {
-                Some(parts) => (parts.views.each_ref().to_vec(), &self.light_parts),
-                None => (vec![&color], &self.light),
+                Some(parts) => (parts.views.each_ref().to_vec(), light_parts),
+                None => (vec![&color], light),
             };
             let mut pass = begin_pass(encoder, &views, wgpu::Color::BLACK, None);
             pass.set_bind_group(0, &group, &[]);
-            pass.set_bind_group(1, &targets.paint_group, &[]);
+            if let Some(((_, samples), (_, mesh))) = targets.mesh_samples.as_ref().zip(mesh) {
+                pass.set_bind_group(1, samples, &[]);
+                pass.set_bind_group(2, mesh.hierarchy(), &[]);
+            } else {
+                pass.set_bind_group(1, &targets.paint_group, &[]);
+            }
             pass.set_pipeline(pipeline);
             pass.draw(0..3, 0..1);
         }
@@ -250,7 +296,13 @@ impl SceneRenderer {
     }
 
     /// Draws the scene as a light sees it, a layer per matrix.
-    pub fn shadow_map(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene, view: &ShadowView) -> wgpu::Texture {
+    pub fn shadow_map(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        view: &ShadowView,
+        backdrop: &UploadedBackdrop,
+    ) -> wgpu::Texture {
         let mut boxes = [SceneBox::default(); MAX_BOXES];
         let mut count = 0;
         for (slot, caster) in boxes.iter_mut().zip(casters(&scene.boxes)) {
@@ -277,17 +329,11 @@ impl SceneRenderer {
             view_formats: &[],
         });
         for (layer, matrix) in (0..).zip(&view.clip_from_world) {
-            let uniform = SceneUniform { clip_from_world: *matrix, box_count: count, ..SceneUniform::zeroed() };
+            let mesh_scale = scene.environment.scene_scale;
+            let uniform =
+                SceneUniform { clip_from_world: *matrix, box_count: count, mesh_scale, ..SceneUniform::zeroed() };
             let uniform = buffer(bytemuck::bytes_of(&uniform));
-            let bound = [&uniform, &boxes, &lights].map(wgpu::Buffer::as_entire_binding).into_iter();
-            let resources = bound.chain([wgpu::BindingResource::TextureView(&masks)]);
-            let entries: Vec<_> =
-                (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("demo shadow map"),
-                layout: &self.scene_layout,
-                entries: &entries,
-            });
+            let group = self.scene_group([&uniform, &boxes, &lights], &masks, &backdrop.sky);
             let of_layer = map.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
                 base_array_layer: layer,
@@ -296,10 +342,59 @@ impl SceneRenderer {
             });
             let mut pass = begin_pass(encoder, &[], wgpu::Color::BLACK, Some(&of_layer));
             pass.set_bind_group(0, &group, &[]);
-            pass.set_pipeline(&self.shadow);
-            pass.draw(0..36, 0..count);
+            if let Some((pipelines, mesh)) = &backdrop.mesh {
+                pass.set_pipeline(&pipelines.shadow);
+                mesh.draw(&mut pass);
+            } else {
+                pass.set_pipeline(&self.shadow);
+                pass.draw(0..36, 0..count);
+            }
         }
         map
+    }
+
+    /// Uploads a backdrop, or returns what another renderer of the device has uploaded of it.
+    pub fn uploaded(&self, backdrop: &Backdrop) -> Arc<UploadedBackdrop> {
+        let mut backdrops = self.backdrops.lock().unwrap_or_else(PoisonError::into_inner);
+        backdrops.retain(|uploaded| uploaded.strong_count() > 0);
+        if let Some(uploaded) = backdrops.iter().filter_map(Weak::upgrade).find(|one| one.backdrop == *backdrop) {
+            return uploaded;
+        }
+        let pipelines = || {
+            let compile = || Arc::new(MeshPipelines::new(&self.device, &self.scene_layout, self.draws_linear));
+            self.mesh.get_or_init(compile).clone()
+        };
+        let uploaded = Arc::new(UploadedBackdrop::new(&self.device, &self.queue, backdrop, pipelines));
+        backdrops.push(Arc::downgrade(&uploaded));
+        uploaded
+    }
+
+    /// Group 0. `buffers`: scene, boxes, lights.
+    fn scene_group(
+        &self,
+        buffers: [&wgpu::Buffer; 3],
+        masks: &wgpu::TextureView,
+        sky: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain([
+            wgpu::BindingResource::TextureView(masks),
+            wgpu::BindingResource::TextureView(sky),
+            wgpu::BindingResource::Sampler(&self.sky_sampler),
+        ]);
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("demo scene"),
+            layout: &self.scene_layout,
+            entries: &entries,
+        })
+    }
+
+    fn mesh_samples(&self, pipelines: &MeshPipelines, targets: &SceneTargets) -> (wgpu::TextureView, wgpu::BindGroup) {
+        let size = UVec2::new(targets.color.width(), targets.color.height());
+        let normals = default_view(&texture(&self.device, "demo scene normals", size * 2, COLOR_FORMAT));
+        let group = pipelines.samples(&self.device, [&targets.paint, &normals, &targets.paint_depth]);
+        (normals, group)
     }
 
     fn light_parts(&self, targets: &SceneTargets) -> LightParts {
@@ -335,73 +430,6 @@ impl SceneRenderer {
         self.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&masks.texels), rows, size);
         texture
     }
-}
-
-/// Creates a pipeline from entry points of the scene's shader. `fragment` is an entry point with the formats it writes;
-/// `depth`: tests and writes the depth buffer.
-fn scene_pipeline(
-    module: &wgpu::ShaderModule,
-    device: &wgpu::Device,
-    groups: &[Option<&wgpu::BindGroupLayout>],
-    vertex: &str,
-    fragment: Option<(&str, &[wgpu::TextureFormat])>,
-    depth: bool,
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("demo scene"),
-        bind_group_layouts: groups,
-        immediate_size: 0,
-    });
-    let targets: Vec<_> =
-        fragment.iter().flat_map(|(_, formats)| *formats).map(|&format| Some(format.into())).collect();
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("demo scene"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: depth.then(|| wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::LessEqual),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: fragment.map(|(entry_point, _)| wgpu::FragmentState {
-            module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
-}
-
-/// Creates a texture that can be rendered to, sampled and copied.
-pub(crate) fn texture(device: &wgpu::Device, label: &str, size: UVec2, format: wgpu::TextureFormat) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
-}
-
-pub(crate) fn default_view(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// Clear value of paint. `NO_BOX` in scene.wgsl.

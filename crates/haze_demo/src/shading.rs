@@ -155,18 +155,10 @@ impl Scene {
         mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH))
     }
 
-    /// Returns the radiance of the sky in a direction.
-    pub fn sky(&self, direction: Vec3) -> Vec3 {
-        let up = saturate(direction.y);
-        self.environment.horizon.lerp(self.environment.zenith, 1.0 - (1.0 - up).powi(3))
-    }
-
     /// Returns the light at a point of a box. `pixel` is the width of a pixel there, metres. `through`: share of each light
     /// that comes through the smoke.
     pub fn irradiance(&self, world: Vec3, normal: Vec3, pixel: f32, through: &impl Fn(u32) -> Vec3) -> Lit {
-        let sky = self.environment.horizon.lerp(self.environment.zenith, 0.5);
-        let ambient = self.environment.ground.lerp(sky, normal.y * 0.5 + 0.5);
-        let unshaded = Lit::even(ambient * self.ambient_visibility(world, normal));
+        let unshaded = Lit::even(self.ambient_light(normal) * self.ambient_visibility(world, normal));
         (0..).zip(&self.lights).fold(unshaded, |lit, (index, light)| {
             let direct = self.direct(index, light, world, normal, pixel);
             Lit { full: lit.full + direct, shaded: lit.shaded + direct * through(index) }

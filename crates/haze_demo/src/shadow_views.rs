@@ -6,6 +6,7 @@ use glam::camera::rh::view::look_at_mat4;
 use glam::{Mat4, UVec2, Vec3, vec3};
 
 use super::boxes::{SceneBox, Surface, box_interval};
+use super::scene::Scene;
 use haze::assets::image::Image;
 use haze::frame::{Light, LightKind, ShadowProjection};
 
@@ -13,7 +14,9 @@ use haze::frame::{Light, LightKind, ShadowProjection};
 const MAX_MAPS: usize = 8;
 /// Half the side of the square that a sun's map covers, and the half depth, metres.
 const SUN_REACH: f32 = 16.0;
-/// Middle of the scene.
+/// Half the side of the square that a sun's map covers of a mesh at most, metres.
+const MAX_MESH_REACH: f32 = 64.0;
+/// Middle of the demo scene.
 const MIDDLE: Vec3 = vec3(0.0, 2.0, -4.0);
 /// Depth by which a surface must be before a point: a few centimetres of a sun's map.
 const BIAS: f32 = 1.0e-3;
@@ -36,7 +39,9 @@ impl ShadowView {
     }
 
     /// Depths of a layer.
-    pub fn layer(&self, boxes: &[SceneBox], clip_from_world: &Mat4) -> Image<f32> {
+    pub fn layer(&self, scene: &Scene, clip_from_world: &Mat4) -> Image<f32> {
+        let boxes: Vec<_> = casters(&scene.boxes).collect();
+        let scale = scene.environment.scene_scale;
         let world_from_clip = clip_from_world.inverse();
         let mut depths = Image::new(UVec2::splat(self.size), 1.0);
         depths.for_each(|at, depth| {
@@ -49,7 +54,8 @@ impl ShadowView {
                 // A box around the light shows its far side.
                 (enter < leave).then_some(if enter > 0.0 { enter } else { leave }).filter(|distance| *distance > 0.0)
             });
-            let nearest = enter.fold(f32::INFINITY, f32::min);
+            let of_mesh = scene.backdrop.mesh().and_then(|mesh| mesh.nearest((near / scale, ray / scale), (0.0, 1.0)));
+            let nearest = enter.chain(of_mesh.map(|hit| hit.distance)).fold(f32::INFINITY, f32::min);
             if nearest < 1.0 {
                 *depth = clip_from_world.project_point3(near + ray * nearest).z;
             }
@@ -63,8 +69,18 @@ pub(crate) fn casters(boxes: &[SceneBox]) -> impl Iterator<Item = SceneBox> {
     boxes.iter().copied().filter(|b| b.surface != Surface::Glow as u32)
 }
 
-/// Shadow maps of the first lights.
-pub(crate) fn shadow_views(lights: &[Light]) -> Vec<ShadowView> {
+/// Shadow maps of the first lights. `bounds`: corners of the box around a mesh, which a sun's map covers up to
+/// [`MAX_MESH_REACH`] from its middle.
+pub(crate) fn shadow_views(lights: &[Light], bounds: Option<(Vec3, Vec3)>) -> Vec<ShadowView> {
+    let (middle, reach, behind) = match bounds {
+        Some((min, max)) => {
+            let radius = (0.5 * (max - min).length()).max(1.0);
+            // Large grounds: the smoke is rarely far from the origin.
+            let middle = if radius > MAX_MESH_REACH { MIDDLE } else { 0.5 * (min + max) };
+            (middle, radius.min(MAX_MESH_REACH), (middle - 0.5 * (min + max)).length() + radius)
+        }
+        None => (MIDDLE, SUN_REACH, 2.0 * SUN_REACH),
+    };
     let view = |(light, of): (usize, &Light)| {
         let direction = of.direction.normalize_or(Vec3::NEG_Y);
         let looking = |eye, towards: Vec3| {
@@ -74,9 +90,9 @@ pub(crate) fn shadow_views(lights: &[Light]) -> Vec<ShadowView> {
         let lamp = |fov: f32| perspective(fov, 1.0, NEAR, of.range.clamp(1.0, 100.0));
         let (clip_from_world, size) = match of.kind {
             LightKind::Directional => {
-                let eye = MIDDLE - direction * (2.0 * SUN_REACH);
-                let projection = orthographic(-SUN_REACH, SUN_REACH, -SUN_REACH, SUN_REACH, 0.0, 4.0 * SUN_REACH);
-                (vec![projection * looking(eye, direction)], 512)
+                let eye = middle - direction * behind;
+                let projection = orthographic(-reach, reach, -reach, reach, 0.0, 2.0 * behind);
+                (vec![projection * looking(eye, direction)], if bounds.is_some() { 1024 } else { 512 })
             }
             LightKind::Spot => {
                 let fov = (2.0 * of.outer_angle.to_radians()).clamp(0.1, 3.0);

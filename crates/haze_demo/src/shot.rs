@@ -14,6 +14,7 @@ use haze::fire;
 use haze::frame::{EmitterSnapshot, Light, MAX_LIGHTS, Particle};
 use haze::preset::{AssetFolders, Preset, PresetSystem};
 use haze::settings::{DebugView, Settings};
+use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::{self, ParticleFrames, load_particle_files};
 
 /// An emitter with more births than this is evaluated on the GPU.
@@ -38,6 +39,8 @@ pub struct Shot {
     pub materials: Vec<MaterialAssets>,
     /// Particle files, one entry per system. `None` if the system uses its emitter.
     pub caches: Vec<Option<ParticleFrames>>,
+    /// Scene and sky from files.
+    pub backdrop: Backdrop,
     /// Number that takes the place of the particles' tints; see [`Shot::showing`].
     pub shown_scalar: Option<ShownScalar>,
 }
@@ -46,7 +49,7 @@ impl Shot {
     /// Loads a preset, built in or from a file, with its images and particle files.
     ///
     /// # Errors
-    /// As [`Preset::load`], [`Preset::load_materials`] and [`particle_files::load_particle_files`].
+    /// As [`Preset::load`] and [`Shot::new`].
     pub fn load(name_or_path: impl AsRef<Path>, size: UVec2) -> Result<Self, Error> {
         let path = name_or_path.as_ref();
         Self::new(Preset::load(path)?, path, size)
@@ -55,7 +58,7 @@ impl Shot {
     /// Loads the files that a preset names, relative to the folder of `path`.
     ///
     /// # Errors
-    /// As [`Preset::load_materials`] and [`particle_files::load_particle_files`].
+    /// As [`Preset::load_materials`], [`particle_files::load_particle_files`] and [`Backdrop::load`].
     pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
         Self::from_folders(preset, path, &AssetFolders::beside(path), size)
     }
@@ -71,21 +74,33 @@ impl Shot {
             fits.map_err(|error| Error::JsonField { path: path.into(), error })?;
         }
         let caches = load_particle_files(&preset, path, folders)?;
-        Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches, shown_scalar: None })
+        let backdrop = Backdrop::load(&preset, path, folders)?;
+        Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches, backdrop, shown_scalar: None })
     }
 
-    /// The shot at the time of its preset: its settings have the values of their tracks. Renderers call it; call it before
-    /// settings are changed for one image, because tracks replace them.
+    /// The shot at the time of its preset: its settings have the values of their tracks, and the ambient colors of smoke those
+    /// of its sky. Renderers call it; call it before settings are changed for one image, because tracks replace them.
     pub fn at_its_time(&self) -> Cow<'_, Self> {
-        if self.preset.animation.is_empty() {
+        let is_lit_by_sky = self.backdrop.sky.is_some();
+        if self.preset.animation.is_empty() && !is_lit_by_sky {
             return Cow::Borrowed(self);
         }
+        let mut preset = self.preset.at(self.preset.time);
+        if let Some(sky) = self.backdrop.sky.as_ref().filter(|_| preset.environment.sky_light) {
+            // As systems clamp them: colors of a preset go up to 100.
+            let light = sky.light.scaled(preset.environment.sky_exposure.exp2()).hemispheres();
+            let [sky, ground] = light.map(|light| light.min(Vec3::splat(100.0)));
+            for system in &mut preset.systems {
+                (system.settings.ambient.sky_color, system.settings.ambient.ground_color) = (sky, ground);
+            }
+        }
         Cow::Owned(Self {
-            preset: self.preset.at(self.preset.time),
+            preset,
             size: self.size,
             debug_view: self.debug_view,
             materials: self.materials.clone(),
             caches: self.caches.clone(),
+            backdrop: self.backdrop.clone(),
             shown_scalar: self.shown_scalar,
         })
     }
@@ -104,6 +119,7 @@ impl Shot {
             && (self.preset == other.preset || !has_same_exposure && differs_only_in_exposure())
             && self.materials.len() == other.materials.len()
             && self.materials.iter().zip(&other.materials).all(shares)
+            && self.backdrop == other.backdrop
             && ParticleFrames::share_all_memory(&self.caches, &other.caches)
     }
 
@@ -115,7 +131,14 @@ impl Shot {
     /// Shadow maps of the preset's lights, if the scene shades smoke. Fires have none: their lights move in every frame.
     pub(super) fn shadow_views(&self) -> Vec<ShadowView> {
         let by_depth = self.preset.systems.iter().any(|system| system.settings.lights_by_depth());
-        if by_depth { shadow_views(&self.preset.lights) } else { Vec::new() }
+        if by_depth { shadow_views(&self.preset.lights, self.mesh_bounds()) } else { Vec::new() }
+    }
+
+    /// Corners of the box around the scene from a file, metres.
+    fn mesh_bounds(&self) -> Option<(Vec3, Vec3)> {
+        let (min, max) = self.backdrop.mesh()?.bounds()?;
+        let scale = self.preset.environment.scene_scale;
+        Some((min * scale, max * scale))
     }
 
     /// Returns the lights of the preset, followed by those of its fires.
@@ -148,7 +171,7 @@ impl Shot {
     }
 
     pub(super) fn scene(&self) -> Scene {
-        Scene::new(&self.preset.environment, &self.lights())
+        Scene::new(&self.preset.environment, &self.lights(), &self.backdrop)
     }
 
     /// Evaluates the particles and settings of every system, in order.

@@ -16,7 +16,7 @@ pub fn is_decoding() -> bool {
 /// Runs a decoder; `None` if it panicked. Has no effect if the program is built with `panic = "abort"`.
 ///
 /// Only for calls into a decoder: a panic in haze's own code is a mistake that must not look like a damaged file.
-pub(super) fn catch_decoder_panic<T>(decode: impl FnOnce() -> T) -> Option<T> {
+pub fn catch_decoder_panic<T>(decode: impl FnOnce() -> T) -> Option<T> {
     let before = IS_DECODING.replace(true);
     // Everything that the decoder has touched is dropped.
     let decoded = catch_unwind(AssertUnwindSafe(decode));

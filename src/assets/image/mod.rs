@@ -18,7 +18,7 @@ pub use atomic_write::{FileIdentity, write_file, write_state_file};
 pub use baked_png::{encode_baked_png, is_baked_png, write_baked_png};
 pub use color_space::{color_conversion_notes, decode_color_png, read_color_png};
 #[doc(hidden)]
-pub use decoder_panic::is_decoding;
+pub use decoder_panic::{catch_decoder_panic, is_decoding};
 #[doc(hidden)]
 pub use png::{CompressionEffort, is_png, read_file, write_png};
 pub use png::{MAX_BYTES, MAX_SIDE, decode_png, read_png};

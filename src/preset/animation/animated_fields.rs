@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::interpolation::Kind;
 use super::keyframe::KeyValue;
 use super::track::Track;
-use crate::settings::{Choice, Curve, FieldVisitor, Fields, ImageRole, PathStep, field_path};
+use crate::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole, PathStep, field_path};
 
 /// Field that a track can change, or any other.
 pub(super) enum AnimatedField<'a> {
@@ -279,6 +279,10 @@ impl FieldVisitor for Traversal<'_> {
     }
 
     fn particles(&mut self, name: &'static str, _: &mut String) {
+        self.field(name, AnimatedField::Other);
+    }
+
+    fn backdrop(&mut self, name: &'static str, _: &mut String, _: BackdropKind) {
         self.field(name, AnimatedField::Other);
     }
 

@@ -4,6 +4,8 @@
 
 #[path = "cli/animation.rs"]
 mod animation;
+#[path = "cli/backdrop.rs"]
+mod backdrop;
 #[path = "cli/bench.rs"]
 mod bench;
 #[path = "cli/drivers.rs"]

@@ -5,6 +5,7 @@ use std::path::Path;
 use haze::preset::{AssetFolders, ImageCache, ImageSource, MaterialNames, Preset, with_system_context};
 
 use super::role_check::role_warnings;
+use crate::backdrop::Backdrop;
 use crate::particle_files::check_particle_files;
 use haze::error::Error;
 
@@ -31,6 +32,7 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
         warnings.extend(found.into_iter().map(told));
     }
     errors.extend(check_particle_files(preset, path, folders).err().into_iter().flatten());
+    errors.extend(Backdrop::load(preset, path, folders).err());
     (errors, warnings)
 }
 

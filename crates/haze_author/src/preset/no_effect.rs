@@ -38,8 +38,25 @@ const LIGHT_RULES: &[NoEffectRule<Light>] = &[
 
 const NO_SHADOW: &str = "only where a system has a shadow.strength above 0";
 
-const ENVIRONMENT_RULES: &[NoEffectRule<Environment>] =
-    &[rule("only in the yard", |environment, _| environment.scene != SceneName::Yard, &["lamp", "brazier"])];
+const ENVIRONMENT_RULES: &[NoEffectRule<Environment>] = &[
+    rule(
+        "the scene is that of scene_file",
+        |environment, _| !environment.scene_file.is_empty(),
+        &["scene", "lamp", "brazier"],
+    ),
+    rule("only with a scene_file", |environment, _| environment.scene_file.is_empty(), &["scene_scale"]),
+    rule("only in the yard", |environment, _| environment.scene != SceneName::Yard, &["lamp", "brazier"]),
+    rule("the light is that of sky_file", is_lit_by_sky, &["zenith", "horizon", "ground"]),
+    rule(
+        "only with a sky_file",
+        |environment, _| environment.sky_file.is_empty(),
+        &["sky_rotation", "sky_exposure", "sky_light"],
+    ),
+];
+
+fn is_lit_by_sky(environment: &Environment, _: UVec2) -> bool {
+    environment.sky_light && !environment.sky_file.is_empty()
+}
 
 /// Returns the reason why a field has no effect with the other values as they are; `None` if it has an effect. `path` is
 /// formatted as by [`field_path`](haze::settings::field_path); `size` is the picture's, in pixels.
@@ -52,6 +69,10 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
         // The shadow that a system casts may fall on another.
         if field == "settings.shadow.density" && preset.systems.iter().any(|system| system.settings.receives_shadow()) {
             return None;
+        }
+        let is_color = ["settings.ambient.sky_color", "settings.ambient.ground_color"].contains(&field);
+        if is_color && is_lit_by_sky(&preset.environment, size) {
+            return Some("the light is that of environment.sky_file");
         }
         return find_reason(SYSTEM_RULES, preset.systems.get(index)?, field, size);
     }

@@ -12,7 +12,9 @@ use super::tooltips::Tooltips;
 use haze::assets::builtin;
 use haze::frame::Light;
 use haze::preset::{Ease, Flicker, MAX_KEYFRAMES, Preset, PresetSystem};
-use haze::settings::{Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, MAX_CURVE_POINTS, field_values};
+use haze::settings::{
+    BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, MAX_CURVE_POINTS, field_values,
+};
 
 const HEAD: &str = "\
 # Settings
@@ -184,6 +186,10 @@ impl FieldVisitor for SectionWriter<'_> {
 
     fn particles(&mut self, name: &'static str, _: &mut String) {
         self.row(name, "the path of a [CSV or PLY](particles.md)");
+    }
+
+    fn backdrop(&mut self, name: &'static str, _: &mut String, kind: BackdropKind) {
+        self.row(name, format!("the path of a [.{} file](scene.md)", kind.endings().join(" or .")));
     }
 
     fn seed(&mut self, name: &'static str, _: &mut u32) {

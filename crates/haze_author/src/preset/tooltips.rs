@@ -48,7 +48,7 @@ mod tests {
     use super::*;
     use glam::Vec3;
     use haze::preset::{Preset, PresetSystem};
-    use haze::settings::{Choice, FieldVisitor, Fields, ImageRole};
+    use haze::settings::{BackdropKind, Choice, FieldVisitor, Fields, ImageRole};
     use std::ops::RangeInclusive;
 
     /// Visits a preset as a user interface would, and asks for every tooltip.
@@ -101,6 +101,9 @@ mod tests {
             self.row(name);
         }
         fn particles(&mut self, name: &'static str, _: &mut String) {
+            self.row(name);
+        }
+        fn backdrop(&mut self, name: &'static str, _: &mut String, _: BackdropKind) {
             self.row(name);
         }
         fn seed(&mut self, name: &'static str, _: &mut u32) {

@@ -1,9 +1,10 @@
-//! Copies the images, recipes and particle files of a preset when it is saved to another folder.
+//! Copies the images, recipes, particle files, scene and sky of a preset when it is saved to another folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use haze::Error;
-use haze::preset::{AssetFolders, Preset};
+use haze::preset::{AssetFolders, Preset, backdrop_file_path};
+use haze_author::backdrop::{backdrop_names, companion_files};
 
 use crate::inputs::relative_image_paths;
 use crate::recipe_files::recipe_paths;
@@ -18,10 +19,28 @@ pub fn copy_assets(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error>
     let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipe_paths(picture)).collect();
     let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));
     let sources = beside.chain(particle_file_paths(&AssetFolders::at(from), preset));
+    let relative = |source: PathBuf| Some((source.clone(), to.join(source.strip_prefix(from).ok()?)));
+    copy(sources.filter_map(relative))
+}
+
+/// Copies scene and sky of a preset, with the files beside a scene that it names. As [`copy_assets`].
+pub fn copy_backdrop(preset: &Preset, folders: &AssetFolders, to: &Path) -> Result<(), Error> {
+    let mut pairs = Vec::new();
+    for (kind, _, name) in backdrop_names(&preset.environment) {
+        let Some(file) = backdrop_file_path(name, kind) else { continue };
+        let (Ok(source), target) = (folders.find(file), to.join(file)) else { continue };
+        let [from, beside] = [&source, &target].map(|path| path.parent().unwrap_or(Path::new("")).to_owned());
+        let companions = companion_files(&source).into_iter();
+        pairs.extend(companions.filter_map(|file| Some((file.clone(), beside.join(file.strip_prefix(&from).ok()?)))));
+        pairs.push((source, target));
+    }
+    copy(pairs.into_iter())
+}
+
+/// Copies files that exist. If a different file is in the way of one, none is written.
+fn copy(pairs: impl Iterator<Item = (PathBuf, PathBuf)>) -> Result<(), Error> {
     let mut copies = Vec::new();
-    for source in sources.filter(|source| file_io::exists(source)) {
-        let Ok(file) = source.strip_prefix(from) else { continue };
-        let target = to.join(file);
+    for (source, target) in pairs.filter(|(source, _)| file_io::exists(source)) {
         if file_io::is_same(&source, &target) {
             continue;
         }
@@ -45,6 +64,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Error> {
     match () {
         () if ends_with("png") => file_io::read_picture(path),
         () if ends_with("json") => file_io::read_recipe(path),
-        () => file_io::read_particles(path),
+        () if ends_with("csv") || ends_with("ply") => file_io::read_particles(path),
+        () => file_io::read_backdrop(path),
     }
 }

@@ -6,6 +6,7 @@ pub mod history;
 pub mod keyframes;
 pub mod light_defaults;
 pub mod light_roles;
+pub mod loaded_backdrop;
 pub mod loaded_materials;
 pub mod loaded_particles;
 pub mod preset_diff;
@@ -20,10 +21,10 @@ use std::sync::{Arc, Weak};
 use haze::preset::{AssetFolders, Preset};
 use haze::{Error, FieldError, builtin};
 
-use crate::inputs::image_paths;
+use crate::inputs::{backdrop_file_paths, image_paths};
 use crate::tweak::platform::asset_loading::particle_file_paths;
 use crate::tweak::platform::file_io::{self, Stamp};
-use copied_assets::copy_assets;
+use copied_assets::{copy_assets, copy_backdrop};
 use history::History;
 use recipe_steps::{GradientStep, Recipes, Work, step_name_of_work};
 
@@ -55,9 +56,16 @@ pub struct Saving {
     /// Source file, which tells where the images are, and target file.
     from: PathBuf,
     path: PathBuf,
+    /// Folders of scene and sky, in addition to the source's.
+    backdrop_folders: Vec<PathBuf>,
 }
 
 impl Saving {
+    /// Copies scene and sky from these folders too.
+    pub fn with_backdrop_folders(self, backdrop_folders: Vec<PathBuf>) -> Self {
+        Self { backdrop_folders, ..self }
+    }
+
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -65,7 +73,10 @@ impl Saving {
     /// Writes the file. If it goes to another folder, the images that the preset names are copied there.
     pub fn write(&self) -> Result<(), Error> {
         let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
-        copy_assets(&self.preset, &folder(&self.from), &folder(&self.path))?;
+        let target = folder(&self.path);
+        copy_assets(&self.preset, &folder(&self.from), &target)?;
+        let folders = AssetFolders::beside(&self.from).with_shared(self.backdrop_folders.clone());
+        copy_backdrop(&self.preset, &folders, &target)?;
         file_io::write(&self.path, self.text.as_bytes())
     }
 }
@@ -119,7 +130,8 @@ impl Document {
     pub fn files(&self, folders: &AssetFolders) -> Vec<PathBuf> {
         let own = (!self.is_built_in()).then(|| self.path.clone());
         let pictures = image_paths(folders, &self.preset);
-        own.into_iter().chain(pictures).chain(particle_file_paths(folders, &self.preset)).collect()
+        let backdrop = backdrop_file_paths(folders, &self.preset);
+        own.into_iter().chain(pictures).chain(particle_file_paths(folders, &self.preset)).chain(backdrop).collect()
     }
 
     /// Returns true if the document is a built-in preset, without a file.
@@ -164,7 +176,13 @@ impl Document {
         self.preset.validate()?;
         let text = Arc::new(self.preset.to_text(&self.text));
         self.writing = Arc::downgrade(&text);
-        Ok(Saving { preset: self.preset.clone(), text, from: self.path.clone(), path: path.into() })
+        Ok(Saving {
+            preset: self.preset.clone(),
+            text,
+            from: self.path.clone(),
+            path: path.into(),
+            backdrop_folders: Vec::new(),
+        })
     }
 
     /// Returns true while a save is in progress.

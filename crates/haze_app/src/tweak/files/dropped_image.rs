@@ -80,7 +80,7 @@ impl DroppedImage {
 }
 
 /// Returns the preset folder that contains a file, and the file's path relative to it.
-fn place_of(path: &Path, folders: &AssetFolders) -> Option<(PathBuf, String)> {
+pub fn place_of(path: &Path, folders: &AssetFolders) -> Option<(PathBuf, String)> {
     let path = file_io::absolute(path);
     let folders = folders.candidate_paths(Path::new(".")).map(|folder| file_io::absolute(&folder));
     let mut places = folders.filter_map(|folder| {

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use eframe::egui;
 use haze::Error;
-use haze::preset::AssetFolders;
+use haze::preset::{AssetFolders, backdrop_kind};
 
+use super::dropped_backdrop::DroppedBackdrop;
 use super::dropped_image::DroppedImage;
 use crate::tweak::document::{Document, OnDisk, Saving};
 use crate::tweak::platform::asset_loading::{self, LoadedAssets};
@@ -59,6 +60,7 @@ enum FileResult {
     Opened(Box<Document>, LoadedAssets),
     /// Image for the system of this index.
     Dropped(usize, DroppedImage),
+    Backdrop(Box<DroppedBackdrop>),
     Saved(Box<Saving>, Result<(), Error>),
     /// The window layout was written.
     LayoutWritten(Result<(), Error>),
@@ -110,6 +112,7 @@ impl FileActions {
                         Err(error) => session.messages.error("file", error),
                     }
                 }
+                Some(FileResult::Backdrop(dropped)) => dropped.apply(session),
                 Some(FileResult::LayoutWritten(Ok(()))) => session.messages.clear("remembered"),
                 Some(FileResult::LayoutWritten(Err(error))) => session.messages.error("remembered", error),
                 Some(FileResult::Failed(error)) => session.messages.error("file", error),
@@ -120,6 +123,9 @@ impl FileActions {
         }
         if let Some(path) = file_io::dropped_file(context) {
             self.take(path, session);
+        }
+        if let Some(kind) = session.backdrop_request.take() {
+            self.ask(Purpose::Backdrop(kind), suggested(session));
         }
         let is_baking = session.sprites.is_baking();
         let is_asked_to_close = context.input(|input| input.viewport().close_requested());
@@ -147,9 +153,15 @@ impl FileActions {
         }
     }
 
-    /// Handles a file that was dropped or chosen: a preset to open, or an image for the shown system.
+    /// Handles a file that was dropped or chosen: a preset to open, an image for the shown system, a scene or a sky.
     fn take(&self, path: PathBuf, session: &Session) {
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        if let Some(kind) = backdrop_kind(&path) {
+            let folders = session.folders();
+            self.worker.submit(move |_| match DroppedBackdrop::read(kind, &path, &folders) {
+                Ok(dropped) => FileResult::Backdrop(Box::new(dropped)),
+                Err(error) => FileResult::Failed(error),
+            });
+        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             let (folders, index) = (session.folders(), session.view.system);
             let system = session.document.preset.systems.get(index);
             let material = system.map(|system| system.material.clone()).unwrap_or_default();
@@ -229,7 +241,8 @@ impl FileActions {
                 .messages
                 .error("file", "Not saved: another program changed the file. Choose a version above.");
         }
-        let begun = session.document.begin_saving();
+        let folders = session.backdrop_folders.clone();
+        let begun = session.document.begin_saving().map(|saving| saving.with_backdrop_folders(folders));
         self.write(begun, session);
     }
 
@@ -299,7 +312,7 @@ impl FileActions {
 
     fn type_path(&mut self, purpose: Purpose, near: &Path) {
         let text = match purpose {
-            Purpose::Open => String::new(),
+            Purpose::Open | Purpose::Backdrop(_) => String::new(),
             Purpose::SaveAs | Purpose::Export => near.display().to_string(),
         };
         self.typed = Some(TypedPath { purpose, text });
@@ -309,6 +322,7 @@ impl FileActions {
     fn cancelled(&mut self, purpose: Purpose, session: &mut Session) {
         match purpose {
             Purpose::Export => self.exported = Some(None),
+            Purpose::Backdrop(_) => {}
             Purpose::Open | Purpose::SaveAs => {
                 self.then = None;
                 session.cancel_copies();
@@ -327,10 +341,11 @@ impl FileActions {
 
     fn chosen(&mut self, purpose: Purpose, path: &Path, session: &mut Session) {
         match purpose {
-            Purpose::Open => self.take(path.into(), session),
+            Purpose::Open | Purpose::Backdrop(_) => self.take(path.into(), session),
             Purpose::SaveAs => {
                 let path = if path.extension().is_none() { path.with_extension("json") } else { path.into() };
-                let begun = session.document.begin_saving_as(&path);
+                let folders = session.backdrop_folders.clone();
+                let begun = session.document.begin_saving_as(&path).map(|saving| saving.with_backdrop_folders(folders));
                 self.write(begun, session);
             }
             Purpose::Export => self.exported = Some(Some(path.into())),

@@ -1,4 +1,4 @@
-//! Hot reload of ramps, sprites, particle files, the preset and shaders, however the files are saved.
+//! Hot reload of ramps, sprites, particle files, scene and sky, the preset and shaders, however the files are saved.
 //!
 //! A worker thread decodes images and compiles shaders. Valid results replace those that are shown; errors are reported
 //! until the files are fixed.
@@ -9,13 +9,15 @@ use std::sync::Arc;
 use haze::preset::{MaterialNames, Preset};
 use haze::shader::{self, Sources};
 use haze::{Error, MaterialAssets};
+use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::ParticleFrames;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
-use crate::inputs::relative_image_paths;
+use crate::inputs::{backdrop_file_paths, relative_image_paths};
 use crate::recipe_files::recipe_paths;
 use crate::tweak::document::OnDisk;
+use crate::tweak::document::loaded_backdrop::{self, LoadedBackdrop};
 use crate::tweak::document::loaded_materials::{LoadedMaterials, names};
 use crate::tweak::document::loaded_particles::{LoadedParticles, paths};
 use crate::tweak::document::sprite_edits::sprite_source::detail_of;
@@ -34,11 +36,14 @@ pub struct HotReload {
     /// Loads in progress.
     pictures: Option<Ticket>,
     particle_files: Option<Ticket>,
+    backdrop: Option<Ticket>,
+    /// Files of scene and sky that are watched.
+    backdrop_files: Vec<PathBuf>,
     shaders: Option<Shaders>,
 }
 
-/// Path of the preset, and the images and particle files that its systems name.
-type Asked = (PathBuf, Vec<MaterialNames>, Vec<String>);
+/// Path of the preset, the images and particle files that its systems name, and the names of scene and sky.
+type Asked = (PathBuf, Vec<MaterialNames>, Vec<String>, [String; 2]);
 
 /// Watched folder of shaders.
 struct Shaders {
@@ -51,6 +56,7 @@ struct Shaders {
 enum ReloadResult {
     Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
     ParticleFiles(Box<Preset>, Result<Vec<Option<ParticleFrames>>, Error>),
+    Backdrop(Box<Preset>, Result<Backdrop, Error>),
     /// With the files to watch.
     Shaders(Vec<PathBuf>, Result<(OffscreenContext, Sources), Error>),
 }
@@ -97,6 +103,8 @@ impl HotReload {
             requested_files: requested_files(session),
             pictures: None,
             particle_files: None,
+            backdrop: None,
+            backdrop_files: Vec::new(),
             shaders: match shaders {
                 ShaderFolder::None => None,
                 ShaderFolder::Given(folder) | ShaderFolder::Checkout(folder) => Some(Shaders::new(folder)),
@@ -110,6 +118,7 @@ impl HotReload {
         // Files may have been written after they were read and before they were watched.
         hot_reload.load_pictures(session);
         hot_reload.load_particle_files(session);
+        hot_reload.load_backdrop(session);
         Ok(hot_reload)
     }
 
@@ -121,6 +130,7 @@ impl HotReload {
         let now = requested_files(session);
         if now != self.requested_files {
             let has_particle_files = (&now.0, &now.2) != (&self.requested_files.0, &self.requested_files.2);
+            let has_backdrop = !session.backdrop.is_of(&session.document.preset) || now.0 != self.requested_files.0;
             self.requested_files = now;
             self.watch(session);
             // Files may have been written after they were read and before they were watched.
@@ -130,13 +140,19 @@ impl HotReload {
             if has_particle_files {
                 self.load_particle_files(session);
             }
+            if has_backdrop {
+                self.load_backdrop(session);
+            }
         }
         let (mut has_pictures, mut has_particle_files, mut has_shaders) = (false, false, false);
+        let mut has_backdrop = false;
         for file in self.watcher.poll() {
             if self.shaders.as_ref().is_some_and(|shaders| shaders.files.contains(&file)) {
                 has_shaders = true;
             } else if file == session.document.path() {
                 changed_on_disk(session);
+            } else if self.backdrop_files.contains(&file) {
+                has_backdrop = true;
             } else if has_ending(&file, "png") {
                 has_pictures = true;
                 mark_edits_stale(session);
@@ -154,6 +170,9 @@ impl HotReload {
             self.watch(session);
             self.load_particle_files(session);
         }
+        if has_backdrop {
+            self.load_backdrop(session);
+        }
         if has_shaders {
             self.check_shaders(session, renderer);
         }
@@ -162,14 +181,25 @@ impl HotReload {
         }
     }
 
-    fn watch(&self, session: &Session) {
+    fn watch(&mut self, session: &Session) {
+        let loaded = session.backdrop.of(&session.document.preset);
+        self.backdrop_files = backdrop_file_paths(&session.folders(), &session.document.preset);
+        self.backdrop_files.extend(loaded.files().map(Path::to_owned));
         let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
         let folders = session.folders();
         let pictures = relative_image_paths(&session.document.preset);
         // The recipe of a sprite also makes its detail image, even if the preset does not name that.
         let beside = pictures.iter().flat_map(|picture| recipe_paths(picture).chain([detail_of(picture)]));
         let beside = beside.flat_map(|file| folders.candidate_paths(&file).collect::<Vec<_>>());
-        self.watcher.set(session.document.files(&folders).into_iter().chain(beside).chain(shaders));
+        self.watcher.set(
+            session
+                .document
+                .files(&folders)
+                .into_iter()
+                .chain(beside)
+                .chain(shaders)
+                .chain(self.backdrop_files.clone()),
+        );
     }
 
     /// Loads the images that the preset names. The present ones stay if that fails.
@@ -196,6 +226,19 @@ impl HotReload {
             ReloadResult::ParticleFiles(preset, loaded)
         });
         if let Some(before) = self.particle_files.replace(ticket) {
+            before.cancel();
+        }
+    }
+
+    /// Loads scene and sky that the preset names. The present ones stay if that fails.
+    fn load_backdrop(&mut self, session: &Session) {
+        let preset = Box::new(session.document.preset.clone());
+        let (path, folders) = (session.document.path().to_owned(), session.folders());
+        let ticket = self.worker.submit(move |_| {
+            let loaded = asset_loading::backdrop(&preset, &path, &folders);
+            ReloadResult::Backdrop(preset, loaded)
+        });
+        if let Some(before) = self.backdrop.replace(ticket) {
             before.cancel();
         }
     }
@@ -232,6 +275,13 @@ impl HotReload {
                 session.messages.clear("caches");
             }
             Some(ReloadResult::ParticleFiles(_, Err(error))) => session.messages.error("caches", error),
+            Some(ReloadResult::Backdrop(preset, Ok(loaded))) => {
+                session.backdrop = LoadedBackdrop::new(&preset, loaded);
+                session.messages.clear("backdrop");
+                session.report_missing_backdrop();
+                self.watch(session);
+            }
+            Some(ReloadResult::Backdrop(_, Err(error))) => session.messages.error("backdrop", error),
             // The bake writes it, and then it is read again.
             Some(ReloadResult::Pictures(_, Err(_))) if session.sprites.is_baking() => {}
             Some(ReloadResult::Pictures(_, Err(error))) => session.messages.error("pictures", error),
@@ -264,7 +314,7 @@ impl Shaders {
 
 fn requested_files(session: &Session) -> Asked {
     let preset = &session.document.preset;
-    (session.document.path().to_owned(), names(preset), paths(preset))
+    (session.document.path().to_owned(), names(preset), paths(preset), loaded_backdrop::names(preset))
 }
 
 /// Returns the paths in the folder of files that would replace built-in shaders.

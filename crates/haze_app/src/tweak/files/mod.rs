@@ -1,5 +1,6 @@
 //! Data flow between the session and files: open, save, hot reload, export, stored layout, dropped images.
 
+pub mod dropped_backdrop;
 pub mod dropped_image;
 pub mod export_job;
 pub mod file_actions;

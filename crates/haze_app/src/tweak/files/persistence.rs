@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::file_actions::FileActions;
 use crate::tweak::document::Document;
 use crate::tweak::document::recovery::{CrashedWork, RECOVERY_WRITE_INTERVAL, Recovery, find_crashed_work};
+use crate::tweak::platform::asset_loading::LoadedAssets;
 use crate::tweak::platform::clock::{self, Duration, Instant};
 use crate::tweak::platform::json_store;
 use crate::tweak::session::Session;
@@ -152,7 +153,11 @@ impl Persistence {
             let document = Document::recovered(one.preset.clone(), &one.source);
             let written = self.recovery.write(&document);
             // Hot reload loads the images of another file or other names as soon as it sees the document.
-            let loaded = (session.loaded_materials.of(&document.preset), session.particle_files.of(&document.preset));
+            let loaded = LoadedAssets {
+                materials: session.loaded_materials.of(&document.preset),
+                particles: session.particle_files.of(&document.preset),
+                backdrop: session.backdrop.of(&document.preset),
+            };
             session.replace_document(document, loaded);
             // If it was not written, the old file stays and is offered again at the next start.
             if let Err(error) = written {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use haze::{Error, FieldError, builtin};
+use haze_author::backdrop::backdrop_names;
 
 use crate::inputs::relative_image_paths;
 use crate::share_link::Look;
@@ -22,6 +23,10 @@ pub fn fragment_of(session: &mut Session) -> Result<String, FieldError> {
             let problem = format!("systems[{index}] has particle files");
             return Err(refuse(problem, "an emitter; save the preset as a file instead"));
         }
+    }
+    if let Some((_, field, _)) = backdrop_names(&preset.environment).iter().find(|(.., name)| !name.is_empty()) {
+        let expected = "the demo scene and a sky of colors; save the preset as a file instead";
+        return Err(refuse(format!("{field} names a file"), expected));
     }
     let folders = session.folders();
     let mut ramps = std::collections::BTreeMap::new();

@@ -5,7 +5,7 @@ use std::path::Path;
 use eframe::egui::{self, Key, Ui};
 
 use crate::tweak::files::file_actions::FileActions;
-use crate::tweak::platform::file_dialog::Purpose;
+use crate::tweak::platform::file_dialog::{Purpose, backdrop_title};
 use crate::tweak::platform::{IS_PAGE, file_io};
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{ACTIONS, Action};
@@ -98,15 +98,20 @@ fn type_path(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
             Purpose::SaveAs => ("Save As", "Save"),
             Purpose::Export if file_io::exists(Path::new(&typed.text)) => ("Export", "Replace"),
             Purpose::Export => ("Export", "Export"),
+            Purpose::Backdrop(kind) => (backdrop_title(kind), "Show"),
         };
         ui.heading(title);
         ui.weak(if IS_PAGE { "The browser downloads the file." } else { NO_DIALOG });
-        let hint = if typed.purpose == Purpose::Export { "Path to export to" } else { "Path of a JSON file" };
+        let hint = match typed.purpose {
+            Purpose::Export => "Path to export to".to_owned(),
+            Purpose::Backdrop(kind) => format!("Path of a .{} file", kind.endings().join(" or .")),
+            Purpose::Open | Purpose::SaveAs => "Path of a JSON file".to_owned(),
+        };
         let edit = egui::TextEdit::singleline(&mut typed.text).hint_text(hint).desired_width(f32::INFINITY);
         let edit = ui.add(edit);
         edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Path"));
         edit.request_focus();
-        if typed.purpose != Purpose::Open && !IS_PAGE {
+        if matches!(typed.purpose, Purpose::SaveAs | Purpose::Export) && !IS_PAGE {
             ui.weak(format!("In {}", truncate_middle(&folder_of(&typed.text), 80)));
         }
         // Enter alone does not replace an existing file.

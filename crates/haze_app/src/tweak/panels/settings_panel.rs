@@ -3,6 +3,7 @@
 use eframe::egui::{self, Ui};
 use haze::preset::Preset;
 use haze::settings::{Fields, field_path};
+use haze_author::backdrop::Backdrop;
 
 use super::rows::key_mark::KeyMarks;
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
@@ -113,6 +114,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
         refused: None,
         searched_path: session.search.found.as_ref().map(|(path, _)| path.as_str()),
     };
+    let backdrop = session.backdrop.of(&session.document.preset);
     // Panels change a copy, because the rows borrow the session.
     let mut edited = session.document.preset.clone();
     let preset = &mut edited;
@@ -124,7 +126,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
             ui.separator();
             lights_panel::panel(ui, &mut context, preset, &mut shown, (&smoke_shown, session.view.size));
             ui.separator();
-            surroundings(ui, &mut context, preset);
+            surroundings(ui, &mut context, preset, &backdrop);
         }
         Tab::Smoke => smoke(ui, &mut context, preset, system),
         Tab::Advanced => advanced(ui, &mut context, preset, system),
@@ -145,6 +147,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
             RowRequest::Sheet => sheet = Some(path),
             RowRequest::Key => session.toggle_key(&path),
             RowRequest::RemoveKeys => session.remove_track(&path),
+            RowRequest::ChooseBackdrop(kind) => session.backdrop_request = Some(kind),
         }
     }
     sheet
@@ -170,8 +173,23 @@ fn section(
     header.show(ui, |ui| setting_rows::show(ui, context, path, fields)).fully_open()
 }
 
-fn surroundings(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset) {
+fn surroundings(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, backdrop: &Backdrop) {
     section(ui, context, &[("environment", None)], true, &mut preset.environment);
+    if let Some(scene) = backdrop.mesh() {
+        ui.label(egui::RichText::new(format!("The scene file has {}.", scene.description())).weak());
+        ui.horizontal_wrapped(|ui| {
+            let mut button =
+                |name, is_there, tooltip| ui.add_enabled(is_there, egui::Button::new(name)).on_hover_text(tooltip);
+            let camera = button("Use its camera", scene.camera.is_some(), "Replaces the camera of the preset");
+            let lights = button("Use its lights", !scene.lights.is_empty(), "Replaces the lights of the preset");
+            if camera.clicked() {
+                backdrop.take_camera(preset);
+            }
+            if lights.clicked() {
+                backdrop.take_lights(preset);
+            }
+        });
+    }
     section(ui, context, &[("camera", None)], true, &mut preset.camera);
 }
 

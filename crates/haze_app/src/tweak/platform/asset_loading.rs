@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use glam::UVec2;
 use haze::preset::{AssetFolders, MaterialNames, Preset, image_file_path};
 use haze::ramp::Ramp;
+use haze::settings::BackdropKind;
 use haze::shader::Sources;
 use haze::{Error, MaterialAssets};
+use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::{ParticleFrames, load_particle_files};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
@@ -14,12 +16,19 @@ use haze_demo::shot::Shot;
 
 pub use crate::inputs::particle_file_paths;
 
-/// Images and particles of each system of a preset.
-pub type LoadedAssets = (Vec<MaterialAssets>, Vec<Option<ParticleFrames>>);
+/// All files that a preset names.
+pub struct LoadedAssets {
+    /// Images of each system.
+    pub materials: Vec<MaterialAssets>,
+    /// Particles of each system that has particle files.
+    pub particles: Vec<Option<ParticleFrames>>,
+    pub backdrop: Backdrop,
+}
 
 /// Loads all files that the preset at a path names.
 pub fn all(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<LoadedAssets, Error> {
-    Ok((pictures(preset, path, folders)?, particles(preset, path, folders)?))
+    let (materials, particles) = (pictures(preset, path, folders)?, particles(preset, path, folders)?);
+    Ok(LoadedAssets { materials, particles, backdrop: backdrop(preset, path, folders)? })
 }
 
 /// Loads the images of every system.
@@ -30,6 +39,18 @@ pub fn pictures(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<
 /// Loads the particles of every system that has particle files.
 pub fn particles(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<Option<ParticleFrames>>, Error> {
     load_particle_files(preset, path, folders)
+}
+
+/// Loads scene and sky. A page loads none.
+pub fn backdrop(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Backdrop, Error> {
+    Backdrop::load(preset, path, folders)
+}
+
+/// Loads a scene or a sky. A page loads none.
+pub fn backdrop_file(kind: BackdropKind, path: &Path) -> Result<Backdrop, Error> {
+    let mut backdrop = Backdrop::default();
+    backdrop.load_file(kind, path)?;
+    Ok(backdrop)
 }
 
 /// Loads the images of one material.

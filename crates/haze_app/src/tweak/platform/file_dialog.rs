@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::clock::{Duration, Instant};
-pub use super::dialog_answer::{Answer, Purpose};
+pub use super::dialog_answer::{Answer, Purpose, backdrop_title};
 use super::worker::Worker;
 
 /// File dialogs, one at a time.
@@ -59,18 +59,21 @@ impl Dialogs {
         if !self.has_dialogs || self.worker.is_busy() {
             return self.has_dialogs;
         }
-        let (kind, ending) = match (purpose, near.extension().and_then(std::ffi::OsStr::to_str)) {
-            (Purpose::Open | Purpose::SaveAs, _) => ("Presets", Some("json")),
-            (Purpose::Export, ending) => ("Images", ending),
+        let (kind, endings) = match (purpose, near.extension().and_then(std::ffi::OsStr::to_str)) {
+            (Purpose::Open | Purpose::SaveAs, _) => ("Presets", vec!["json"]),
+            (Purpose::Export, ending) => ("Images", ending.into_iter().collect()),
+            (Purpose::Backdrop(kind), _) => (backdrop_title(kind), kind.endings().to_vec()),
         };
-        let dialog = rfd::AsyncFileDialog::new();
-        let dialog = ending.into_iter().fold(dialog, |dialog, ending| dialog.add_filter(kind, &[ending]));
+        let mut dialog = rfd::AsyncFileDialog::new();
+        if !endings.is_empty() {
+            dialog = dialog.add_filter(kind, &endings);
+        }
         let folder = std::path::absolute(near).ok().and_then(|path| path.parent().map(Path::to_owned));
         let dialog = folder.into_iter().fold(dialog, rfd::AsyncFileDialog::set_directory);
         let name = near.file_name().unwrap_or_default().to_string_lossy();
         // Some systems require that the window's thread creates the dialog.
         let chosen: std::pin::Pin<Box<dyn Future<Output = _> + Send>> = match purpose {
-            Purpose::Open => Box::pin(dialog.pick_file()),
+            Purpose::Open | Purpose::Backdrop(_) => Box::pin(dialog.pick_file()),
             Purpose::SaveAs | Purpose::Export => Box::pin(dialog.set_file_name(name).save_file()),
         };
         let begun = Instant::now();

@@ -7,6 +7,7 @@ use haze::assets::{bounded_read, json};
 pub use haze::image::{CompressionEffort, read_color_png, read_png, write_baked_png, write_png, write_state_file};
 use haze::image::{MAX_BYTES, write_file};
 use haze::preset::Preset;
+use haze_author::backdrop::MAX_BACKDROP_FILE_BYTES;
 use haze_author::particle_files;
 
 pub use super::disk::{
@@ -37,6 +38,11 @@ pub fn read_recipe(path: &Path) -> Result<Vec<u8>, Error> {
 /// Reads the bytes of a particle file.
 pub fn read_particles(path: &Path) -> Result<Vec<u8>, Error> {
     bounded_read::read(path, "CSV or PLY file", particle_files::MAX_FILE_BYTES)
+}
+
+/// Reads the bytes of a scene, of a file beside it, or of a sky.
+pub fn read_backdrop(path: &Path) -> Result<Vec<u8>, Error> {
+    bounded_read::read(path, "scene or sky", MAX_BACKDROP_FILE_BYTES)
 }
 
 /// Writes a complete file, or leaves the old one.

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use glam::UVec2;
 use haze::preset::{AssetFolders, Preset};
-use haze::settings::{DebugView, FieldValue, field_values};
+use haze::settings::{BackdropKind, DebugView, FieldValue, field_values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 use haze_author::particle_files::ParticleFrames;
@@ -36,11 +36,13 @@ use haze_demo::shot::Shot;
 use crate::tweak::document::Document;
 use crate::tweak::document::keyframes::{self, KeyframeEdit};
 use crate::tweak::document::light_roles::{keep_one_key, light_of};
+use crate::tweak::document::loaded_backdrop::{self, LoadedBackdrop};
 use crate::tweak::document::loaded_materials::LoadedMaterials;
 use crate::tweak::document::loaded_particles::LoadedParticles;
 use crate::tweak::document::preset_diff::{changed_fields, copy_field};
 use crate::tweak::document::ramp_edits::RampEdits;
 use crate::tweak::document::sprite_edits::SpriteEdits;
+use crate::tweak::platform::IS_PAGE;
 use crate::tweak::platform::asset_loading::{self, LoadedAssets};
 use crate::tweak::platform::repaint_handle::RepaintHandle;
 use crate::tweak::viewport_renderer::cpu_render_job::CpuRenderJob;
@@ -91,6 +93,12 @@ pub struct Session {
     /// Images as last loaded without error.
     pub loaded_materials: LoadedMaterials,
     pub particle_files: LoadedParticles,
+    /// Scene and sky from files, as last loaded without error.
+    pub backdrop: LoadedBackdrop,
+    /// Folders of scenes and skies that were dropped on the window; they are copied beside the preset when it is saved.
+    pub backdrop_folders: Vec<PathBuf>,
+    /// Kind of a backdrop for which the user asks for a file dialog.
+    pub backdrop_request: Option<BackdropKind>,
     /// Ramps whose stops are edited.
     pub ramps: RampEdits,
     /// Sprites whose recipes are edited.
@@ -148,7 +156,7 @@ impl Session {
     pub fn show(document: Document, assets: Option<PathBuf>) -> Result<Self, Error> {
         let (preset, source) = (&document.preset, document.path());
         let folders = AssetFolders::beside(source).with_shared(assets.clone());
-        let (materials, caches) = asset_loading::all(preset, source, &folders)?;
+        let LoadedAssets { materials, particles, backdrop } = asset_loading::all(preset, source, &folders)?;
         Ok(Self {
             assets,
             playback: Playback::of(preset),
@@ -170,7 +178,10 @@ impl Session {
             screenshot: None,
             smoke: SmokeGeometry::default(),
             loaded_materials: LoadedMaterials::new(preset, materials),
-            particle_files: LoadedParticles::new(preset, caches),
+            particle_files: LoadedParticles::new(preset, particles),
+            backdrop: LoadedBackdrop::new(preset, backdrop),
+            backdrop_folders: Vec::new(),
+            backdrop_request: None,
             ramps: RampEdits::default(),
             sprites: SpriteEdits::default(),
             shaders: None,
@@ -191,7 +202,9 @@ impl Session {
 
     /// Returns the folders where images are looked up.
     pub fn folders(&self) -> AssetFolders {
-        AssetFolders::beside(self.document.path()).with_shared(self.assets.clone())
+        AssetFolders::beside(self.document.path())
+            .with_shared(self.assets.clone())
+            .with_shared(self.backdrop_folders.clone())
     }
 
     /// Returns the reason why a field of a preset has no effect at the size of the view.
@@ -221,8 +234,8 @@ impl Session {
 
     fn shot_of(&self, mut preset: Preset, size: UVec2) -> Shot {
         self.view.lights.apply(&mut preset);
-        let (materials, caches) = (self.materials(), self.particle_frames());
-        Shot { preset, size, debug_view: self.view.debug_view, materials, caches, shown_scalar: None }
+        let (materials, caches, backdrop) = (self.materials(), self.particle_frames(), self.backdrop.of(&preset));
+        Shot { preset, size, debug_view: self.view.debug_view, materials, caches, backdrop, shown_scalar: None }
     }
 
     /// Returns the images of every system, with edits.
@@ -236,6 +249,16 @@ impl Session {
     /// Returns the particles of every system that has particle files.
     pub fn particle_frames(&self) -> Vec<Option<ParticleFrames>> {
         self.particle_files.of(&self.document.preset)
+    }
+
+    /// Says on a page that scene and sky are not shown.
+    pub fn report_missing_backdrop(&mut self) {
+        let names = loaded_backdrop::names(&self.document.preset).into_iter().filter(|name| !name.is_empty());
+        let names: Vec<_> = names.collect();
+        if IS_PAGE && !names.is_empty() {
+            let names = names.join(" and ");
+            self.messages.info("backdrop", format!("A page does not show {names}; the program does"));
+        }
     }
 
     /// Makes the requested copy: at once, or as soon as a built-in preset is saved.
@@ -433,16 +456,19 @@ impl Session {
     }
 
     /// Replaces the document, and resets the state that depended on the old one.
-    pub fn replace_document(&mut self, document: Document, (materials, caches): LoadedAssets) {
+    pub fn replace_document(&mut self, document: Document, loaded: LoadedAssets) {
+        let LoadedAssets { materials, particles, backdrop } = loaded;
         self.loaded_materials = LoadedMaterials::new(&document.preset, materials);
-        self.particle_files = LoadedParticles::new(&document.preset, caches);
+        self.particle_files = LoadedParticles::new(&document.preset, particles);
+        self.backdrop = LoadedBackdrop::new(&document.preset, backdrop);
+        self.backdrop_folders.clear();
         self.playback = Playback::of(&document.preset);
         (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
         self.ramps = RampEdits::default();
         self.copy_request = None;
         self.looks.close();
         self.sprites.forget();
-        let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];
+        let stale = ["preset", "ramp", "sprite", "pictures", "caches", "backdrop", "file"];
         stale.into_iter().for_each(|about| self.messages.clear(about));
         self.document = document;
     }

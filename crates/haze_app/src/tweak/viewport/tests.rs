@@ -274,7 +274,7 @@ fn overlays_are_drawn_while_they_are_on() {
 #[test]
 fn the_scene_can_be_chosen_and_its_props_hidden() {
     let mut harness = lit(Light { intensity: 30.0, ..Light::default() });
-    let environment = |harness: &Harness<'_, Window>| harness.state().session.document.preset.environment;
+    let environment = |harness: &Harness<'_, Window>| harness.state().session.document.preset.environment.clone();
     harness.get_by_label("Scene").click();
     harness.run_steps(3);
     harness.get_by_label("Lamp").click();

@@ -15,6 +15,7 @@ use tempfile::TempDir;
 use super::*;
 use crate::tweak::files::hot_reload::ShaderFolder;
 use crate::tweak::files::persistence::{Layout, Persistence};
+use crate::tweak::files::shared_look;
 use crate::tweak::window::{Start, Window, testing};
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
@@ -207,6 +208,67 @@ fn a_dropped_preset_is_opened_and_a_dropped_ramp_is_used() {
     bench.window.run_steps(2);
     bench.drop_file(&other);
     bench.until(|bench| bench.session().document.path() == other);
+}
+
+/// A file of the example with an own scene and sky.
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/own_scene").join(name)
+}
+
+#[test]
+fn a_dropped_scene_and_sky_are_shown_from_any_folder_and_copied_when_the_preset_is_saved() {
+    let mut bench = bench();
+    let before = bench.session().document.preset.clone();
+    bench.drop_file(&example("court.glb"));
+    bench.until(|bench| bench.session().document.preset.environment.scene_file == "court.glb");
+    assert!(bench.said().starts_with("court.glb is now the scene: ") && bench.said().ends_with(", a camera, 2 lights"));
+    bench.drop_file(&example("dusk.hdr"));
+    bench.until(|bench| bench.session().document.preset.environment.sky_file == "dusk.hdr");
+    assert_eq!(bench.said(), "dusk.hdr is now the sky. It lights the scene and the smoke");
+    let link = shared_look::fragment_of(bench.session()).unwrap_err().to_string();
+    assert!(link.starts_with("link: environment.scene_file names a file; expected the demo scene"), "{link}");
+    // The artist's camera and lights stay until others are asked for.
+    let dropped = bench.session().document.preset.clone();
+    assert!(dropped.camera == before.camera && dropped.lights == before.lights);
+    let shot = bench.session().shot(glam::UVec2::new(16, 9));
+    assert!(shot.backdrop.scene.is_some() && shot.backdrop.sky.is_some());
+    bench.window.get_by_role_and_label(egui::accesskit::Role::Button, "Light").click();
+    bench.window.run_steps(4);
+    for name in ["Use its camera", "Use its lights"] {
+        bench.window.get_by_label(name).scroll_to_me();
+        bench.window.run_steps(4);
+        bench.click(name);
+    }
+    let taken = bench.session().document.preset.clone();
+    assert_eq!((taken.lights.len(), taken.camera.exposure.to_bits()), (2, before.camera.exposure.to_bits()));
+    assert_ne!(taken.camera.position, before.camera.position);
+    bench.press(Modifiers::COMMAND, Key::S);
+    bench.until(|bench| !bench.session().document.is_dirty());
+    for name in ["court.glb", "dusk.hdr"] {
+        assert_eq!(fs::read(bench.path(name)).unwrap(), fs::read(example(name)).unwrap());
+    }
+    for _ in 0..4 {
+        bench.session().undo();
+    }
+    assert!(bench.session().document.preset == before);
+    bench.window.run_steps(2);
+    assert!(bench.session().shot(glam::UVec2::new(16, 9)).backdrop.scene.is_none());
+}
+
+#[test]
+fn a_dropped_file_that_is_no_scene_changes_nothing_and_says_why() {
+    let mut bench = bench();
+    let before = bench.session().document.preset.clone();
+    let broken = bench.path("broken.glb");
+    fs::write(&broken, &fs::read(example("court.glb")).unwrap()[..400]).unwrap();
+    bench.drop_file(&broken);
+    bench.until(|bench| bench.said().contains("broken.glb: "));
+    assert!(bench.said().ends_with("; expected a glTF 2.0 file"), "{}", bench.said());
+    // The name would stand for another file.
+    fs::write(bench.path("dusk.hdr"), "another").unwrap();
+    bench.drop_file(&example("dusk.hdr"));
+    bench.until(|bench| bench.said().contains("dusk.hdr has the name of "));
+    assert!(bench.session().document.preset == before);
 }
 
 #[test]

@@ -340,3 +340,24 @@ fn particle_files_are_reloaded_and_the_last_valid_ones_stay() {
     bench.until(|bench| bench.said().is_none() && count(bench) == 0);
     assert!((bench.shown() - without).abs() < 0.5, "the emitter's again");
 }
+
+#[test]
+fn a_changed_scene_is_shown_and_a_broken_one_leaves_the_last() {
+    let mut bench = Bench::new(Vec2::new(400.0, 300.0));
+    let example = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/own_scene").join(name);
+    let court = fs::read(example("court.glb")).unwrap();
+    fs::write(bench.path("court.glb"), &court[..300]).unwrap();
+    bench.session().document.preset.environment.scene_file = "court.glb".into();
+    let scene = |bench: &mut Bench| bench.session().shot(glam::UVec2::new(16, 9)).backdrop.scene;
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("environment.scene_file: ")));
+    assert!(scene(&mut bench).is_none());
+    fs::write(bench.path("court.glb"), &court).unwrap();
+    bench.until(|bench| scene(bench).is_some());
+    let shown = scene(&mut bench).unwrap();
+    bench.until(|bench| bench.said().is_none());
+    fs::write(bench.path("court.glb"), "no scene").unwrap();
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("expected a glTF 2.0 file")));
+    assert!(Arc::ptr_eq(&scene(&mut bench).unwrap(), &shown), "the last good scene stays");
+    bench.session().document.preset.environment.scene_file.clear();
+    bench.until(|bench| scene(bench).is_none() && bench.said().is_none());
+}

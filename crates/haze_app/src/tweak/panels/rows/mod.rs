@@ -13,6 +13,8 @@ pub mod value_text;
 
 use eframe::egui::{self, Response, Ui};
 
+use haze::settings::BackdropKind;
+
 use crate::tweak::document::display_names::display_name;
 use icon_button::Icon;
 use key_mark::{KeyMark, KeyState};
@@ -51,6 +53,8 @@ pub enum RowRequest {
     Key,
     /// Delete all keyframes.
     RemoveKeys,
+    /// Ask for a scene or a sky.
+    ChooseBackdrop(BackdropKind),
 }
 
 impl Row<'_> {

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Ui};
 use glam::Vec3;
-use haze::settings::{Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
+use haze::settings::{BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
 use haze_author::preset::Tooltips;
 
 use super::curve_editor;
@@ -272,8 +272,20 @@ impl FieldVisitor for Rows<'_, '_, '_> {
 
     fn particles(&mut self, name: &'static str, value: &mut String) {
         self.row(name, ("", None, false), |ui, label, _, path, _| {
-            value_control::path(ui, value, path).labelled_by(label.id);
+            value_control::path(ui, value, path, "smoke_####.ply").labelled_by(label.id);
         });
+    }
+
+    fn backdrop(&mut self, name: &'static str, value: &mut String, kind: BackdropKind) {
+        let mut is_asked = false;
+        self.row(name, ("", None, false), |ui, label, _, path, _| {
+            is_asked = ui.button("Choose…").on_hover_text("Or drop the file on the window").clicked();
+            let hint = format!("none (.{})", kind.endings().join(", ."));
+            value_control::path(ui, value, path, &hint).labelled_by(label.id);
+        });
+        if is_asked {
+            self.context.requests.push((RowRequest::ChooseBackdrop(kind), String::new()));
+        }
     }
 
     fn seed(&mut self, name: &'static str, value: &mut u32) {

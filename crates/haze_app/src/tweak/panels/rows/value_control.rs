@@ -191,10 +191,10 @@ pub fn color(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>, name: &
 
 /// Draws the field of a file path. The path is used when the field loses focus, not after each letter; Escape discards
 /// it.
-pub fn path(ui: &mut Ui, value: &mut String, salt: &str) -> Response {
+pub fn path(ui: &mut Ui, value: &mut String, salt: &str, hint: &str) -> Response {
     let id = ui.make_persistent_id(salt);
     let mut typed = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| value.clone());
-    let edit = egui::TextEdit::singleline(&mut typed).id(id).hint_text("smoke_####.ply").desired_width(f32::INFINITY);
+    let edit = egui::TextEdit::singleline(&mut typed).id(id).hint_text(hint).desired_width(f32::INFINITY);
     let response = ui.add(edit);
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, typed));
@@ -242,7 +242,7 @@ mod tests {
     fn a_path_is_used_when_its_field_loses_focus() {
         let row = |ui: &mut Ui, value: &mut String| {
             let name = ui.label("path");
-            path(ui, value, "row").labelled_by(name.id);
+            path(ui, value, "row", "").labelled_by(name.id);
         };
         let mut harness = egui_kittest::Harness::new_ui_state(row, String::new());
         for (key, expected) in

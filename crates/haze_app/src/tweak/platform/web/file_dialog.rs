@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::page;
 use crate::file_kind::files_to_open;
-pub use crate::tweak::platform::dialog_answer::{Answer, Purpose};
+pub use crate::tweak::platform::dialog_answer::{Answer, Purpose, backdrop_title};
 
 /// File pickers, one at a time.
 pub struct Dialogs {
@@ -39,7 +39,9 @@ impl Dialogs {
             wake();
         };
         match purpose {
-            Purpose::Open => page::pick_files(move |files| finish(files_to_open(files).into_iter().next())),
+            Purpose::Open | Purpose::Backdrop(_) => {
+                page::pick_files(move |files| finish(files_to_open(files).into_iter().next()));
+            }
             Purpose::SaveAs if page::has_save_dialog() => {
                 let name = near.file_name().unwrap_or_default().to_string_lossy();
                 page::pick_save(name.into_owned(), finish);
