@@ -6,6 +6,7 @@ use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy::render::storage::ShaderBuffer;
 
+use crate::animation::SmokeAnimation;
 use crate::asset::SmokeAsset;
 use crate::convert;
 
@@ -23,7 +24,7 @@ use crate::convert;
 /// }
 /// ```
 #[derive(Component, Clone, Debug, Default, Deref, DerefMut, PartialEq, Eq)]
-#[require(SmokeClock, Transform, Visibility)]
+#[require(SmokeClock, SmokeAnimation, Transform, Visibility)]
 pub struct Smoke(pub Handle<SmokeAsset>);
 
 impl From<Handle<SmokeAsset>> for Smoke {
@@ -35,7 +36,8 @@ impl From<Handle<SmokeAsset>> for Smoke {
 /// Clock of an entity's smoke. It starts when the preset has loaded and follows Bevy's virtual time, which a program can
 /// pause and slow down for all.
 ///
-/// The emitter is a function of time: set [`seconds`](Self::seconds) to any value, forwards or back, and the smoke is there.
+/// Emitter, keyframes and flicker are functions of time: set [`seconds`](Self::seconds) to any value, forwards or back, and
+/// the smoke is there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone)]
 pub struct SmokeClock {

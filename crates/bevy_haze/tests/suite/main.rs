@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
 
 mod alone;
+mod animation;
 mod cost;
 mod entities;
 mod environment;
