@@ -7,6 +7,7 @@ mod animation;
 mod cost;
 mod entities;
 mod environment;
+mod errors;
 mod host;
 mod parity;
 mod picture;
