@@ -18,7 +18,7 @@ use image::DynamicImage;
 
 use super::backend::Backend;
 use super::inputs::image_paths;
-use super::memory_check::check_memory;
+use super::memory_check::{BYTES_PER_PIXEL, check_memory};
 use super::output::{FileChecks, print_error, print_line};
 
 /// Options of rendering that do not depend on the shot.
@@ -146,10 +146,15 @@ impl ShotArguments {
             preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
         }
         let shot = self.shot(preset)?;
+        self.check_outputs(&shot, outputs)?;
+        Ok(shot)
+    }
+
+    /// Refuses outputs that cannot be written, or that the shot was read from.
+    pub fn check_outputs(&self, shot: &Shot, outputs: &[(&str, PathBuf, &str)]) -> Result<(), Error> {
         let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
         let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
-        outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))?;
-        Ok(shot)
+        outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))
     }
 
     /// Builds a shot of a changed preset.
@@ -173,7 +178,7 @@ impl ShotArguments {
 impl RunArguments {
     /// Opens the requested renderer.
     pub fn backend(&self) -> Result<Backend, Error> {
-        check_memory("--size", self.size)?;
+        check_memory("--size", self.size, BYTES_PER_PIXEL)?;
         let sources = self.shaders.as_ref().map(Sources::from_folder).transpose()?;
         if self.backend == BackendName::Cpu {
             return match sources {
