@@ -8,7 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::UVec2;
 use haze::image::{CompressionEffort, write_png};
-use haze::preset::{AssetFolders, Preset};
+use haze::preset::{AssetFolders, MAX_TIME, Preset};
 use haze::settings::{Choice, RenderPath, Technique, UnknownChoice};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
@@ -234,9 +234,8 @@ pub fn parse_assignment(text: &str) -> Result<(String, String), String> {
 }
 
 fn parse_time(text: &str) -> Result<f32, String> {
-    let limit = 1.0e5;
-    let time = text.parse().ok().filter(|time: &f32| time.abs() <= limit);
-    time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{limit} to {limit}"))
+    let time = text.parse().ok().filter(|time: &f32| time.abs() <= MAX_TIME);
+    time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{MAX_TIME} to {MAX_TIME}"))
 }
 
 fn parse_scale(text: &str) -> Result<u32, String> {
