@@ -20,6 +20,7 @@ use super::frame_range::FrameNames;
 use super::image_format::{self, Alpha, Background, BitDepth, ImageFormat};
 use super::interrupt;
 use super::memory_check::{BYTES_PER_PIXEL, check_memory};
+#[cfg(not(target_arch = "wasm32"))]
 use super::progress::with_progress;
 
 /// Range of frames. Frame 0 is at the preset's time.
@@ -70,11 +71,18 @@ impl ExportProgress<'_> {
     }
 
     /// Does the work of an image, and shows `what` meanwhile. On a terminal, the work must not wait for anything else.
+    #[cfg(not(target_arch = "wasm32"))]
     pub async fn show<T>(&self, what: String, work: impl Future<Output = T>) -> T {
         match self {
             Self::Terminal => with_progress(what, || pollster::block_on(work)),
             Self::Callback(_) => work.await,
         }
+    }
+
+    /// A page has no terminal.
+    #[cfg(target_arch = "wasm32")]
+    async fn show<T>(&self, _: String, work: impl Future<Output = T>) -> T {
+        work.await
     }
 }
 

@@ -20,7 +20,7 @@ const CELL: f32 = 1.0;
 /// Cells along each side of a block. A box that cannot be an occluder in a block is not tested in its cells: what reaches a point
 /// of a cell reaches a point of the block.
 const BLOCK: u32 = 4;
-const _: () = assert!(CELLS.x % BLOCK == 0 && CELLS.y % BLOCK == 0 && CELLS.z % BLOCK == 0);
+const _: () = assert!(CELLS.x.is_multiple_of(BLOCK) && CELLS.y.is_multiple_of(BLOCK) && CELLS.z.is_multiple_of(BLOCK));
 /// Margin of a cell, metres: rounding may move points on its border to the neighbour.
 const ROUNDING: f32 = 1.0e-3;
 
