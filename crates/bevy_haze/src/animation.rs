@@ -1,16 +1,12 @@
 //! Keyframes and flicker of presets: the settings of an entity's smoke at the time of its clock.
 
-use std::collections::HashSet;
-
-use bevy::asset::AssetId;
 use bevy::prelude::*;
 use haze::preset::{AnimatedPreset, Preset, PresetSystem};
 use haze::{EmitterSnapshot, Settings};
 
 use crate::asset::SmokeAsset;
-use crate::component::{Smoke, SmokeClock};
 
-/// Settings of an entity's smoke that have tracks. Every [`Smoke`] has it.
+/// Settings of an entity's smoke that have tracks. Every [`Smoke`](crate::Smoke) has it.
 #[derive(Component, Clone, Debug, Default)]
 pub(crate) struct SmokeAnimation {
     /// `None` for a preset without tracks.
@@ -40,7 +36,7 @@ impl SystemState {
 }
 
 impl SmokeAnimation {
-    fn new(asset: &SmokeAsset) -> Self {
+    pub fn new(asset: &SmokeAsset) -> Self {
         if asset.animation.is_empty() {
             return Self::default();
         }
@@ -50,7 +46,7 @@ impl SmokeAnimation {
     }
 
     /// Evaluates the tracks at a time, unless they were evaluated at it.
-    fn evaluate(&mut self, seconds: f32) {
+    pub fn evaluate(&mut self, seconds: f32) {
         let Some(preset) = &mut self.preset else { return };
         if self.seconds.replace(seconds).is_some_and(|last| last.to_bits() == seconds.to_bits()) {
             return;
@@ -62,27 +58,6 @@ impl SmokeAnimation {
     /// Systems at the time of the clock; none if the preset has no tracks.
     pub fn systems(&self) -> &[SystemState] {
         &self.systems
-    }
-}
-
-/// Evaluates the tracks of each entity's preset at the time of its clock. Fields are looked up again only when the preset has
-/// changed.
-pub(crate) fn animate_smoke(
-    mut events: MessageReader<AssetEvent<SmokeAsset>>,
-    mut changed: Local<HashSet<AssetId<SmokeAsset>>>,
-    assets: Res<Assets<SmokeAsset>>,
-    mut smokes: Query<(Ref<Smoke>, &SmokeClock, &mut SmokeAnimation)>,
-) {
-    changed.clear();
-    changed.extend(events.read().filter_map(|event| match event {
-        AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } => Some(*id),
-        _ => None,
-    }));
-    for (smoke, clock, mut animation) in &mut smokes {
-        if smoke.is_changed() || changed.contains(&smoke.id()) {
-            *animation = assets.get(smoke.id()).map(SmokeAnimation::new).unwrap_or_default();
-        }
-        animation.evaluate(clock.seconds as f32);
     }
 }
 

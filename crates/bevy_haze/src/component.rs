@@ -1,7 +1,9 @@
 //! Components that a program puts on entities.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
+use bevy::asset::AssetId;
 use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy::render::storage::ShaderBuffer;
@@ -212,6 +214,27 @@ pub(crate) fn advance_clocks(
         if !clock.paused && step > 0.0 && assets.contains(smoke.id()) {
             clock.seconds += step * clock.speed;
         }
+    }
+}
+
+/// Evaluates the tracks of each entity's preset at the time of its clock. Fields are looked up again only when the preset has
+/// changed.
+pub(crate) fn animate_smoke(
+    mut events: MessageReader<AssetEvent<SmokeAsset>>,
+    mut changed: Local<HashSet<AssetId<SmokeAsset>>>,
+    assets: Res<Assets<SmokeAsset>>,
+    mut smokes: Query<(Ref<Smoke>, &SmokeClock, &mut SmokeAnimation)>,
+) {
+    changed.clear();
+    changed.extend(events.read().filter_map(|event| match event {
+        AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } => Some(*id),
+        _ => None,
+    }));
+    for (smoke, clock, mut animation) in &mut smokes {
+        if smoke.is_changed() || changed.contains(&smoke.id()) {
+            *animation = assets.get(smoke.id()).map(SmokeAnimation::new).unwrap_or_default();
+        }
+        animation.evaluate(clock.seconds as f32);
     }
 }
 

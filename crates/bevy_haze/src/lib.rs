@@ -99,7 +99,7 @@ impl Plugin for SmokePlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    animation::animate_smoke.after(AssetEventSystems),
+                    component::animate_smoke.after(AssetEventSystems),
                     fire_light::update_fire_lights.before(TransformSystems::Propagate),
                 )
                     .chain(),

@@ -1,7 +1,7 @@
 //! Track: the keyframes and the flicker of one setting.
 
 use super::interpolation::{self, Kind};
-use super::keyframe::{KeyValue, Keyframe, MAX_TIME, is_default};
+use super::keyframe::{KeyValue, Keyframe, is_default};
 use crate::fire::flicker;
 use crate::settings::settings;
 
@@ -33,7 +33,7 @@ pub struct Track {
     pub keys: Vec<Keyframe>,
     /// Seconds after which the keyframes repeat, from 0 on; the last one leads to the first again. 0: they do not repeat.
     #[serde(default, skip_serializing_if = "is_default")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = MAX_TIME)))]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = super::keyframe::MAX_TIME)))]
     pub period: f32,
     /// Flicker on top of the keyframes. It does not repeat.
     #[serde(default, skip_serializing_if = "is_default")]
