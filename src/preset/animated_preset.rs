@@ -95,7 +95,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::preset::{Ease, Flicker, KeyValue, Keyframe, Track};
+    use crate::preset::{Ease, Flicker, KeyValue, Keyframe, MAX_KEYFRAMES, Track};
     use crate::settings::{RenderPath, field_values};
 
     fn parse(animation: &str) -> Result<Preset, String> {
@@ -206,6 +206,34 @@ mod tests {
                 r#"{"setting": "systems[0].settings.accumulate.depth_source", "keys": [{"time": 2, "value": "host"}]}"#
                     .into(),
                 "my.json: systems[0].settings.accumulate.scale: 2 is not valid at 2 s; expected 1 with depth_source \"host\"",
+            ),
+            (
+                format!(r#"{{"setting": "camera.fov", "period": 200000, {key}}}"#),
+                "my.json: animation[0].period: 200000 is not valid; expected 0 to 100000 s",
+            ),
+            (
+                format!(r#"{{"setting": "camera.fov", "period": -1, {key}}}"#),
+                "my.json: animation[0].period: -1 is not valid; expected 0 to 100000 s",
+            ),
+            (
+                r#"{"setting": "camera.fov", "keys": [{"time": 1e39, "value": 20}]}"#.into(),
+                "my.json: animation[0].keys[0].time: inf is not valid; expected -100000 to 100000 s",
+            ),
+            (
+                r#"{"setting": "camera.fov", "keys": [{"time": 0, "value": 20}, {"time": 1, "value": 1e39}]}"#.into(),
+                "my.json: animation[0].keys[1].value: a number is not finite; expected finite numbers",
+            ),
+            (
+                r#"{"setting": "camera.target", "keys": [{"time": 0, "value": [0, -1e39, 0]}]}"#.into(),
+                "my.json: animation[0].keys[0].value: a number is not finite; expected finite numbers",
+            ),
+            (
+                {
+                    let keys: Vec<_> =
+                        (0..=MAX_KEYFRAMES).map(|time| format!(r#"{{"time": {time}, "value": 20}}"#)).collect();
+                    format!(r#"{{"setting": "camera.fov", "keys": [{}]}}"#, keys.join(", "))
+                },
+                "my.json: animation: 4097 keyframes are too many; expected at most 4096",
             ),
             (
                 r#"{"setting": "camera.fov"}"#.into(),

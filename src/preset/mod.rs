@@ -14,7 +14,7 @@ mod preset_file;
 mod sequence;
 
 pub use animated_preset::AnimatedPreset;
-pub use animation::{Ease, Flicker, KeyValue, Keyframe, MAX_KEYFRAMES, Track};
+pub use animation::{Ease, Flicker, KeyValue, Keyframe, MAX_KEYFRAMES, MAX_TIME, Track};
 pub use asset_folders::AssetFolders;
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};

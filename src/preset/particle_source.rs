@@ -4,6 +4,7 @@ use std::path::{Component, Path};
 
 use glam::Vec3;
 
+use super::animation::MAX_TIME;
 use super::sequence::Sequence;
 use crate::settings::{choice, settings};
 
@@ -48,7 +49,7 @@ settings! {
         /// Frames of the simulation per second. Higher: faster playback.
         fps: f32 = 24.0, number(0.01..=1000.0, "frames/s");
         /// Time at which the first frame is shown. Higher: delays the smoke.
-        start: f32 = 0.0, number(-1.0e5..=1.0e5, "s");
+        start: f32 = 0.0, number(-MAX_TIME..=MAX_TIME, "s");
         /// Continuation after the last frame: hold it, or repeat.
         after: EndBehaviour = EndBehaviour::Hold, choice;
         /// Radius of particles if the file has none. Higher: particles blur into each other. Lower: they show one by

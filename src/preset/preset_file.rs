@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::animation::{Track, validate_tracks};
+use super::animation::{MAX_TIME, Track, validate_tracks};
 use super::asset_folders::AssetFolders;
 use super::camera::Camera;
 use super::environment::Environment;
@@ -113,7 +113,7 @@ impl Fields for Preset {
         visitor.integer("version", &mut self.version, PRESET_VERSION..=PRESET_VERSION, "");
         visitor.text("name", &mut self.name);
         visitor.text("description", &mut self.description);
-        visitor.number("time", &mut self.time, -1.0e5..=1.0e5, "s");
+        visitor.number("time", &mut self.time, -MAX_TIME..=MAX_TIME, "s");
         visitor.group("camera", &mut self.camera);
         visitor.group("environment", &mut self.environment);
         for (index, light) in self.lights.iter_mut().enumerate() {

@@ -39,6 +39,7 @@ pub(crate) use settings_macro::settings;
 pub use shadow::Shadow;
 pub use soft_fade::{FadeCurve, SoftFade};
 pub use technique::{Density, Grain, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
+pub(crate) use traversal::write_field_path;
 pub use traversal::{FieldRef, FieldValue, PathStep, field_path, field_values, for_each_field};
 
 choice! {

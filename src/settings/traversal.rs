@@ -118,14 +118,23 @@ pub fn field_values<T: Fields + Clone>(settings: &T) -> Vec<(String, FieldValue)
 /// Formats a path: `systems[0].settings.boost`.
 pub fn field_path(path: &[PathStep<'_>]) -> String {
     let mut text = String::new();
-    for (name, index) in path {
-        let dot = if text.is_empty() { "" } else { "." };
-        let _ = match index {
-            Some(index) => write!(text, "{dot}{name}[{index}]"),
-            None => write!(text, "{dot}{name}"),
-        };
-    }
+    write_field_path(path, &mut text);
     text
+}
+
+/// Formats a path into a text, which it replaces: for traversals that need many, without memory for each.
+pub(crate) fn write_field_path(path: &[PathStep<'_>], text: &mut String) {
+    text.clear();
+    for (name, index) in path {
+        if !text.is_empty() {
+            text.push('.');
+        }
+        text.push_str(name);
+        if let Some(index) = index {
+            // Strings take every text.
+            let _ = write!(text, "[{index}]");
+        }
+    }
 }
 
 struct FieldTraversal<'a> {

@@ -12,20 +12,13 @@ use bevy_haze::{Smoke, SmokeClock, SmokePlugin};
 
 fn main() -> AppExit {
     App::new()
-        .add_plugins((common::ExamplePlugins, SmokePlugin))
-        .insert_resource(ClearColor(Color::srgb(0.05, 0.06, 0.09)))
+        .add_plugins((common::ExamplePlugins, SmokePlugin, yard::YardPlugin))
         .add_systems(Startup, setup)
         .add_systems(Update, seek)
         .run()
 }
 
-fn setup(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    yard::spawn_yard(&mut commands, &mut meshes, &mut materials);
+fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     commands.spawn((Camera3d::default(), yard::look_from(0.5, 2.0, 8.0)));
     commands.spawn((Smoke::from(assets.load("column.smoke.json")), SmokeClock::at(14.0)));
     let lamp = PointLight { intensity: 600_000.0, color: Color::srgb(1.0, 0.7, 0.45), range: 30.0, ..default() };

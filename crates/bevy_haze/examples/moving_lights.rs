@@ -20,8 +20,7 @@ struct Swinging;
 
 fn main() -> AppExit {
     App::new()
-        .add_plugins((common::ExamplePlugins, SmokePlugin))
-        .insert_resource(ClearColor(Color::srgb(0.04, 0.05, 0.08)))
+        .add_plugins((common::ExamplePlugins, SmokePlugin, yard::YardPlugin))
         .add_systems(Startup, setup)
         .add_systems(Update, (circle, swing))
         .run()
@@ -33,7 +32,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    yard::spawn_yard(&mut commands, &mut meshes, &mut materials);
     commands.spawn((Camera3d::default(), yard::look_from(1.6, 2.0, 9.0)));
     commands.spawn(Smoke::from(assets.load("column.smoke.json")));
 

@@ -17,20 +17,13 @@ enum Side {
 
 fn main() -> AppExit {
     App::new()
-        .add_plugins((common::ExamplePlugins, SmokePlugin))
-        .insert_resource(ClearColor(Color::srgb(0.05, 0.06, 0.09)))
+        .add_plugins((common::ExamplePlugins, SmokePlugin, yard::YardPlugin))
         .add_systems(Startup, setup)
         .add_systems(Update, fit_viewports)
         .run()
 }
 
-fn setup(
-    mut commands: Commands,
-    mut smokes: ResMut<Assets<SmokeAsset>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) -> Result {
-    yard::spawn_yard(&mut commands, &mut meshes, &mut materials);
+fn setup(mut commands: Commands, mut smokes: ResMut<Assets<SmokeAsset>>) -> Result {
     commands.spawn((Camera3d::default(), Hdr, Msaa::Sample4, Side::Left, yard::look_from(1.5, 2.0, 6.5)));
     // Each camera clears: with and without Hdr, they draw into textures of their own first.
     let second = Camera { order: 1, ..default() };

@@ -16,20 +16,13 @@ const PERIOD: f32 = 8.0;
 
 fn main() -> AppExit {
     App::new()
-        .add_plugins((common::ExamplePlugins, SmokePlugin))
-        .insert_resource(ClearColor(Color::srgb(0.05, 0.06, 0.09)))
+        .add_plugins((common::ExamplePlugins, SmokePlugin, yard::YardPlugin))
         .add_systems(Startup, setup)
         .add_systems(Update, roll)
         .run()
 }
 
-fn setup(
-    mut commands: Commands,
-    mut smokes: ResMut<Assets<SmokeAsset>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) -> Result {
-    yard::spawn_yard(&mut commands, &mut meshes, &mut materials);
+fn setup(mut commands: Commands, mut smokes: ResMut<Assets<SmokeAsset>>) -> Result {
     commands.spawn((Camera3d::default(), yard::look_from(2.5, 2.4, 7.0)));
     // The preset gives settings, ramps and the sprite.
     let preset = smokes.add(SmokeAsset::builtin("column")?);

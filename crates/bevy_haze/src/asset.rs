@@ -10,16 +10,20 @@ use bevy::asset::{AssetLoader, AssetPath, LoadContext};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
 use haze::MaterialAssets;
-use haze::preset::{Preset, PresetSystem};
+use haze::preset::{Preset, PresetSystem, Track};
 
-/// Smoke as a preset describes it: emitters, settings and images. A program loads it from a `*.smoke.json` file, takes a
-/// built-in one, or makes it from haze's own types.
+/// Smoke as a preset describes it: emitters, settings, images and keyframes. A program loads it from a `*.smoke.json` file,
+/// takes a built-in one, or makes it from haze's own types.
 ///
-/// The preset's lights, camera and surroundings are not used: the scene's take their place.
+/// The preset's lights, camera and surroundings are not used, nor are their keyframes: the scene's take their place.
 #[derive(Asset, TypePath, Clone, Debug)]
 pub struct SmokeAsset {
     /// Particle systems, at most [`MAX_SYSTEMS`](haze::preset::MAX_SYSTEMS).
     pub systems: Vec<SmokeSystem>,
+    /// Settings that change over the time of the entity's [`SmokeClock`](crate::SmokeClock), by keyframes and flicker. Each
+    /// has the full name of a setting, such as `systems[0].settings.boost`; tracks of unknown settings and keyframes of
+    /// another type do nothing.
+    pub animation: Vec<Track>,
 }
 
 /// One particle system of a [`SmokeAsset`].
@@ -44,7 +48,9 @@ impl SmokeAsset {
 
     fn from_parts(preset: Preset, images: Vec<MaterialAssets>) -> Self {
         let systems = preset.systems.into_iter().zip(images);
-        Self { systems: systems.map(|(preset, images)| SmokeSystem { preset, images }).collect() }
+        let systems = systems.map(|(preset, images)| SmokeSystem { preset, images }).collect();
+        let is_of_system = |track: &Track| track.setting.starts_with("systems[");
+        Self { systems, animation: preset.animation.into_iter().filter(is_of_system).collect() }
     }
 }
 

@@ -1,11 +1,14 @@
 //! Components that a program puts on entities.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
+use bevy::asset::AssetId;
 use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy::render::storage::ShaderBuffer;
 
+use crate::animation::SmokeAnimation;
 use crate::asset::SmokeAsset;
 use crate::convert;
 
@@ -23,7 +26,7 @@ use crate::convert;
 /// }
 /// ```
 #[derive(Component, Clone, Debug, Default, Deref, DerefMut, PartialEq, Eq)]
-#[require(SmokeClock, Transform, Visibility)]
+#[require(SmokeClock, SmokeAnimation, Transform, Visibility)]
 pub struct Smoke(pub Handle<SmokeAsset>);
 
 impl From<Handle<SmokeAsset>> for Smoke {
@@ -35,7 +38,8 @@ impl From<Handle<SmokeAsset>> for Smoke {
 /// Clock of an entity's smoke. It starts when the preset has loaded and follows Bevy's virtual time, which a program can
 /// pause and slow down for all.
 ///
-/// The emitter is a function of time: set [`seconds`](Self::seconds) to any value, forwards or back, and the smoke is there.
+/// Emitter, keyframes and flicker are functions of time: set [`seconds`](Self::seconds) to any value, forwards or back, and
+/// the smoke is there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone)]
 pub struct SmokeClock {
@@ -210,6 +214,27 @@ pub(crate) fn advance_clocks(
         if !clock.paused && step > 0.0 && assets.contains(smoke.id()) {
             clock.seconds += step * clock.speed;
         }
+    }
+}
+
+/// Evaluates the tracks of each entity's preset at the time of its clock. Fields are looked up again only when the preset has
+/// changed.
+pub(crate) fn animate_smoke(
+    mut events: MessageReader<AssetEvent<SmokeAsset>>,
+    mut changed: Local<HashSet<AssetId<SmokeAsset>>>,
+    assets: Res<Assets<SmokeAsset>>,
+    mut smokes: Query<(Ref<Smoke>, &SmokeClock, &mut SmokeAnimation)>,
+) {
+    changed.clear();
+    changed.extend(events.read().filter_map(|event| match event {
+        AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } => Some(*id),
+        _ => None,
+    }));
+    for (smoke, clock, mut animation) in &mut smokes {
+        if smoke.is_changed() || changed.contains(&smoke.id()) {
+            *animation = assets.get(smoke.id()).map(SmokeAnimation::new).unwrap_or_default();
+        }
+        animation.evaluate(clock.seconds as f32);
     }
 }
 

@@ -13,6 +13,7 @@ use bevy::render::storage::ShaderBuffer;
 use bevy::render::sync_world::MainEntity;
 use haze::{Bounds, Particle};
 
+use crate::animation::{SmokeAnimation, SystemState};
 use crate::asset::SmokeAsset;
 use crate::component::{Smoke, SmokeBuffer, SmokeClock, SmokeParticles};
 use crate::convert;
@@ -34,6 +35,8 @@ pub(crate) struct ExtractedSmoke {
     pub origin: Vec3,
     pub layers: RenderLayers,
     pub seconds: f64,
+    /// Systems at this time; none if the preset has neither keyframes nor flicker.
+    pub systems: Vec<SystemState>,
     pub source: Source,
     /// True if its fire is a light of the scene.
     pub has_fire_light: bool,
@@ -60,7 +63,7 @@ pub(crate) fn extract_smoke(
         Query<(
             Entity,
             &Smoke,
-            &SmokeClock,
+            (&SmokeClock, &SmokeAnimation),
             &GlobalTransform,
             &InheritedVisibility,
             Option<&RenderLayers>,
@@ -74,7 +77,8 @@ pub(crate) fn extract_smoke(
     extracted.seconds = time.elapsed_secs_f64();
     extracted.smokes.clear();
     let burning: Vec<_> = fire_lights.iter().map(ChildOf::parent).collect();
-    for (entity, smoke, clock, transform, visibility, layers, particles, buffer, is_shadowless) in &smokes {
+    for (entity, smoke, (clock, animation), transform, visibility, layers, particles, buffer, is_shadowless) in &smokes
+    {
         if !visibility.get() {
             continue;
         }
@@ -89,6 +93,7 @@ pub(crate) fn extract_smoke(
             origin: transform.translation(),
             layers: layers.cloned().unwrap_or_default(),
             seconds: clock.seconds,
+            systems: animation.systems().to_vec(),
             source: match (particles, buffer) {
                 (Some(particles), _) => Source::Particles(particles.0.clone()),
                 (None, Some(SmokeBuffer { buffer, count, bounds })) => {

@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use bevy::camera::Exposure;
 use bevy::prelude::*;
 
+use crate::animation::{SmokeAnimation, SystemState};
 use crate::asset::{SmokeAsset, SmokeSystem};
 use crate::component::{Smoke, SmokeClock, SmokeParticles};
 
@@ -39,17 +40,21 @@ impl Default for SmokeFireLight {
 
 pub(crate) fn update_fire_lights(
     assets: Res<Assets<SmokeAsset>>,
-    smokes: Query<(&Smoke, &SmokeClock, &GlobalTransform, Option<&SmokeParticles>)>,
+    smokes: Query<(&Smoke, &SmokeClock, &SmokeAnimation, &GlobalTransform, Option<&SmokeParticles>)>,
     mut lights: Query<(Entity, &SmokeFireLight, &ChildOf, &mut PointLight, &mut Transform)>,
     mut sample: Local<Vec<haze::Particle>>,
 ) {
     for (entity, fire, parent, mut light, mut transform) in &mut lights {
         let smoke = smokes.get(parent.parent()).ok();
-        let lit = smoke.and_then(|(smoke, clock, placement, particles)| {
+        let lit = smoke.and_then(|(smoke, clock, animation, placement, particles)| {
             let systems = &assets.get(smoke.id())?.systems;
             let seed = entity.index_u32();
-            let of_system = |system| system_light(system, particles, clock.seconds as f32, seed, &mut sample);
-            let brightest = systems.iter().filter_map(of_system).max_by(|a, b| a.intensity.total_cmp(&b.intensity))?;
+            let of_system = |(index, system): (usize, &SmokeSystem)| {
+                let state = SystemState::find(animation.systems(), index, &system.preset, clock.seconds);
+                system_light(&state, &system.images, particles, (clock.seconds as f32, seed), &mut sample)
+            };
+            let lights = systems.iter().enumerate().filter_map(of_system);
+            let brightest = lights.max_by(|a, b| a.intensity.total_cmp(&b.intensity))?;
             Some((brightest, placement.scale().element_product().abs().cbrt()))
         });
         let Some((fire_light, scale)) = lit else {
@@ -69,23 +74,21 @@ pub(crate) fn update_fire_lights(
 }
 
 fn system_light(
-    system: &SmokeSystem,
+    SystemState { snapshot, settings }: &SystemState,
+    images: &haze::MaterialAssets,
     particles: Option<&SmokeParticles>,
-    seconds: f32,
-    seed: u32,
+    (seconds, seed): (f32, u32),
     sample: &mut Vec<haze::Particle>,
 ) -> Option<haze::Light> {
-    let settings = &system.preset.settings;
     if !settings.burns() {
         return None;
     }
     let (particles, step) = match particles {
         Some(particles) => (particles.0.as_slice(), 1),
         None => {
-            let snapshot = system.preset.emitter_snapshot(seconds);
             snapshot.sample(sample);
             (sample.as_slice(), snapshot.step)
         }
     };
-    haze::fire::light(particles, step, settings, &system.images, (seconds, seed))
+    haze::fire::light(particles, step, settings, images, (seconds, seed))
 }

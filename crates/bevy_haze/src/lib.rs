@@ -18,6 +18,9 @@
 //!
 //! # A frame
 //! ```text
+//! PreUpdate         advance_clocks
+//! PostUpdate        animate_smoke          keyframes and flicker at the time of each clock
+//!                   update_fire_lights
 //! ExtractSchedule   extract_smoke          entities with Smoke ─► render world
 //!                   extract_environments   environment maps, reflection probes
 //! Queue             queue_smoke            an item for each entity in each view's transparent phase
@@ -33,6 +36,7 @@
 //! matte surface beside it. Light that belongs to the preset (fire and soft scatter) is not exposed, like
 //! [`StandardMaterial::emissive`](bevy::pbr::StandardMaterial::emissive) with its default exposure weight.
 
+mod animation;
 mod asset;
 mod component;
 mod composite;
@@ -55,7 +59,7 @@ pub use component::{Smoke, SmokeBuffer, SmokeClock, SmokeParticle, SmokeParticle
 pub use fire_light::SmokeFireLight;
 pub use haze;
 
-use bevy::asset::embedded_asset;
+use bevy::asset::{AssetEventSystems, embedded_asset};
 use bevy::core_pipeline::core_3d::{
     Transparent3d, main_opaque_pass_3d, main_transparent_pass_3d, prepare_core_3d_depth_textures,
 };
@@ -92,7 +96,14 @@ impl Plugin for SmokePlugin {
             .register_type::<SmokeFireLight>()
             .add_plugins(RenderAssetPlugin::<GpuSmoke>::default())
             .add_systems(PreUpdate, component::advance_clocks.run_if(resource_exists::<Time>))
-            .add_systems(PostUpdate, fire_light::update_fire_lights.before(TransformSystems::Propagate));
+            .add_systems(
+                PostUpdate,
+                (
+                    component::animate_smoke.after(AssetEventSystems),
+                    fire_light::update_fire_lights.before(TransformSystems::Propagate),
+                )
+                    .chain(),
+            );
         if !app.is_plugin_added::<PbrPlugin>() {
             return;
         }

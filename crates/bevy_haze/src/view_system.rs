@@ -5,6 +5,7 @@ use bevy::render::storage::GpuShaderBuffer;
 use haze::settings::Shadow;
 use haze::{EmitterSnapshot, ParticleBuffer, ParticleSystem, Particles, Settings, glam, wgpu};
 
+use crate::animation::SystemState;
 use crate::environment::HemisphereLight;
 use crate::extract::{ExtractedSmoke, Source};
 use crate::gpu_asset::{GpuSmoke, GpuSystem};
@@ -41,15 +42,17 @@ pub(crate) fn view_systems<'a>(
         }
     };
     preset.systems.iter().take(count).enumerate().map(move |(index, system)| {
-        let scene = if smoke.shades_meshes { system.preset.settings.shadow.scene } else { 0.0 };
-        let shadow = Shadow { scene, ..system.preset.settings.shadow };
+        let state = SystemState::find(&smoke.systems, index, &system.preset, smoke.seconds);
+        let SystemState { snapshot, settings } = state;
+        let scene = if smoke.shades_meshes { settings.shadow.scene } else { 0.0 };
+        let shadow = Shadow { scene, ..settings.shadow };
         ViewSystem {
             smoke,
             system,
             key: system_key(smoke.entity, index),
-            snapshot: system.preset.emitter_snapshot(smoke.seconds as f32),
+            snapshot,
             buffer,
-            settings: Settings { ambient: haze_ambient(ambient), shadow, ..system.preset.settings },
+            settings: Settings { ambient: haze_ambient(ambient), shadow, ..settings },
         }
     })
 }

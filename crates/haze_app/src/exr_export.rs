@@ -16,13 +16,36 @@ use haze_demo::tonemap_pass::exposure;
 
 use crate::backend::Backend;
 use crate::frame_range::FrameNames;
-use crate::image_export::{ExportProgress, Frames};
+use crate::image_export::{ExportProgress, Frames, USUAL_RATE, burns};
 use crate::image_format::{Background, straight};
-use crate::progress::with_progress;
 use crate::smoke_layers::SmokeLayers;
 
+/// Choices of an OpenEXR file.
+#[derive(Clone, Copy, Debug)]
+pub struct ExrOptions {
+    pub background: Background,
+    /// Time to the next frame, of `motion`.
+    pub seconds: f32,
+    /// True if it has the light of fire alone.
+    pub has_fire: bool,
+}
+
+impl ExrOptions {
+    /// Of a single image.
+    pub fn of_image(shot: &Shot, background: Background) -> Self {
+        Self { background, seconds: 1.0 / USUAL_RATE, has_fire: burns(&shot.at_its_time().preset) }
+    }
+
+    /// Of all frames of a sequence, so that their files have the same channels.
+    fn of_sequence(shot: &Shot, frames: &Frames) -> Self {
+        let Frames { format, rate, .. } = frames;
+        let background = format.resolved(shot).background;
+        Self { background, seconds: 1.0 / rate, has_fire: frames.burns(shot, frames.count()) }
+    }
+}
+
 /// Renders a shot and writes it. With the scene: `R`, `G` and `B`. Alone: premultiplied, with `A`, and the layers of the
-/// smoke, below. `seconds`: time to the next frame, of `motion`.
+/// smoke, below.
 ///
 /// | channels | content |
 /// |---|---|
@@ -30,15 +53,9 @@ use crate::smoke_layers::SmokeLayers;
 /// | `normal.X`, `.Y`, `.Z` | mean normal in view space |
 /// | `depth.Z` | mean view depth, metres |
 /// | `motion.X`, `.Y` | mean way until the next frame, pixels: right, up |
-/// | `emission.R`, `.G`, `.B` | light of fire alone, premultiplied; if a system burns |
-pub async fn write(
-    backend: &Backend,
-    shot: &Shot,
-    background: Background,
-    seconds: f32,
-    path: &Path,
-) -> Result<(), Error> {
-    let channels = channels(backend, shot, background, seconds).await?;
+/// | `emission.R`, `.G`, `.B` | light of fire alone, premultiplied; if a system burns, in one of the frames of a sequence |
+pub async fn write(backend: &Backend, shot: &Shot, options: ExrOptions, path: &Path) -> Result<(), Error> {
+    let channels = channels(backend, shot, options).await?;
     write_file(path, &encode(shot.size, channels, path)?)
 }
 
@@ -50,29 +67,27 @@ pub async fn write_sequence(
     names: &FrameNames,
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
+    let options = ExrOptions::of_sequence(shot, frames);
     for (done, frame) in (0..).zip(frames.range.clone()) {
         if !progress.goes_on(done, frames.count()) {
             return Err(frames.stopped_sequence(names, done));
         }
         let (shot, path) = (frames.shot(shot, frame), names.of(frame));
-        let written = write(backend, &shot, frames.format.background, 1.0 / frames.rate, &path);
-        match progress {
-            ExportProgress::Terminal => {
-                with_progress(format!("haze: {}", path.display()), || pollster::block_on(written))?;
-            }
-            ExportProgress::Callback(_) => written.await?,
-        }
+        let written = write(backend, &shot, options, &path);
+        progress.show(format!("haze: {}", path.display()), written).await?;
     }
     Ok(())
 }
 
 /// Renders the channels of a shot.
-async fn channels(backend: &Backend, shot: &Shot, background: Background, seconds: f32) -> Result<Vec<Channel>, Error> {
+async fn channels(backend: &Backend, shot: &Shot, options: ExrOptions) -> Result<Vec<Channel>, Error> {
+    let ExrOptions { background, seconds, has_fire } = options;
+    let is_transparent = background.is_transparent(shot);
     let shot = &*shot.at_its_time();
     let exposure = exposure(shot);
     let lit = |texel: Vec4| (texel.xyz() * if exposure > 0.0 { exposure } else { 1.0 }).extend(texel.w);
     let mut channels = Vec::new();
-    if !background.is_transparent(shot) {
+    if !is_transparent {
         add(&mut channels, &["R", "G", "B"], &backend.render_async(shot).await?, lit);
         return Ok(channels);
     }
@@ -89,7 +104,7 @@ async fn channels(backend: &Backend, shot: &Shot, background: Background, second
     for (name, scalar) in scalars {
         add(&mut channels, &[name], &layers.scalar(scalar).await?, Vec4::splat);
     }
-    if shot.preset.systems.iter().any(|system| system.settings.burns()) {
+    if has_fire {
         add(&mut channels, &["emission.R", "emission.G", "emission.B"], &layers.fire().await?, lit);
     }
     Ok(channels)
@@ -125,18 +140,25 @@ fn add<T: Copy>(channels: &mut Vec<Channel>, names: &[&str], image: &Image<T>, c
 mod tests {
     use exr::prelude::{ReadChannels as _, ReadLayers as _};
     use glam::UVec2;
+    use haze::preset::{Ease, KeyValue, Keyframe, Preset, Track};
 
     use super::*;
+    use crate::image_format::ImageFormat;
 
     /// Reads the channels of the smoke of a preset, by name.
     fn written(preset: &str) -> Vec<(String, Vec<f32>)> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("smoke.exr");
         let shot = Shot::load(preset, UVec2::new(48, 48)).unwrap();
-        let seconds = 1.0 / 24.0;
-        pollster::block_on(write(&Backend::Cpu, &shot, Background::Transparent, seconds, &path)).unwrap();
+        let options = ExrOptions { seconds: 1.0 / 24.0, ..ExrOptions::of_image(&shot, Background::Transparent) };
+        pollster::block_on(write(&Backend::Cpu, &shot, options, &path)).unwrap();
+        read(&path)
+    }
+
+    /// Channels of a file, by name.
+    fn read(path: &Path) -> Vec<(String, Vec<f32>)> {
         let read = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
-        let image = read.all_attributes().from_file(&path).unwrap();
+        let image = read.all_attributes().from_file(path).unwrap();
         let channels = image.layer_data.channel_data.list;
         channels
             .iter()
@@ -165,6 +187,35 @@ mod tests {
         let mean_rise =
             values("motion.Y").iter().sum::<f32>() / depth.iter().filter(|depth| **depth > 0.0).count() as f32;
         assert!(mean_rise > 0.05, "{mean_rise}");
+    }
+
+    #[test]
+    fn all_files_of_a_sequence_have_the_same_channels() {
+        let mut preset = Preset::load("campfire").unwrap();
+        preset.systems.truncate(1);
+        let key = |time, value| Keyframe { time, value, ease: Ease::Hold };
+        let track = |setting: &str, keys| Track { setting: setting.into(), keys, ..Track::default() };
+        let number = |time, number| key(time, KeyValue::Number(number));
+        let scene = |time, name: &str| key(time, KeyValue::Choice(name.into()));
+        let start = preset.time;
+        preset.animation = vec![
+            track("systems[0].settings.fire.intensity", vec![number(start, 0.0), number(start + 0.5, 1.0)]),
+            track("environment.scene", vec![scene(start, "empty"), scene(start + 0.5, "yard")]),
+        ];
+        let shot = Shot::new(preset, Path::new("campfire"), UVec2::splat(16)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let channels = |background| {
+            let format = ImageFormat { background, ..ImageFormat::default() };
+            let frames = Frames { range: 0..=1, rate: 1.0, format };
+            let names = FrameNames::parse(&folder.path().join("f_%d.exr")).unwrap();
+            let progress = ExportProgress::Callback(&|_, _| true);
+            pollster::block_on(write_sequence(&Backend::Cpu, &shot, &frames, &names, &progress)).unwrap();
+            [0, 1].map(|frame| read(&names.of(frame)).into_iter().map(|(name, _)| name).collect::<Vec<_>>())
+        };
+        let [out, lit] = channels(Background::Transparent);
+        assert!(out == lit && lit.contains(&"emission.R".into()), "{out:?} {lit:?}");
+        let [empty, yard] = channels(Background::Auto);
+        assert!(empty == yard && yard == ["B", "G", "R"], "{empty:?} {yard:?}");
     }
 
     #[test]

@@ -7,6 +7,8 @@ use std::path::Path;
 
 use glam::UVec2;
 use haze::image::{CompressionEffort, write_file, write_png};
+#[cfg(not(target_arch = "wasm32"))]
+use haze::preset::{AnimatedPreset, Preset};
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
 use image::codecs::gif::{GifEncoder, Repeat};
@@ -17,7 +19,8 @@ use super::contact_sheet::ContactSheet;
 use super::frame_range::FrameNames;
 use super::image_format::{self, Alpha, Background, BitDepth, ImageFormat};
 use super::interrupt;
-use super::memory_check::check_memory;
+use super::memory_check::{BYTES_PER_PIXEL, check_memory};
+#[cfg(not(target_arch = "wasm32"))]
 use super::progress::with_progress;
 
 /// Range of frames. Frame 0 is at the preset's time.
@@ -63,11 +66,23 @@ impl ExportProgress<'_> {
         if !self.goes_on(done, count) {
             return Ok(None);
         }
-        let draw = async |shot: &Shot| match self {
-            Self::Terminal => with_progress(format!("haze: image {} of {count}", done + 1), || backend.render(shot)),
-            Self::Callback(_) => backend.render_async(shot).await,
-        };
-        Ok(Some(format.render(shot, draw).await?))
+        let draw = async |shot: &Shot| backend.render_async(shot).await;
+        Ok(Some(self.show(image_label(done, count), format.render(shot, draw)).await?))
+    }
+
+    /// Does the work of an image, and shows `what` meanwhile. On a terminal, the work must not wait for anything else.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub async fn show<T>(&self, what: String, work: impl Future<Output = T>) -> T {
+        match self {
+            Self::Terminal => with_progress(what, || pollster::block_on(work)),
+            Self::Callback(_) => work.await,
+        }
+    }
+
+    /// A page has no terminal.
+    #[cfg(target_arch = "wasm32")]
+    async fn show<T>(&self, _: String, work: impl Future<Output = T>) -> T {
+        work.await
     }
 }
 
@@ -79,7 +94,7 @@ impl Frames {
     /// Returns the shot at the time of a frame, with the values that its settings have then.
     pub fn shot(&self, shot: &Shot, frame: u32) -> Shot {
         let mut shot = shot.clone();
-        shot.preset = shot.preset.at(shot.preset.time + frame as f32 / self.rate);
+        shot.preset = shot.preset.at(self.time(&shot, frame));
         shot
     }
 
@@ -92,8 +107,12 @@ impl Frames {
     /// True if a system burns in one of the first `count` frames, counted beyond the range too.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn burns(&self, shot: &Shot, count: u32) -> bool {
-        let mut shots = (0..count).map(|index| self.shot(shot, self.range.start() + index));
-        shots.any(|shot| shot.preset.systems.iter().any(|system| system.settings.burns()))
+        let mut animated = AnimatedPreset::new(&shot.preset);
+        (0..count).any(|index| burns(animated.at(self.time(shot, self.range.start() + index))))
+    }
+
+    fn time(&self, shot: &Shot, frame: u32) -> f32 {
+        shot.preset.time + frame as f32 / self.rate
     }
 
     /// Renders every frame and passes it to `take` with its number. `stopped` makes the error of a run that was stopped
@@ -106,14 +125,26 @@ impl Frames {
         mut take: impl FnMut(u32, DynamicImage) -> Result<(), Error>,
         stopped: impl Fn(u32) -> Error,
     ) -> Result<(), Error> {
+        let format = self.format.resolved(shot);
         for (done, frame) in (0..).zip(self.range.clone()) {
             let (shot, place) = (self.shot(shot, frame), (done, self.count()));
-            let picture = progress.render(place, backend, &shot, self.format).await?;
+            let picture = progress.render(place, backend, &shot, format).await?;
             let picture = picture.ok_or_else(|| stopped(done))?;
             take(frame, picture)?;
         }
         Ok(())
     }
+}
+
+/// True if a system burns.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn burns(preset: &Preset) -> bool {
+    preset.systems.iter().any(|system| system.settings.burns())
+}
+
+/// Text of the progress of one image of many.
+pub fn image_label(done: u32, count: u32) -> String {
+    format!("haze: image {} of {count}", done + 1)
 }
 
 fn stopped(path: &Path, what: String) -> Error {
@@ -143,6 +174,11 @@ const MAX_FLIPBOOK_SIDE: u32 = 32_768;
 
 /// Refuses a flipbook that has too few cells for its frames, or that is too large for an image or for the memory.
 pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), Error> {
+    check_sheet(size, frames, cells, BYTES_PER_PIXEL)
+}
+
+/// The same, for sheets that take so many bytes of memory per pixel.
+pub fn check_sheet(size: UVec2, frames: &Frames, cells: UVec2, bytes_per_pixel: u64) -> Result<(), Error> {
     let (rows, columns) = (cells.x, cells.y);
     let count = frames.count();
     if count > cells.element_product() {
@@ -155,7 +191,7 @@ pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), 
         let expected = format!("at most {MAX_FLIPBOOK_SIDE} along a side");
         return Err(FieldError::from_problem("--sheet", problem, expected).into());
     }
-    check_memory("--sheet", size)
+    check_memory("--sheet", size, bytes_per_pixel)
 }
 
 /// Renders all frames onto one sheet of `cells.x` rows and `cells.y` columns. `path` is the output file, for errors.

@@ -3,9 +3,8 @@
 use glam::{UVec2, Vec4};
 use haze::Error;
 use haze::image::Image;
-use haze::preset::SceneName;
+use haze::preset::{KeyValue, Preset, SceneName};
 use haze::settings::DebugView;
-use haze_author::backdrop::Backdrop;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{encoded, exposure, rgba8, tonemap};
 use image::{DynamicImage, ImageBuffer, imageops};
@@ -26,17 +25,31 @@ pub enum Background {
 }
 
 impl Background {
+    /// Returns the background of all images of a preset, `Scene` or `Transparent`, whatever their time. Images of a preset
+    /// with keyframes must still have theirs: the scene of one time may be empty, and that of another not.
+    pub fn resolved(self, preset: &Preset, view: DebugView) -> Self {
+        match self {
+            Self::Auto if view == DebugView::Final && is_always_empty(preset) => Self::Transparent,
+            Self::Auto => Self::Scene,
+            chosen => chosen,
+        }
+    }
+
     /// Returns true if images of a shot have no background.
     pub fn is_transparent(self, shot: &Shot) -> bool {
-        match self {
-            Self::Auto => {
-                let is_empty =
-                    shot.preset.environment.scene == SceneName::Empty && shot.backdrop == Backdrop::default();
-                is_empty && shot.debug_view == DebugView::Final
-            }
-            Self::Scene => false,
-            Self::Transparent => true,
-        }
+        self.resolved(&shot.preset, shot.debug_view) == Self::Transparent
+    }
+}
+
+/// True if a preset has the scene `empty` at all times, and no scene or sky of its own.
+fn is_always_empty(preset: &Preset) -> bool {
+    if !(preset.environment.scene_file.is_empty() && preset.environment.sky_file.is_empty()) {
+        return false;
+    }
+    let is_empty = |value: &KeyValue| *value == KeyValue::Choice(SceneName::Empty.name().into());
+    match preset.animation.iter().find(|track| track.setting == "environment.scene") {
+        Some(track) => track.keys.iter().all(|key| is_empty(&key.value)),
+        None => preset.environment.scene == SceneName::Empty,
     }
 }
 
@@ -73,6 +86,11 @@ pub struct ImageFormat {
 }
 
 impl ImageFormat {
+    /// Returns the format of all images of a shot, whatever their time.
+    pub fn resolved(self, shot: &Shot) -> Self {
+        Self { background: self.background.resolved(&shot.preset, shot.debug_view), ..self }
+    }
+
     /// Renders an image. `render` renders a shot in linear HDR.
     pub async fn render(
         self,
@@ -139,6 +157,7 @@ pub fn place(sheet: &mut DynamicImage, picture: &DynamicImage, at: UVec2) {
 
 #[cfg(test)]
 mod tests {
+    use haze::preset::{Ease, Keyframe, Track};
     use image::GenericImageView as _;
 
     use super::*;
@@ -183,6 +202,23 @@ mod tests {
         assert!(color(&shot, Background::Auto) && !color(&shot, Background::Scene));
         shot.debug_view = DebugView::Normals;
         assert!(!color(&shot, Background::Auto), "views of data are shown on black");
+    }
+
+    #[test]
+    fn images_of_a_preset_have_a_background_at_all_times_or_at_none() {
+        let mut shot = small("column");
+        let key = |time, name: &str| Keyframe { time, value: KeyValue::Choice(name.into()), ease: Ease::default() };
+        let keys = vec![key(0.0, "empty"), key(30.0, "yard")];
+        shot.preset.animation = vec![Track { setting: "environment.scene".into(), keys, ..Track::default() }];
+        let format = ImageFormat::default().resolved(&shot);
+        for time in [5.0, 40.0] {
+            let now = Shot { preset: shot.preset.at(time), ..shot.clone() };
+            assert!(
+                !rendered(&now, format).color().has_alpha() && !format.blank(&shot, UVec2::ONE).color().has_alpha()
+            );
+        }
+        shot.preset.animation[0].keys.pop();
+        assert!(ImageFormat::default().blank(&shot, UVec2::ONE).color().has_alpha());
     }
 
     #[test]

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::UVec2;
 use haze::image::{CompressionEffort, write_png};
-use haze::preset::{AssetFolders, Preset};
+use haze::preset::{AssetFolders, MAX_TIME, Preset};
 use haze::settings::{Choice, RenderPath, Technique, UnknownChoice};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
@@ -19,7 +19,7 @@ use image::DynamicImage;
 use super::backdrop_options::BackdropArguments;
 use super::backend::Backend;
 use super::inputs::image_paths;
-use super::memory_check::check_memory;
+use super::memory_check::{BYTES_PER_PIXEL, check_memory};
 use super::output::{FileChecks, print_error, print_line};
 
 /// Options of rendering that do not depend on the shot.
@@ -149,11 +149,16 @@ impl ShotArguments {
             preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
         }
         let shot = self.shot(preset)?;
+        self.check_outputs(&shot, outputs)?;
+        Ok(shot)
+    }
+
+    /// Refuses outputs that cannot be written, or that the shot was read from.
+    pub fn check_outputs(&self, shot: &Shot, outputs: &[(&str, PathBuf, &str)]) -> Result<(), Error> {
         let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
         let inputs = pictures.iter().map(PathBuf::as_path).chain(shot.backdrop.files()).chain([self.preset.as_path()]);
         let mut files = FileChecks::for_inputs(inputs);
-        outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))?;
-        Ok(shot)
+        outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))
     }
 
     /// Builds a shot of a changed preset.
@@ -178,7 +183,7 @@ impl ShotArguments {
 impl RunArguments {
     /// Opens the requested renderer.
     pub fn backend(&self) -> Result<Backend, Error> {
-        check_memory("--size", self.size)?;
+        check_memory("--size", self.size, BYTES_PER_PIXEL)?;
         let sources = self.shaders.as_ref().map(Sources::from_folder).transpose()?;
         if self.backend == BackendName::Cpu {
             return match sources {
@@ -234,9 +239,8 @@ pub fn parse_assignment(text: &str) -> Result<(String, String), String> {
 }
 
 fn parse_time(text: &str) -> Result<f32, String> {
-    let limit = 1.0e5;
-    let time = text.parse().ok().filter(|time: &f32| time.abs() <= limit);
-    time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{limit} to {limit}"))
+    let time = text.parse().ok().filter(|time: &f32| time.abs() <= MAX_TIME);
+    time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{MAX_TIME} to {MAX_TIME}"))
 }
 
 fn parse_scale(text: &str) -> Result<u32, String> {

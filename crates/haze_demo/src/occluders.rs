@@ -3,7 +3,7 @@
 //!
 //! The grid is conservative: a box is left out only if it cannot change the result, so the image is unchanged.
 
-use glam::{UVec2, UVec3, Vec3};
+use glam::{IVec2, UVec2, UVec3, Vec3};
 
 use super::boxes::{
     AMBIENT_REACH, MAX_BOXES, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
@@ -17,6 +17,10 @@ pub(crate) const CELLS: UVec3 = UVec3::new(40, 8, 40);
 pub(crate) const ORIGIN: Vec3 = Vec3::new(-20.0, -0.5, -24.0);
 /// Side of a cell, metres.
 const CELL: f32 = 1.0;
+/// Cells along each side of a block. A box that cannot be an occluder in a block is not tested in its cells: what reaches a point
+/// of a cell reaches a point of the block.
+const BLOCK: u32 = 4;
+const _: () = assert!(CELLS.x.is_multiple_of(BLOCK) && CELLS.y.is_multiple_of(BLOCK) && CELLS.z.is_multiple_of(BLOCK));
 /// Margin of a cell, metres: rounding may move points on its border to the neighbour.
 const ROUNDING: f32 = 1.0e-3;
 
@@ -35,25 +39,28 @@ pub(crate) struct Occluders {
 
 impl Occluders {
     pub fn new(boxes: &[SceneBox], lights: &[LightUniform]) -> Self {
-        let size = UVec2::new(CELLS.x * CELLS.z, CELLS.y * (1 + lights.len() as u32));
-        let mut masks = Image::new(size, ALL_BOXES);
-        masks.for_each(|at, mask| {
-            let cell = UVec3::new(at.x % CELLS.x, at.y % CELLS.y, at.x / CELLS.x);
-            let centre = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
-            let half = Vec3::splat(0.5 * CELL + ROUNDING);
+        let lists = 1 + lights.len() as u32;
+        let has_surface = of_each::<bool>(1, 1, |_, centre, half| {
+            boxes.iter().any(|b| box_distance(b, b.to_local(centre - b.centre)).abs() <= half.length())
+        });
+        let is_occluder = |list: u32, b: &SceneBox, centre, half| match list.checked_sub(1) {
+            Some(light) => lights.get(light as usize).is_none_or(|light| can_shadow(b, light, centre, half)),
+            None => can_occlude_sky(b, centre, half),
+        };
+        let among = |candidates: BoxMask, list, centre, half| {
+            let mut mask = [0; 4];
+            for index in indices(candidates, boxes.len()) {
+                mask[index / 32] |= u32::from(is_occluder(list, &boxes[index], centre, half)) << (index % 32);
+            }
+            mask
+        };
+        let blocks = of_each(BLOCK, lists, |(_, list), centre, half| among(ALL_BOXES, list, centre, half));
+        let masks = of_each(1, lists, |(cell, list), centre, half| {
             // Cells without a surface are never shaded; they keep the full mask.
-            if !boxes.iter().any(|b| box_distance(b, b.to_local(centre - b.centre)).abs() <= half.length()) {
-                return;
+            if !has_surface.load(texel(cell, 1, 0)) {
+                return ALL_BOXES;
             }
-            let light = (at.y / CELLS.y).checked_sub(1).and_then(|light| lights.get(light as usize));
-            *mask = [0; 4];
-            for (index, b) in boxes.iter().enumerate() {
-                let is_occluder = match light {
-                    Some(light) => can_shadow(b, light, centre, half),
-                    None => can_occlude_sky(b, centre, half),
-                };
-                mask[index / 32] |= u32::from(is_occluder) << (index % 32);
-            }
+            among(blocks.load(texel(cell / BLOCK, BLOCK, list)), list, centre, half)
         });
         Self { masks }
     }
@@ -64,9 +71,32 @@ impl Occluders {
         if cell.cmplt(Vec3::ZERO).any() || cell.cmpge(CELLS.as_vec3()).any() {
             return ALL_BOXES;
         }
-        let cell = cell.as_uvec3();
-        self.masks.load(UVec2::new(cell.x + cell.z * CELLS.x, list * CELLS.y + cell.y).as_ivec2())
+        self.masks.load(texel(cell.as_uvec3(), 1, list))
     }
+}
+
+/// Evaluates `value` for every block of so many cells along each side, and every list. It gets the block with the list, the
+/// block's centre, and half its size. The layout is that of [`Occluders::masks`].
+fn of_each<T: Copy + Default + Send>(
+    cells: u32,
+    lists: u32,
+    value: impl Fn((UVec3, u32), Vec3, Vec3) -> T + Sync,
+) -> Image<T> {
+    let count = CELLS / cells;
+    let mut values = Image::new(UVec2::new(count.x * count.z, count.y * lists), T::default());
+    values.for_each(|at, texel| {
+        let block = UVec3::new(at.x % count.x, at.y % count.y, at.x / count.x);
+        let side = cells as f32 * CELL;
+        let half = Vec3::splat(0.5 * side + cells as f32 * ROUNDING);
+        *texel = value((block, at.y / count.y), ORIGIN + (block.as_vec3() + 0.5) * side, half);
+    });
+    values
+}
+
+/// Place of a block of so many cells along each side in the image of [`of_each`].
+fn texel(block: UVec3, cells: u32, list: u32) -> IVec2 {
+    let count = CELLS / cells;
+    UVec2::new(block.x + block.z * count.x, list * count.y + block.y).as_ivec2()
 }
 
 /// Iterates over the indices below `count` that are set in a mask.
@@ -114,6 +144,39 @@ mod tests {
     use haze::assets::noise::{pcg3d, unit};
     use haze::preset::Preset;
     use haze_author::backdrop::Backdrop;
+
+    #[test]
+    fn blocks_leave_out_no_occluder_of_their_cells() {
+        for name in ["column", "corridor", "colored_lights", "campfire"] {
+            let preset = Preset::load(name).unwrap();
+            let Scene { boxes, lights, occluders, .. } = Scene::new(&preset.environment, &preset.lights, &Backdrop::default());
+            let mut shaded = 0;
+            for (list, light) in (0..).zip([None].into_iter().chain(lights.iter().map(Some))) {
+                for index in 0..CELLS.element_product() {
+                    let cell = UVec3::new(index % CELLS.x, index / CELLS.x % CELLS.y, index / (CELLS.x * CELLS.y));
+                    let centre = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
+                    let half = Vec3::splat(0.5 * CELL + ROUNDING);
+                    let found = occluders.at(list, centre);
+                    if found == ALL_BOXES {
+                        continue;
+                    }
+                    shaded += 1;
+                    for (index, b) in boxes.iter().enumerate() {
+                        let expected = match light {
+                            Some(light) => can_shadow(b, light, centre, half),
+                            None => can_occlude_sky(b, centre, half),
+                        };
+                        assert_eq!(
+                            found[index / 32] >> (index % 32) & 1 == 1,
+                            expected,
+                            "{name} {list} {cell} {index}"
+                        );
+                    }
+                }
+            }
+            assert!(shaded > 1000, "{name}: {shaded}");
+        }
+    }
 
     #[test]
     fn omitting_non_occluders_does_not_change_the_light() {

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::interpolation::Kind;
 use super::keyframe::KeyValue;
 use super::track::Track;
-use crate::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole, PathStep, field_path};
+use crate::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole, PathStep, write_field_path};
 
 /// Field that a track can change, or any other.
 pub(super) enum AnimatedField<'a> {
@@ -140,9 +140,10 @@ impl AnimatedFields {
             return Self { tracks: Vec::new() };
         }
         let by_setting: HashMap<&str, &Track> = tracks.iter().map(|track| (track.setting.as_str(), track)).collect();
-        let (mut found, mut index) = (Vec::new(), 0);
+        let (mut found, mut index, mut name) = (Vec::new(), 0, String::new());
         for_each_animated_field(fields, &mut |path, field| {
-            if let Some((track, kind)) = by_setting.get(field_path(path).as_str()).copied().zip(field.kind()) {
+            write_field_path(path, &mut name);
+            if let Some((track, kind)) = by_setting.get(name.as_str()).copied().zip(field.kind()) {
                 let (flickers, own) = (field.flickers(), field.value());
                 found.push(FoundTrack { field: index, track: track.clone(), kind, flickers, own });
             }

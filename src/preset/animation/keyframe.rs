@@ -108,13 +108,16 @@ impl<'de> Visitor<'de> for KeyValueVisitor {
     }
 }
 
+/// Largest time of a preset and of a keyframe, before or after the start, and longest period, seconds.
+pub const MAX_TIME: f32 = 1.0e5;
+
 /// A value at a time.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Keyframe {
     /// Time, seconds since the start of emission. Later than the keyframe before it.
-    #[cfg_attr(feature = "schema", schemars(range(min = -1.0e5, max = 1.0e5)))]
+    #[cfg_attr(feature = "schema", schemars(range(min = -MAX_TIME, max = MAX_TIME)))]
     pub time: f32,
     /// Value at this time, of the setting's type and in its range.
     pub value: KeyValue,

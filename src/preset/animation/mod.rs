@@ -8,6 +8,6 @@ mod track;
 mod validate_tracks;
 
 pub(super) use animated_fields::AnimatedFields;
-pub use keyframe::{Ease, KeyValue, Keyframe};
+pub use keyframe::{Ease, KeyValue, Keyframe, MAX_TIME};
 pub use track::{Flicker, MAX_KEYFRAMES, Track};
 pub(super) use validate_tracks::validate_tracks;

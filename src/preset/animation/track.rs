@@ -33,7 +33,7 @@ pub struct Track {
     pub keys: Vec<Keyframe>,
     /// Seconds after which the keyframes repeat, from 0 on; the last one leads to the first again. 0: they do not repeat.
     #[serde(default, skip_serializing_if = "is_default")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = 1.0e5)))]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = super::keyframe::MAX_TIME)))]
     pub period: f32,
     /// Flicker on top of the keyframes. It does not repeat.
     #[serde(default, skip_serializing_if = "is_default")]

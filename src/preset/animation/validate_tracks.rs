@@ -3,13 +3,11 @@
 use std::collections::HashSet;
 
 use super::animated_fields::{AnimatedField, AnimatedFields, for_each_animated_field};
+use super::keyframe::MAX_TIME;
 use super::setting_names;
 use super::track::{MAX_KEYFRAMES, Track};
 use crate::error::FieldError;
-use crate::settings::{Fields, field_path, validate};
-
-/// Largest time of a keyframe, and longest period, seconds: that of a preset's time.
-const MAX_TIME: f32 = 1.0e5;
+use crate::settings::{Fields, validate, write_field_path};
 
 /// Checks the tracks of a preset. `check` checks the preset without tracks, here with the values of each keyframe.
 ///
@@ -79,7 +77,8 @@ fn check_times(track: &Track, at: &str) -> Result<(), FieldError> {
         }
         before = Some(key.time);
         if !key.value.is_finite() {
-            return Err(FieldError::new(format!("{field}.value"), "a number that is not finite", "finite numbers"));
+            let field = format!("{field}.value");
+            return Err(FieldError::from_problem(field, "a number is not finite", "finite numbers"));
         }
     }
     Ok(())
@@ -87,9 +86,10 @@ fn check_times(track: &Track, at: &str) -> Result<(), FieldError> {
 
 /// Checks that the setting exists, and that the values are of its type.
 fn check_types(track: &Track, at: &str, fields: &mut dyn Fields) -> Result<(), FieldError> {
-    let mut found = None;
+    let (mut found, mut name) = (None, String::new());
     for_each_animated_field(fields, &mut |path, field| {
-        if found.is_none() && field_path(path) == track.setting {
+        write_field_path(path, &mut name);
+        if found.is_none() && name == track.setting {
             found = Some(check_field(track, at, &field));
         }
     });

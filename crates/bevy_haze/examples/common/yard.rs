@@ -1,8 +1,20 @@
-//! Ground, a wall and two crates.
+//! Scene of the longer examples: ground, a wall and two crates at night.
 
 use bevy::prelude::*;
 
-pub fn spawn_yard(commands: &mut Commands, meshes: &mut Assets<Mesh>, materials: &mut Assets<StandardMaterial>) {
+pub struct YardPlugin;
+
+impl Plugin for YardPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(ClearColor(Color::srgb(0.04, 0.05, 0.08))).add_systems(Startup, spawn_yard);
+    }
+}
+
+fn spawn_yard(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
     let mut solid = |size: Vec3, color: Color, at: Transform| {
         let material = StandardMaterial { base_color: color, perceptual_roughness: 0.9, ..default() };
         commands.spawn((Mesh3d(meshes.add(Cuboid::from_size(size))), MeshMaterial3d(materials.add(material)), at));

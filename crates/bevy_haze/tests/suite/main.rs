@@ -3,9 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
 
 mod alone;
+mod animation;
 mod cost;
 mod entities;
 mod environment;
+mod errors;
 mod host;
 mod parity;
 mod picture;

@@ -12,6 +12,12 @@ use crate::picture::count;
 
 const PRESET: &str = include_str!("../../assets/column.smoke.json");
 
+/// Packages cannot reach outside, so the examples have a copy.
+#[test]
+fn the_preset_of_the_examples_is_the_built_in_one() {
+    assert_eq!(PRESET, include_str!("../../../../presets/column.json"));
+}
+
 /// Updates until the condition holds.
 fn wait(host: &mut Host, condition: impl Fn(&World) -> bool) {
     let started = Instant::now();
@@ -109,11 +115,15 @@ fn images_beside_a_preset_are_read_by_the_asset_server() {
 fn files_that_are_no_presets_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let particles = PRESET.replace("\"name\": \"smoke\",", "\"name\": \"smoke\", \"cache\": {\"path\": \"a.ply\"},");
+    let no_sprite = PRESET.replace("\"sprite\": \"puff\"", "\"sprite\": \"absent.png\"");
+    let unknown = PRESET.replace("\"sprite\": \"puff\"", "\"sprite\": \"pufff\"");
     let outside = PRESET.replace("\"diffuse_soft\"", "\"../red.png\"");
     let mut host = host(folder.path());
     for (name, text, expected) in [
         ("cut.smoke.json", &PRESET[..200], "cut.smoke.json:"),
         ("particles.smoke.json", &particles, "systems[0].cache.path"),
+        ("sprite.smoke.json", &no_sprite, "material.sprite"),
+        ("unknown.smoke.json", &unknown, "pufff"),
         ("outside.smoke.json", &outside, "material.diffuse_ramp"),
     ] {
         write(folder.path(), name, text);

@@ -9,7 +9,7 @@ use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
 use pollster::block_on;
 
-use crate::exr_export;
+use crate::exr_export::{self, ExrOptions};
 use crate::frame_range::{FrameNames, parse_frames, parse_rate, parse_sheet};
 use crate::image_export::{self, ExportProgress, Frames, SCENE, USUAL_RATE};
 use crate::image_format::{Alpha, Background, BitDepth, ImageFormat};
@@ -104,7 +104,8 @@ fn image(arguments: &Arguments) -> Result<(), Error> {
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, arguments.kind())? };
     let backend = arguments.shot.run.backend()?;
     if arguments.kind() == "exr" {
-        block_on(exr_export::write(&backend, &shot, arguments.format().background, 1.0 / USUAL_RATE, path))?;
+        let options = ExrOptions::of_image(&shot, arguments.format().background);
+        block_on(exr_export::write(&backend, &shot, options, path))?;
         return print_line!("{}: {} on {}", path.display(), shot.preset.name, backend.description());
     }
     let one = Frames { range: 0..=0, rate: 1.0, format: arguments.format() };

@@ -18,7 +18,7 @@ use image::DynamicImage;
 
 use crate::backend::Backend;
 use crate::engine::Engine;
-use crate::image_export::{ExportProgress, Frames, stopped_before_writing};
+use crate::image_export::{ExportProgress, Frames, check_sheet, image_label, stopped_before_writing};
 use frame_layers::FrameLayers;
 use numbers::FlipbookNumbers;
 use sheets::Sheets;
@@ -32,6 +32,27 @@ pub struct FlipbookOptions {
     /// Frames after the last that fade into the first ones, so that the flipbook loops. 0: none.
     pub loop_fade: u32,
     pub has_six_way: bool,
+}
+
+impl FlipbookOptions {
+    /// Checks the choices before anything is rendered or written.
+    ///
+    /// # Errors
+    /// [`Error::Field`] for a fade that is longer than the flipbook, and for sheets with too few cells or too many pixels;
+    /// [`Error::Io`] for sheets that do not fit into memory.
+    pub fn check(&self, shot: &Shot, frames: &Frames) -> Result<(), Error> {
+        let (count, fade) = (frames.count(), self.loop_fade);
+        if fade >= count {
+            let expected = format!("less than the number of frames, {count}");
+            return Err(FieldError::new("--loop", fade, expected).into());
+        }
+        if frames.range.end().checked_add(fade).is_none() {
+            let problem = format!("{fade} frames after {} are beyond the last frame", frames.range.end());
+            return Err(FieldError::from_problem("--loop", problem, format!("at most frame {}", u32::MAX)).into());
+        }
+        let bytes = sheets::bytes_per_pixel(frames.burns(shot, count + fade), self.has_six_way);
+        check_sheet(shot.size, frames, self.cells, bytes)
+    }
 }
 
 /// Files of a flipbook.
@@ -60,7 +81,7 @@ impl FlipbookExport {
     /// Renders a flipbook. `folder` is only named in errors.
     ///
     /// # Errors
-    /// [`Error::Field`] for a fade that is longer than the flipbook; errors of rendering; [`Error::Io`] if it was stopped.
+    /// As [`FlipbookOptions::check`]; errors of rendering; [`Error::Io`] if it was stopped.
     pub async fn render(
         backend: &Backend,
         shot: &Shot,
@@ -69,15 +90,8 @@ impl FlipbookExport {
         progress: &ExportProgress<'_>,
         folder: &Path,
     ) -> Result<Self, Error> {
+        options.check(shot, frames)?;
         let (count, fade) = (frames.count(), options.loop_fade);
-        if fade >= count {
-            let expected = format!("less than the number of frames, {count}");
-            return Err(FieldError::new("--loop", fade, expected).into());
-        }
-        if frames.range.end().checked_add(fade).is_none() {
-            let problem = format!("{fade} frames after {} are beyond the last frame", frames.range.end());
-            return Err(FieldError::from_problem("--loop", problem, format!("at most frame {}", u32::MAX)).into());
-        }
         let all = count + fade;
         let burns = frames.burns(shot, all);
         let layers = async |index: u32| {
@@ -86,17 +100,18 @@ impl FlipbookExport {
             if !progress.goes_on(done, all) {
                 return Err(stopped_before_writing(folder, done, all));
             }
-            let at = async |frame: u32| {
+            let at = async |frame: u32, done: u32| {
                 let shot = frames.shot(shot, frames.range.start() + frame);
-                FrameLayers::render(backend, &shot, 1.0 / frames.rate, burns, options.has_six_way).await
+                let layers = FrameLayers::render(backend, &shot, 1.0 / frames.rate, burns, options.has_six_way);
+                progress.show(image_label(done, all), layers).await
             };
-            let layers = at(index).await?;
+            let layers = at(index, done).await?;
             if index >= fade {
                 return Ok(layers);
             }
             // The frame after the last is the first, so that it follows the last.
             let share = 1.0 - index as f32 / fade as f32;
-            Ok(layers.mixed(&at(count + index).await?, share))
+            Ok(layers.mixed(&at(count + index, done + 1).await?, share))
         };
         let mut sheets = Sheets::new(shot.size, options.cells);
         // A frame is placed when the next one is known, for its motion.

@@ -31,6 +31,21 @@ pub struct Sheets {
     six_way: Option<[Image<Vec4>; 2]>,
 }
 
+/// Bytes of memory per pixel of sheets, between rendering and the files: the sheets, one that is being encoded, and those that
+/// are. Half as much again allows for the allocator's overhead.
+pub fn bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
+    let (texel, six_way) = (size_of::<Vec4>() as u64, SIX_WAY.len() as u64);
+    // Color with alpha, normals, motion.
+    let (mut sheets, mut encoded) = (3, 4 + 3 + 3);
+    if burns {
+        (sheets, encoded) = (sheets + 1, encoded + 3);
+    }
+    if has_six_way {
+        (sheets, encoded) = (sheets + six_way, encoded + 4 * six_way);
+    }
+    ((sheets + 1) * texel + encoded) * 3 / 2
+}
+
 /// Encoded sheets, by file name.
 pub struct EncodedSheets {
     pub images: Vec<(&'static str, DynamicImage)>,
@@ -61,6 +76,14 @@ impl Sheets {
             let sheets = self.six_way.get_or_insert_with(|| [empty(), empty()]);
             sheets.iter_mut().zip(sides).for_each(|(sheet, side)| copy(sheet, &filled(side), corner));
         }
+    }
+
+    /// Bytes of memory that the sheets take.
+    #[cfg(test)]
+    pub fn bytes(&self) -> usize {
+        let all = [&self.light, &self.normals, &self.motion].into_iter();
+        let all = all.chain(&self.fire).chain(self.six_way.iter().flatten());
+        all.map(|sheet| size_of_val(sheet.texels.as_slice())).sum()
     }
 
     /// Encodes the sheets in the conventions of an engine.

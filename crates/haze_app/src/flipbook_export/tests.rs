@@ -212,3 +212,20 @@ fn stopped_flipbooks_leave_no_file() {
     assert!(said.contains("stopped: not written; 2 of 4 images were rendered"), "{said}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
+#[test]
+fn sheets_take_no_more_memory_than_is_checked() {
+    for (preset, has_six_way) in [("column", false), ("campfire", true)] {
+        let (shot, frames) = (shot(preset), frames(1, 8.0));
+        let burns = frames.burns(&shot, 1);
+        let layers = block_on(FrameLayers::render(&Backend::Cpu, &shot, 0.1, burns, has_six_way)).unwrap();
+        let mut sheets = Sheets::new(shot.size, UVec2::ONE);
+        let light = encoded(&layers.light, 1.0);
+        sheets.place(0, &layers, [&light, &light]);
+        let made = sheets.encode(Engine::Unity);
+        let encoded: usize = made.images.iter().map(|(_, image)| image.as_bytes().len()).sum();
+        let pixels = (SIDE * SIDE) as usize;
+        let expected = (sheets.bytes() + 16 * pixels + encoded) as u64 * 3 / 2;
+        assert_eq!(sheets::bytes_per_pixel(burns, has_six_way), expected / pixels as u64, "{preset}");
+    }
+}

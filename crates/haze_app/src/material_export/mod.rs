@@ -52,7 +52,7 @@ impl MaterialExport {
             let expected = "another mode: an engine's lights do not light a painted motif";
             return refuse("diffuse.mode", "painted_motif", expected);
         }
-        let snippet = Snippet::new(settings);
+        let snippet = Snippet::new(settings)?;
         let mut texts = sources::sources(engine, &snippet)?;
         texts.push(("README.md", readme::readme(engine, title, system, &snippet)));
         let textures = snippet

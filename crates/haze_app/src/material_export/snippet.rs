@@ -1,10 +1,11 @@
 //! WGSL of a material, assembled from the functions of the transfer pass.
 
 use glam::Vec3;
-use haze::MaterialAssets;
 use haze::ramp::Ramp;
 use haze::settings::{Backlight, Choice as _, CoverageMode, Settings, SoftScatterMode};
-use haze::shader;
+use haze::{Error, MaterialAssets, shader};
+
+use super::translation::untranslated;
 
 /// A ramp that a material reads.
 pub struct UsedRamp {
@@ -48,15 +49,18 @@ const HEAT_AND_AMOUNT: &[(&str, &str)] = &[("heat", "f32"), ("amount", "f32")];
 
 impl Snippet {
     /// `settings`: of a system that is lit by ramps.
-    pub fn new(settings: &Settings) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Field`] if the library does not compose.
+    pub fn new(settings: &Settings) -> Result<Self, Error> {
         let (ramps, functions) = (used_ramps(settings), functions(settings));
         let constants = constants(settings);
         let own: String = functions.iter().map(Function::wgsl).collect();
-        let library = shader::compose(LIBRARY).unwrap_or_default();
+        let library = shader::compose(LIBRARY).map_err(|reason| untranslated("WGSL", &reason))?;
         let chosen = [("BACKLIGHT", settings.diffuse.backlight.index()), ("RAMP_FILTER", settings.ramp_filter.index())];
         let items = items(&with_chosen(&library, &chosen));
         let wgsl = constants + &used_items(&items, &own) + &own;
-        Self { ramps, functions, wgsl: wgsl.trim_end().to_owned() + "\n" }
+        Ok(Self { ramps, functions, wgsl: wgsl.trim_end().to_owned() + "\n" })
     }
 }
 

@@ -224,7 +224,7 @@ fn wgsl_computes_what_the_renderers_compute() {
     let gpu = Headless::new().unwrap();
     let (assets, cases) = (assets(), cases());
     for settings in all_settings() {
-        let snippet = Snippet::new(&settings);
+        let snippet = Snippet::new(&settings).unwrap();
         let exact = snippet.wgsl.replace("EXACT_FILTERING: bool = false", "EXACT_FILTERING: bool = true");
         let worst = |text: &str| error(&settings, &assets, &cases, &run(&gpu, &snippet, text, &assets, &cases));
         // The precision that Vulkan allows `pow`.
@@ -320,7 +320,7 @@ fn shader_around(file: &str, text: &str, snippet: &Snippet) -> String {
 #[test]
 fn sources_for_engines_compile() {
     for settings in all_settings() {
-        let snippet = Snippet::new(&settings);
+        let snippet = Snippet::new(&settings).unwrap();
         for engine in ENGINES {
             for (file, text) in sources::sources(engine, &snippet).unwrap() {
                 if file.ends_with(".wgsl") {

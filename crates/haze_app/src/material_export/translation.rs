@@ -51,7 +51,8 @@ fn parse(wgsl: &str) -> Result<(Module, ModuleInfo), Error> {
     Ok((module, info))
 }
 
-fn untranslated(language: &str, error: &dyn std::fmt::Display) -> Error {
+/// Error of a step that fails for no preset.
+pub fn untranslated(language: &str, error: &dyn std::fmt::Display) -> Error {
     let problem = format!("the material was not translated to {language}: {error}");
     FieldError::from_problem("material", problem, "a report of this bug").into()
 }

@@ -10,7 +10,7 @@ use pollster::block_on;
 use crate::engine::Engine;
 use crate::flipbook_export::{FILES, FlipbookExport, FlipbookOptions};
 use crate::frame_range::{parse_frames, parse_rate, parse_sheet};
-use crate::image_export::{ExportProgress, Frames, check_flipbook};
+use crate::image_export::{ExportProgress, Frames};
 use crate::image_format::ImageFormat;
 use crate::options::{ShotArguments, whole_number};
 use crate::output::print_line;
@@ -45,18 +45,20 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let folder = &arguments.shot.output;
-    std::fs::create_dir_all(folder).map_err(|error| Error::Io { path: folder.into(), error })?;
-    let outputs = FILES.map(|name| ("--output", folder.join(name), name.rsplit('.').next().unwrap_or_default()));
-    let shot = arguments.shot.load_outputs(&outputs)?;
+    let shot = arguments.shot.load_outputs(&[])?;
     let frames = Frames { range: arguments.frames.clone(), rate: arguments.rate, format: ImageFormat::default() };
-    check_flipbook(shot.size, &frames, arguments.sheet)?;
-    let backend = arguments.shot.run.backend()?;
     let options = FlipbookOptions {
         engine: arguments.engine,
         cells: arguments.sheet,
         loop_fade: arguments.loop_fade,
         has_six_way: arguments.six_way,
     };
+    options.check(&shot, &frames)?;
+    let backend = arguments.shot.run.backend()?;
+    // The folder is made when all else is known to be right.
+    std::fs::create_dir_all(folder).map_err(|error| Error::Io { path: folder.into(), error })?;
+    let outputs = FILES.map(|name| ("--output", folder.join(name), name.rsplit('.').next().unwrap_or_default()));
+    arguments.shot.check_outputs(&shot, &outputs)?;
     let progress = ExportProgress::terminal();
     let export = block_on(FlipbookExport::render(&backend, &shot, &frames, options, &progress, folder))?;
     export.write(folder, arguments.shot.effort())?;

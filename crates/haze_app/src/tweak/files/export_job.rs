@@ -17,7 +17,7 @@ use crate::debug_view_sheet;
 use crate::frame_range::FrameNames;
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::platform::file_io::{CompressionEffort, write_png};
-use crate::tweak::platform::render_job::{Engine, ExportProgress, Frames, ImageFormat, SCENE, USUAL_RATE};
+use crate::tweak::platform::render_job::{Engine, ExportProgress, Frames, ImageFormat, SCENE};
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::platform::{IS_PAGE, file_io, render_job};
 use crate::tweak::session::Session;
@@ -356,7 +356,7 @@ async fn make(
     let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate, format };
     let cells = match &product {
         ExportKind::Image if options.file == FileKind::Exr => {
-            render_job::write_exr(backend, shot, format.background, 1.0 / USUAL_RATE, path).await?;
+            render_job::write_exr(backend, shot, format.background, path).await?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::Image => {

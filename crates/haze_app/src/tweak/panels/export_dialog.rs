@@ -146,7 +146,8 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
             }
             options.format.bits = file.1;
             choices(ui, "Background", &mut options.format.background, &BACKGROUNDS);
-            if file.0 == FileKind::Png && options.format.background == Background::Transparent {
+            let background = options.format.background.resolved(&session.document.preset, session.view.debug_view);
+            if file.0 == FileKind::Png && background == Background::Transparent {
                 choices(ui, "Alpha", &mut options.format.alpha, &ALPHAS);
             }
         }

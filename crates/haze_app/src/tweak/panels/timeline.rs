@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 use glam::UVec2;
-use haze::preset::Preset;
+use haze::preset::{MAX_TIME, Preset};
 use haze_author::preset::no_effect_reason;
 
 use super::narrow;
@@ -37,7 +37,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         ui.add(scrub).on_hover_text("Time since the smoke began");
         let (mut start, mut end) = (*playback.range.start(), *playback.range.end());
         let drag =
-            |value| egui::DragValue::new(value).speed(0.05).range(-1000.0..=1.0e5).fixed_decimals(1).suffix(" s");
+            |value| egui::DragValue::new(value).speed(0.05).range(-1000.0..=MAX_TIME).fixed_decimals(1).suffix(" s");
         ui.weak("From").labelled_by(ui.add(drag(&mut start)).on_hover_text("Start of the loop").id);
         ui.weak("To").labelled_by(ui.add(drag(&mut end)).on_hover_text("End of the loop").id);
         if end > start {

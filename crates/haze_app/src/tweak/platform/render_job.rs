@@ -16,6 +16,8 @@ use super::IS_PAGE;
 use super::file_io::make_folder;
 use crate::backend::Backend;
 #[cfg(not(target_arch = "wasm32"))]
+use crate::exr_export::{self, ExrOptions};
+#[cfg(not(target_arch = "wasm32"))]
 use crate::flipbook_export::{FlipbookExport, FlipbookOptions};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::material_export::MaterialExport;
@@ -23,7 +25,7 @@ use crate::material_export::MaterialExport;
 use crate::page_renderer::PageRenderer;
 
 pub use crate::image_export::{
-    ExportProgress, Frames, SCENE, USUAL_RATE, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
+    ExportProgress, Frames, SCENE, check_flipbook, column_count, render_flipbook, render_sheet, write_gif,
     write_sequence,
 };
 
@@ -42,13 +44,18 @@ pub fn open_backend(_: Option<&Sources>) -> Result<Backend, Error> {
     Ok(Backend::Page(Box::new(PageRenderer::open()?)))
 }
 
-/// Writes an OpenEXR file; see `exr_export`.
+/// Writes an OpenEXR file of one image; see `exr_export`.
 #[cfg(not(target_arch = "wasm32"))]
-pub use crate::exr_export::{write as write_exr, write_sequence as write_exr_sequence};
+pub async fn write_exr(backend: &Backend, shot: &Shot, background: Background, path: &Path) -> Result<(), Error> {
+    exr_export::write(backend, shot, ExrOptions::of_image(shot, background), path).await
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use crate::exr_export::write_sequence as write_exr_sequence;
 
 /// A page offers no OpenEXR files.
 #[cfg(target_arch = "wasm32")]
-pub async fn write_exr(_: &Backend, _: &Shot, _: Background, _: f32, path: &Path) -> Result<(), Error> {
+pub async fn write_exr(_: &Backend, _: &Shot, _: Background, path: &Path) -> Result<(), Error> {
     Err(Error::Io { path: path.into(), error: std::io::ErrorKind::Unsupported.into() })
 }
 
@@ -61,7 +68,7 @@ pub async fn write_exr_sequence(
     names: &crate::frame_range::FrameNames,
     _: &ExportProgress<'_>,
 ) -> Result<(), Error> {
-    write_exr(backend, shot, frames.format.background, 1.0, &names.of(0)).await
+    write_exr(backend, shot, frames.format.background, &names.of(0)).await
 }
 
 /// Writes the material of a system into a folder.

@@ -71,6 +71,21 @@ fn flipbooks_are_written_with_their_numbers() {
 }
 
 #[test]
+fn refused_flipbooks_leave_no_folder() {
+    let folder = folder();
+    let start = ["export", "flipbook", "--engine", "unity", "--frames", "0..2", "-o", "book"];
+    for wrong in [
+        &["colunm", "--sheet", "2x2"][..],
+        &["--sheet", "2x2", "--loop", "3"],
+        &["--sheet", "1x1"],
+        &["--sheet", "2x2", "--set", "boost=-1"],
+    ] {
+        refusal(folder.path(), &[&start[..], wrong].concat());
+        assert!(!folder.path().join("book").exists(), "{wrong:?}");
+    }
+}
+
+#[test]
 fn pixels_of_images_are_as_asked_for() {
     let folder = folder();
     let picture = |arguments: &[&str]| {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Key, Modifiers, PointerButton, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use haze::preset::Preset;
+use haze::preset::{Preset, SceneName};
 use tempfile::TempDir;
 
 use super::*;
@@ -117,6 +117,12 @@ fn files_and_alpha_are_chosen_in_the_dialog() {
         bench.window.get_by_label(name).click();
         bench.window.run_steps(2);
     };
+    assert!(bench.window.query_by_label("Premultiplied").is_none(), "images with the scene have no alpha");
+    bench.window.state_mut().session.document.preset.environment.scene = SceneName::Empty;
+    bench.window.run_steps(2);
+    assert!(bench.window.query_by_label("Premultiplied").is_some(), "nothing is behind the smoke");
+    bench.window.state_mut().session.document.preset.environment.scene = SceneName::Yard;
+    bench.window.run_steps(2);
     choose(&mut bench, "Transparent");
     choose(&mut bench, "Premultiplied");
     choose(&mut bench, "PNG 16");
