@@ -149,7 +149,8 @@ mod tests {
     fn blocks_leave_out_no_occluder_of_their_cells() {
         for name in ["column", "corridor", "colored_lights", "campfire"] {
             let preset = Preset::load(name).unwrap();
-            let Scene { boxes, lights, occluders, .. } = Scene::new(&preset.environment, &preset.lights, &Backdrop::default());
+            let Scene { boxes, lights, occluders, .. } =
+                Scene::new(&preset.environment, &preset.lights, &Backdrop::default());
             let mut shaded = 0;
             for (list, light) in (0..).zip([None].into_iter().chain(lights.iter().map(Some))) {
                 for index in 0..CELLS.element_product() {
