@@ -87,10 +87,17 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
         [list] if length(before) < length(after) => format!("{} added", sentence_case(singular(list))),
         [list] if length(before) > length(after) => format!("{} removed", sentence_case(singular(list))),
         fields if fields.iter().all(|field| MOVES.contains(&field.as_str())) => "Camera".into(),
+        fields if moves_sun(fields) => "Sun and sky".into(),
         [field] => format!("{}{of}", display_name(field.rsplit('.').next().unwrap_or(field))),
         fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} settings{of}", fields.len()),
         fields => format!("{} settings", fields.len()),
     }
+}
+
+/// True if fields are those of a time of day.
+fn moves_sun(fields: &[String]) -> bool {
+    let has = |ending: &str| fields.iter().any(|field| field.ends_with(ending));
+    has("environment.horizon") && has(".direction")
 }
 
 /// Returns the name of a setting with that of its light or system: "Boost of smoke", "Shadow: Strength of smoke".
@@ -160,6 +167,8 @@ mod tests {
         expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "Exposure");
         expect(said(|preset| preset.camera.target.x += 1.0), "camera.target", "Camera");
         expect(said(|preset| preset.lights.push(Light::default())), "lights", "Light added");
+        let dusk = |preset: &mut Preset| (preset.environment.horizon.x, preset.lights[1].direction.y) = (0.5, 0.5);
+        expect(said(dusk), "environment.horizon lights[1].direction", "Sun and sky");
         expect(said(|preset| preset.lights.truncate(2)), "lights", "Light removed");
         expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "System added");
         expect(

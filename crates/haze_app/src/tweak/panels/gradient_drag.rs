@@ -26,7 +26,9 @@ pub fn grip(ui: &mut Ui, name: &str, gradient: DraggedGradient) {
     } else if response.hovered() {
         ui.set_cursor_icon(CursorIcon::Grab);
     }
-    response.on_hover_text("Drag it onto the stops of another ramp to copy the gradient");
+    response.on_hover_text(
+        "Drag it onto the stops of another ramp to copy the gradient. A ramp without stops needs Make my own first.",
+    );
 }
 
 /// Marks the place of an editor while a gradient is over it, and returns the gradient that is dropped there.
