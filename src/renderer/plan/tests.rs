@@ -104,7 +104,7 @@ fn only_the_modes_cubemap_and_motif_bake_light() {
 }
 
 #[test]
-fn light_target_is_planned_only_for_final_images_at_reduced_resolution() {
+fn light_target_is_planned_only_for_final_images_at_reduced_resolution_or_if_computed() {
     let mut settings = Settings::default();
     settings.accumulate.lighting_resolution = LightingResolution::Full;
     assert_eq!(deferred(&inputs(), &settings).light_target, None);
@@ -125,9 +125,14 @@ fn light_target_is_planned_only_for_final_images_at_reduced_resolution() {
     settings.accumulate.upsample = Upsample::Bilinear;
     assert_eq!(deferred(&inputs(), &settings).depth_slopes, None);
     settings.accumulate.scale = 1;
-    assert_eq!(deferred(&inputs(), &settings).light_target, None);
+    let computed = deferred(&inputs(), &settings);
+    assert!(computed.light_target.is_some() && computed.depth_slopes.is_none());
+    assert!(computed.transfer_lit.is_some_and(|key| key.tiles));
+    let drawn = PipelineInputs { tiles: None, ..inputs() };
+    assert_eq!(deferred(&drawn, &settings).light_target, None);
     settings.accumulate.max_side = 1279;
-    assert!(deferred(&inputs(), &settings).light_target.is_some());
+    let drawn = deferred(&drawn, &settings);
+    assert!(drawn.light_target.is_some() && drawn.transfer_lit.is_some_and(|key| !key.tiles && !key.glows));
 }
 
 #[test]

@@ -287,6 +287,8 @@ mod tests {
     #[test]
     fn a_selected_light_does_not_widen_the_narrowest_panel() {
         let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
+        // Numbers with many digits.
+        harness.state_mut().session.document.preset.lights[1].direction = glam::Vec3::new(-0.998, -0.152, -0.134);
         harness.get_by_label("Light").click();
         harness.run_steps(3);
         for light in 0..3 {

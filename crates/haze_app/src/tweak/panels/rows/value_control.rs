@@ -154,12 +154,13 @@ pub fn vector(
         (ui.spacing_mut().interact_size.x, ui.spacing_mut().button_padding.x) = (width, 2.0);
     }
     let mut axes = value.to_array();
+    let decimals = decimals_that_fit(ui, &axes, width);
     for (axis, label) in axes.iter_mut().zip(["x", "y", "z"]) {
         let (before, typed) = (*axis, std::cell::RefCell::new(None));
         let drag = egui::DragValue::new(axis)
             .speed(0.02)
             .range(low..=high)
-            .max_decimals(3)
+            .max_decimals(decimals)
             .update_while_editing(false)
             .custom_parser(|text| {
                 let number = parse(text, unit).filter(|number| range.contains(&(*number as f32)));
@@ -180,6 +181,25 @@ pub fn vector(
     if edited.is_finite() {
         *value = edited;
     }
+}
+
+/// Returns the number of decimals, at most three, with which numbers fit into fields of a width. A wider row would widen the
+/// panel. Narrows the padding of the fields if it must.
+fn decimals_that_fit(ui: &mut Ui, numbers: &[f32], width: f32) -> usize {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let widest = |decimals: usize| {
+        let text = |number: &f32| {
+            ui.painter().layout_no_wrap(format!("{number:.decimals$}"), font.clone(), egui::Color32::WHITE)
+        };
+        numbers.iter().map(|number| text(number).size().x).fold(0.0, f32::max)
+    };
+    let widths = [0, 1, 2, 3].map(widest);
+    let fits = |padding: f32| (0..=3).rev().find(|&decimals| widths[decimals] + 2.0 * padding <= width);
+    if let Some(3) = fits(ui.spacing().button_padding.x) {
+        return 3;
+    }
+    ui.spacing_mut().button_padding.x = 2.0;
+    fits(2.0).unwrap_or(0)
 }
 
 /// Draws a linear RGB color as a swatch and as numbers.
