@@ -1,6 +1,6 @@
 //! Tests of picking and dragging lights.
 
-use eframe::egui::{Event, Key, Modifiers, PointerButton, vec2};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use glam::Vec3;
 use haze::preset::KeyValue;
@@ -30,8 +30,8 @@ fn an_axis_drag_moves_the_light_along_the_axis_in_one_step() {
     }
 }
 
-#[test]
-fn a_drag_of_a_light_with_keyframes_is_one_keyframe_and_one_step() {
+/// A window between two keyframes of a light's position.
+fn moving() -> Harness<'static, Window> {
     let mut harness = lit(Light::default());
     let session = &mut harness.state_mut().session;
     let own = session.document.preset.lights[0].position;
@@ -42,13 +42,24 @@ fn a_drag_of_a_light_with_keyframes_is_one_keyframe_and_one_step() {
     session.track(false);
     session.playback.time = 2.0;
     harness.run();
-    // The handles are where the light is at this time.
+    harness
+}
+
+/// Centre handle of the light, which is where the light is at the shown time.
+fn shown_centre(harness: &Harness<'_, Window>) -> Pos2 {
     let shown = harness.state().session.preset_now();
-    let seen = projection(&harness);
-    let shapes = handles(&shown.lights[0], &seen);
-    let Shape::Square(from) = shapes.into_iter().find(|shape| shape.0 == Handle::Centre).unwrap().1 else {
+    let shapes = handles(&shown.lights[0], &projection(harness));
+    let Shape::Square(centre) = shapes.into_iter().find(|shape| shape.0 == Handle::Centre).unwrap().1 else {
         unreachable!()
     };
+    centre
+}
+
+#[test]
+fn a_drag_of_a_light_with_keyframes_is_one_keyframe_and_one_step() {
+    let mut harness = moving();
+    let (own, seen) = (light(&harness).position, projection(&harness));
+    let from = shown_centre(&harness);
     let to = from + vec2(60.0, -40.0);
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(20.0, -10.0), to]);
     let session = &harness.state().session;
@@ -181,22 +192,9 @@ fn a_light_dragged_within_one_long_frame_ends_under_the_pointer() {
 
 #[test]
 fn escape_during_a_drag_leaves_no_keyframe() {
-    let mut harness = lit(Light::default());
-    let session = &mut harness.state_mut().session;
-    let own = session.document.preset.lights[0].position;
-    for time in [0.0, 4.0] {
-        let value = KeyValue::Vector(own + Vec3::X * 0.2 * time);
-        set_key(&mut session.document.preset, "lights[0].position", time, value);
-    }
-    session.track(false);
-    session.playback.time = 2.0;
-    harness.run();
+    let mut harness = moving();
     let before = harness.state().session.document.preset.clone();
-    let shown = harness.state().session.preset_now();
-    let shapes = handles(&shown.lights[0], &projection(&harness));
-    let Shape::Square(from) = shapes.into_iter().find(|shape| shape.0 == Handle::Centre).unwrap().1 else {
-        unreachable!()
-    };
+    let from = shown_centre(&harness);
     harness.hover_at(from);
     harness.run_steps(2);
     harness.drag_at(from);
