@@ -98,7 +98,7 @@ pub use renderer::{
     read_only_depth_is_supported, shader,
 };
 pub use settings::{ScaleBudget, Settings};
-pub use view_setup::{AttachmentRole, AttachmentSet, LightingChoice};
+pub use view_setup::{AttachmentRole, AttachmentSet, LightingChoice, ScaleChoice};
 
 pub use glam;
 pub use wgpu;

@@ -10,6 +10,7 @@ use super::ramp_steps::{RampSteps, largest_step};
 use super::sprite::Sprite;
 use super::sprite::alpha_bounds::AlphaBounds;
 use super::sprite::sprite_density::SpriteDensity;
+use super::sprite::sprite_detail::SpriteDetail;
 use crate::error::FieldError;
 use crate::formula::diffuse_bake::zonal_coefficients;
 use crate::formula::ramp::sample_ramp_2d;
@@ -100,6 +101,7 @@ impl MaterialAssets {
             noise_size: self.noise.size() as f32,
             six_way: self.six_way.as_ref().map(|maps| (maps.size(), maps.frame_count())),
             density: SpriteDensity::new(&self.sprite),
+            sprite_detail: SpriteDetail::new(&self.sprite),
             zonal: zonal(&self.diffuse_ramp),
             backlight_zonal: zonal(&self.backlight_ramp),
             ramp_steps: RampSteps {
@@ -130,6 +132,8 @@ pub struct MaterialInfo {
     pub noise_size: f32,
     /// Frame size in texels and frame count of the six-way maps.
     pub six_way: Option<(u32, u32)>,
+    /// Detail of the sprite that coarse targets lose.
+    pub(crate) sprite_detail: SpriteDetail,
     /// Density of the sprite, for shadow.
     pub(crate) density: SpriteDensity,
     /// Zonal harmonic coefficients of the diffuse ramp.

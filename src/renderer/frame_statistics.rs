@@ -7,7 +7,7 @@ use super::memory_use::MemoryUse;
 use super::resolved_depth::ResolvedDepth;
 use super::system_state::SystemState;
 use super::targets::TargetViews;
-use crate::view_setup::LightingChoice;
+use crate::view_setup::{LightingChoice, ScaleChoice};
 
 impl Renderer {
     /// Returns the targets of the system with this key, as the last [`prepare`](Self::prepare) fills them, for tools
@@ -41,6 +41,12 @@ impl Renderer {
     /// key, with the reason. `None` if the system is out of sight, drawn `forward`, or its setting is not `auto`.
     pub fn lighting_choice(&self, key: u64) -> Option<LightingChoice> {
         self.states.iter().find(|state| state.key == key)?.lighting_choice()
+    }
+
+    /// Returns the scale that `scale_mode` `auto` chose in the last [`prepare`](Self::prepare) for the system with this key,
+    /// with the reason. `None` if the system is out of sight, drawn `forward`, or its scale is fixed.
+    pub fn scale_choice(&self, key: u64) -> Option<ScaleChoice> {
+        self.states.iter().find(|state| state.key == key)?.scale_choice()
     }
 
     /// Computes the overdraw of the sprites of the last [`prepare`](Self::prepare). Every call iterates over all

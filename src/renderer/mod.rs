@@ -172,8 +172,10 @@ impl Renderer {
                 [(1.0, RampSteps::default()), (2.0, RampSteps::default()), (2.0, RampSteps::HARD)]
             {
                 let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, &ramps, shared.support);
-                for &path in settings.path.candidates() {
-                    let settings = resolved.with_path(path);
+                let scales = resolved.candidate_scales();
+                let paths = settings.path.candidates();
+                for (scale, path) in scales.into_iter().flat_map(|scale| paths.iter().map(move |path| (scale, *path))) {
+                    let settings = resolved.with_scale(scale).with_path(path);
                     for back_faces in [false, true] {
                         shared.pipelines.compile(&plan(&inputs, &settings, back_faces))?;
                     }

@@ -27,8 +27,8 @@ use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Particle, ParticleSystem};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
-    LightingChoice, ParticleSpace, ResolvedSettings, SpriteProjector, SpriteTrim, SystemInput, SystemSetup, TexelGrid,
-    ViewGeometry, caster_uniform, light_uniforms, system_setup,
+    ErrorPrediction, LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim,
+    SystemInput, SystemSetup, TexelGrid, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
 
 /// Buffers and targets of one system, and its passes of the current frame.
@@ -46,6 +46,8 @@ pub(crate) struct SystemState {
     targets: SystemTargets,
     tiles: TiledSystem,
     path_chooser: PathChooser,
+    /// Scale of the last frame, if it was chosen.
+    chosen_scale: Option<u32>,
     /// Counts frames without deferred drawing, after which the targets are released.
     frames_without_targets: IdleCounter,
     /// Counts frames without the path `tiled`, after which its buffers are released.
@@ -83,6 +85,8 @@ struct PreparedSystem {
     choice: Option<PathChoice>,
     /// Choice of the lighting resolution `auto`; `None` for any other, and for forward smoke.
     lighting_choice: Option<LightingChoice>,
+    /// Choice of the scale mode `auto`; `None` for a fixed scale.
+    scale_choice: Option<ScaleChoice>,
     /// Number of particles that each one of `sample` represents, if the GPU evaluates the emitter; otherwise `None`.
     sampled: Option<u32>,
     caster: CasterPasses,
@@ -122,6 +126,7 @@ impl SystemState {
             targets: SystemTargets::default(),
             tiles: TiledSystem::default(),
             path_chooser: PathChooser::default(),
+            chosen_scale: None,
             frames_without_targets: IdleCounter::default(),
             frames_untiled: IdleCounter::default(),
             frames_absent: IdleCounter::default(),
@@ -175,6 +180,11 @@ impl SystemState {
     /// Returns this frame's choice of the lighting resolution `auto`.
     pub fn lighting_choice(&self) -> Option<LightingChoice> {
         self.prepared.as_ref()?.lighting_choice
+    }
+
+    /// Returns this frame's choice of the scale mode `auto`.
+    pub fn scale_choice(&self) -> Option<ScaleChoice> {
+        self.prepared.as_ref()?.scale_choice
     }
 
     /// Returns the view depth of the smoke's centre, metres.
@@ -326,10 +336,19 @@ impl SystemState {
             return None;
         };
         let trim = SpriteTrim::new(&settings, material);
+        let view_uniform = view.uniform(false);
+        let scale_choice = settings.adapts_scale().then(|| {
+            let projector = setup.projector(&view_uniform, &settings, &trim);
+            let prediction = known.map(|known| ErrorPrediction::new(&projector, &setup, known, &settings, material));
+            ScaleChoice::new(prediction.as_ref(), &settings, self.chosen_scale)
+        });
+        self.chosen_scale = scale_choice.map(|choice| choice.scale);
+        let (settings, setup) = match self.chosen_scale {
+            Some(scale) => (settings.with_scale(scale), setup.with_scale(view, scale)),
+            None => (settings, setup),
+        };
         let workload = matches!(settings.path, RenderPath::Auto | RenderPath::Tiled).then(|| {
-            let view = view.uniform(false);
-            let projector =
-                SpriteProjector { view: &view, system: &setup.uniform, technique: settings.technique, trim: &trim };
+            let projector = setup.projector(&view_uniform, &settings, &trim);
             estimate_workload(&projector, &setup.grid(), system.particles.count(), known, &settings)
         });
         let choice = choose(&mut self.path_chooser, shared, system, workload.as_ref());
@@ -361,6 +380,7 @@ impl SystemState {
             trim,
             choice,
             lighting_choice: settings.lighting_choice.filter(|_| !settings.is_forward()),
+            scale_choice,
             sampled,
             caster: CasterPasses {
                 alive: AliveCopy::new(&system.particles, &self.uniform),

@@ -8,6 +8,10 @@ use super::settings_macro::settings;
 /// Largest divisor of the target's resolution, pixels per texel.
 pub(super) const MAX_SCALE: u32 = 16;
 
+/// Coarsest scale of the scale mode `auto`. Coarser ones save little more, and show texels at the edges of thin objects, which
+/// the CPU does not know.
+pub(crate) const COARSEST_AUTO_SCALE: u32 = 4;
+
 choice! {
     /// Texel format of the accumulation target.
     #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
@@ -56,6 +60,19 @@ choice! {
         /// Normals are added up, with less weight the more smoke is in front of their sprite: no sorting, no pops, no
         /// visible layers. Needs `rgba16float`.
         Weighted = "weighted",
+    }
+}
+
+choice! {
+    /// Choice of the target's scale. `docs/upsampling.md` has the error of each scale.
+    #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
+    ScaleMode {
+        /// `scale`, as it is.
+        #[default]
+        Fixed = "fixed",
+        /// The coarsest from 1 to 4 whose predicted error is at most `max_error`: coarse for large soft smoke, fine for small
+        /// and detailed smoke. It changes with the view. Particles in a host's buffer keep `scale`.
+        Auto = "auto",
     }
 }
 
@@ -156,6 +173,11 @@ settings! {
         /// Pixels of the picture per texel of the target, along each side. Higher: less sharp, and cheaper by the
         /// square.
         scale: u32 = 2, integer(1..=MAX_SCALE, "pixels");
+        /// Choice of the scale: `scale`, or by the detail of the smoke.
+        scale_mode: ScaleMode = ScaleMode::default(), choice;
+        /// Largest predicted error with the scale mode `auto`: root mean square over the smoke, of the amount 1. Higher:
+        /// coarser and cheaper.
+        max_error: f32 = 0.005, number(0.001..=0.1, "");
         /// Most texels along the picture's longer side. Lower raises `scale` on large pictures.
         max_side: u32 = 4096, integer(16..=16384, "texels");
         /// Scene depth that sprites are compared with.
@@ -184,9 +206,19 @@ impl Accumulate {
         self.order.sums_weights(self.encoding)
     }
 
-    /// Divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.
+    /// Sets a fixed scale, pixels per texel.
+    pub fn fix_scale(&mut self, scale: u32) {
+        (self.scale, self.scale_mode) = (scale, ScaleMode::Fixed);
+    }
+
+    /// Fixed divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.
     pub fn effective_scale(&self, picture: UVec2) -> u32 {
-        self.scale.max(picture.max_element().div_ceil(self.max_side.max(1)))
+        self.scale.max(self.finest_scale(picture))
+    }
+
+    /// Smallest divisor at which the picture's longer side has at most `max_side` texels.
+    pub fn finest_scale(&self, picture: UVec2) -> u32 {
+        picture.max_element().div_ceil(self.max_side.max(1)).max(1)
     }
 }
 

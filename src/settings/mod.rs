@@ -19,9 +19,10 @@ mod soft_fade;
 mod technique;
 mod traversal;
 
+pub(crate) use accumulate::COARSEST_AUTO_SCALE;
 pub use accumulate::{
     Accumulate, AccumulationFormat, BlendOrder, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
-    NormalEncoding, Upsample,
+    NormalEncoding, ScaleMode, Upsample,
 };
 pub(crate) use assign::is_field_named;
 pub use assign::set_field;

@@ -51,7 +51,8 @@ const MAX_FINER_INTERVAL: u32 = 16;
 /// each change of scale.
 ///
 /// The measurements may be of one system, or of all systems, which then share the scale. Systems that are compared with
-/// the host's own depth ([`DepthSource::Host`](super::DepthSource::Host)) support scale 1 only. `docs/recipes.md` has
+/// the host's own depth ([`DepthSource::Host`](super::DepthSource::Host)) support scale 1 only, and those whose
+/// `scale_mode` is `auto` choose their own. `docs/recipes.md` has
 /// an example host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleBudget {

@@ -30,7 +30,15 @@ pub struct LightingChoice {
 
 impl LightingChoice {
     pub(super) fn new(ramp_steps: &RampSteps, settings: &Settings, scale: u32) -> Self {
-        let largest_step = ramp_steps.largest(settings);
+        Self::of_step(ramp_steps.largest(settings), scale)
+    }
+
+    /// Chooses for another scale.
+    pub(super) fn at_scale(self, scale: u32) -> Self {
+        Self::of_step(self.largest_step, scale)
+    }
+
+    fn of_step(largest_step: f32, scale: u32) -> Self {
         let is_smooth = largest_step <= largest_smooth_step(scale);
         let resolution = if is_smooth { LightingResolution::Target } else { LightingResolution::Full };
         Self { resolution, largest_step, scale }

@@ -73,13 +73,14 @@ pub struct TargetRect {
     pub scale: u32,
 }
 
-/// Returns the texels that an upsampler can read for the pixels of `bounds`.
-pub(super) fn target_rect(bounds: &ProjectedBounds, scale: u32, picture: UVec2) -> TargetRect {
+/// Returns the texels that an upsampler can read for the pixels of a rectangle.
+pub(super) fn target_rect(first: UVec2, pixels: UVec2, scale: u32, picture: UVec2) -> TargetRect {
     let grid = UVec2::new(picture.x.div_ceil(scale), picture.y.div_ceil(scale));
     // Two texels more on every side: the widest footprint of an upsampler at a border pixel.
     let border = UVec2::splat(2);
-    let min = (bounds.min / scale).saturating_sub(border);
-    let max = UVec2::new(bounds.max.x.div_ceil(scale), bounds.max.y.div_ceil(scale)) + border;
+    let last = first + pixels;
+    let min = (first / scale).saturating_sub(border);
+    let max = UVec2::new(last.x.div_ceil(scale), last.y.div_ceil(scale)) + border;
     let max = max.min(grid);
     TargetRect { origin: min.as_ivec2(), size: max - min, scale }
 }
@@ -123,7 +124,7 @@ mod tests {
         let picture = UVec2::new(641, 359);
         for scale in 1..=16 {
             let bounds = ProjectedBounds { near: 1.0, far: 2.0, min: UVec2::new(100, 50), max: UVec2::new(301, 200) };
-            let rect = target_rect(&bounds, scale, picture);
+            let rect = target_rect(bounds.min, bounds.max - bounds.min, scale, picture);
             for (pixel, edge) in [(bounds.min, 0.0), (bounds.max - 1, 1.0)] {
                 let texel = (pixel.as_vec2() + 0.5) / scale as f32 - 0.5;
                 let texel = (texel.floor() + edge).as_ivec2();

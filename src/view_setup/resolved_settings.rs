@@ -8,7 +8,9 @@ use super::attachment_role::AttachmentSet;
 use super::lighting_choice::LightingChoice;
 use crate::assets::ramp_steps::RampSteps;
 use crate::formula::shadow::LIGHTS_PER_BLOCK;
-use crate::settings::{BlendOrder, Lighting, LightingResolution, RenderPath, Settings};
+use crate::settings::{
+    BlendOrder, COARSEST_AUTO_SCALE, DepthSource, Lighting, LightingResolution, RenderPath, ScaleMode, Settings,
+};
 
 /// Capabilities of a device that settings depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +32,10 @@ impl Support {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResolvedSettings {
     settings: Settings,
-    /// Pixels of the picture per texel of the target, along each side.
+    /// Pixels of the picture per texel of the target, along each side; before `auto` has chosen, the fixed scale.
     pub scale: u32,
+    /// Finest scale that `auto` may choose.
+    pub finest_scale: u32,
     /// Choice of the lighting resolution `auto`; `None` for another.
     pub lighting_choice: Option<LightingChoice>,
 }
@@ -51,6 +55,7 @@ impl ResolvedSettings {
         let mut sprite = settings.sprite.for_frames(frame_count);
         sprite.size *= particle_scale;
         let scale = settings.accumulate.effective_scale(picture);
+        let finest_scale = settings.accumulate.finest_scale(picture);
         let mut settings = Settings { lighting, sprite, ..*settings };
         let has_several = AttachmentSet::of(&settings).iter().count() > 1;
         if has_several && !support.independent_blend {
@@ -61,7 +66,34 @@ impl ResolvedSettings {
         if let Some(choice) = lighting_choice {
             settings.accumulate.lighting_resolution = choice.resolution;
         }
-        Self { settings, scale, lighting_choice }
+        Self { settings, scale, finest_scale, lighting_choice }
+    }
+
+    /// Returns the same settings with the scale that `auto` chose.
+    pub fn with_scale(mut self, scale: u32) -> Self {
+        self.scale = scale;
+        self.lighting_choice = self.lighting_choice.map(|choice| choice.at_scale(scale));
+        if let Some(choice) = self.lighting_choice {
+            self.settings.accumulate.lighting_resolution = choice.resolution;
+        }
+        self
+    }
+
+    /// Scales that select different pipelines, of those that may be chosen.
+    pub fn candidate_scales(&self) -> [u32; 2] {
+        if self.adapts_scale() {
+            [self.finest_scale, self.finest_scale.max(COARSEST_AUTO_SCALE)]
+        } else {
+            [self.scale; 2]
+        }
+    }
+
+    /// True if the scale is chosen for each frame.
+    pub fn adapts_scale(&self) -> bool {
+        let accumulate = &self.accumulate;
+        accumulate.scale_mode == ScaleMode::Auto
+            && accumulate.depth_source == DepthSource::Reduced
+            && !self.is_forward()
     }
 
     /// Returns the same settings with the path that `auto` chose.

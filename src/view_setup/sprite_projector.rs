@@ -35,6 +35,8 @@ pub struct ProjectedSprite {
     pub amount: f32,
     pub frames: FlipbookFrames,
     pub lod: f32,
+    /// Side of its square, texels.
+    pub diameter: f32,
     /// As in [`sprite_stretch`].
     pub stretch: Vec2,
 }
@@ -44,6 +46,7 @@ pub struct SpriteCoverage<'p> {
     pub texels: f64,
     /// Share of the sprite's square that is not trimmed; 1 for spheres.
     pub share: f64,
+    pub sprite: ProjectedSprite,
     pub particle: &'p Particle,
 }
 
@@ -119,6 +122,7 @@ impl SpriteProjector<'_> {
             amount,
             frames: animation_frames(trim.animation, frame, system.frame_count),
             lod: sprite_lod(system.sprite_size, diameter),
+            diameter,
             stretch,
         })
     }
@@ -202,7 +206,12 @@ impl SpriteProjector<'_> {
                 (self.corners(&sprite, reach, particle.rotation), f64::from(share))
             };
             let texels = corners.map(|pixel| pixel / grid.scale - grid.origin);
-            Some(SpriteCoverage { texels: area_within(texels, grid.size.as_vec2(), &mut scratch), share, particle })
+            Some(SpriteCoverage {
+                texels: area_within(texels, grid.size.as_vec2(), &mut scratch),
+                share,
+                sprite,
+                particle,
+            })
         })
     }
 

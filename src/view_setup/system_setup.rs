@@ -8,13 +8,13 @@ use super::projected_bounds::{TargetRect, project_bounds, target_rect};
 use super::resolved_settings::ResolvedSettings;
 use super::smoke_extent::SmokeExtent;
 use super::smoke_shadow::SmokeShadow;
-use super::sprite_projector::TexelGrid;
+use super::sprite_projector::{SpriteProjector, SpriteTrim, TexelGrid};
 use super::view_geometry::ViewGeometry;
 use crate::assets::material_assets::MaterialInfo;
 use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::diffuse_bake::add_light;
 use crate::formula::lighting::{backlight_weight, direction_to_viewer, sample_light};
-use crate::formula::uniforms::{LightUniform, SystemUniform};
+use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::formula::view::pixels_per_metre;
 use crate::frame::{Bounds, Particle};
 use crate::settings::{Backlight, BlendOrder, DepthSource, DiffuseMode, Settings};
@@ -51,7 +51,8 @@ pub struct SystemInput<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct SystemSetup {
     pub rect: TargetRect,
-    /// Size of the bounding box on the screen, pixels.
+    /// First pixel of the bounding box on the screen, and its size, pixels.
+    pub first_pixel: UVec2,
     pub pixels: UVec2,
     pub uniform: SystemUniform,
     /// True if the transfer draws the back faces of the box: it reaches to or behind the near plane, or its sprites
@@ -68,6 +69,22 @@ impl SystemSetup {
     pub fn grid(&self) -> TexelGrid {
         TexelGrid { origin: self.rect.origin.as_vec2(), scale: self.rect.scale as f32, size: self.rect.size }
     }
+
+    /// Returns the projection of its sprites.
+    pub fn projector<'a>(
+        &'a self,
+        view: &'a ViewUniform,
+        settings: &Settings,
+        trim: &'a SpriteTrim,
+    ) -> SpriteProjector<'a> {
+        SpriteProjector { view, system: &self.uniform, technique: settings.technique, trim }
+    }
+
+    /// Returns the same setup with a target of another scale; the system's scene depth is the reduced one.
+    pub fn with_scale(self, view: &ViewGeometry, scale: u32) -> Self {
+        let rect = target_rect(self.first_pixel, self.pixels, scale, view.size);
+        Self { rect, uniform: target_uniform(&rect, view.size, self.uniform), ..self }
+    }
 }
 
 /// Places a system in the view; `None` if it is out of sight. `targets`: size of the host's targets, pixels; the view
@@ -80,9 +97,9 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
     // A sample does not include the farthest particle.
     let farthest = if particles_per_sample == 1 { extent.farthest } else { projected.far };
     let accumulate = &settings.accumulate;
-    let scale = settings.scale;
+    let (scale, pixels) = (settings.scale, projected.max - projected.min);
     let rect = match accumulate.depth_source {
-        DepthSource::Reduced => target_rect(&projected, scale, view.size),
+        DepthSource::Reduced => target_rect(projected.min, pixels, scale, view.size),
         // All attachments of a pass must have one size.
         DepthSource::Host => TargetRect { origin: -view.origin.as_ivec2(), size: targets, scale },
     };
@@ -98,10 +115,6 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         scatter_amount: settings.soft_scatter.scatter_amount,
         ambient_color: settings.soft_scatter.ambient_color * exposure,
         scatter_smooth: settings.soft_scatter.scatter_smooth,
-        target_from_ndc: target_from_ndc(&rect, view.size),
-        target_origin: rect.origin.as_vec2(),
-        target_size: rect.size.as_vec2(),
-        scale,
         depth_limit: (projected.far + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         smoke_depth_limit: (farthest.min(projected.far) + settings.soft_fade.max_distance()).min(SKY_VIEW_DEPTH),
         six_way_color: settings.diffuse.six_way_color,
@@ -154,13 +167,31 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         fire_crust: settings.fire_crust(),
         visibility_block: shadow.map_or(0.0, |shadow| shadow.visibility_block() as f32),
         openness_block: shadow.map_or(0.0, |shadow| shadow.openness_block() as f32),
-        ..caster_uniform(system)
+        ..target_uniform(&rect, view.size, caster_uniform(system))
     };
     // If sprites show through the scene, the scene may hide the front of the box.
     let back_faces = projected.near <= view.depth.near || uniform.show_through_distance > 0.0;
     let distance = -uniform.centre.z;
-    let pixels = projected.max - projected.min;
-    Some(SystemSetup { rect, pixels, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
+    Some(SystemSetup {
+        rect,
+        first_pixel: projected.min,
+        pixels,
+        uniform,
+        back_faces,
+        distance,
+        lit_depth: distance - view.depth_offset,
+    })
+}
+
+/// Uniforms with the placement of the target.
+fn target_uniform(rect: &TargetRect, picture: UVec2, uniform: SystemUniform) -> SystemUniform {
+    SystemUniform {
+        target_from_ndc: target_from_ndc(rect, picture),
+        target_origin: rect.origin.as_vec2(),
+        target_size: rect.size.as_vec2(),
+        scale: rect.scale,
+        ..uniform
+    }
 }
 
 /// Uniforms of a system that only casts shadow: what density_splat reads.

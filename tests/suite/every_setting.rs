@@ -155,6 +155,8 @@ fn stages() -> Vec<TestScene> {
     let stretched: fn(&mut Settings) = |s| (s.sprite.stretch, s.sprite.stretch_limit) = (2.0, 1.6);
     let grainy: fn(&mut Settings) =
         |s| s.grain = Grain { erosion: 0.5, dissolve: 0.0, bump: 0.7, tiles: 0.25, octaves: 1 };
+    let adaptive: fn(&mut Settings) =
+        |s| (s.accumulate.scale, s.accumulate.scale_mode, s.accumulate.max_error) = (1, ScaleMode::Auto, 0.1);
     vec![
         scene(Technique::Soft, RenderPath::Raster, burning),
         scene(Technique::Soft, RenderPath::Raster, nothing),
@@ -170,6 +172,7 @@ fn stages() -> Vec<TestScene> {
         scene(Technique::VolumetricSoft, RenderPath::Raster, nothing),
         scene(Technique::Soft, RenderPath::Raster, shaded),
         scene(Technique::Soft, RenderPath::Raster, under_a_sky),
+        scene(Technique::Soft, RenderPath::Raster, adaptive),
     ]
 }
 

@@ -4,6 +4,7 @@
 #![allow(clippy::redundant_closure_for_method_calls, reason = "some wgpu types cannot be named in a path")]
 #![allow(clippy::float_cmp, reason = "bit-identical results are compared exactly")]
 
+mod adaptive_scale;
 mod anchors;
 mod assets;
 mod backdrop;

@@ -286,7 +286,7 @@ fn half_resolution_stays_close_to_full_resolution() {
     let mut shot = shot("column", UVec2::new(640, 360));
     let behind = on_gpu(&without_smoke(&shot));
     let mut render = |scale| {
-        shot.preset.systems[0].settings.accumulate.scale = scale;
+        shot.preset.systems[0].settings.accumulate.fix_scale(scale);
         on_gpu(&shot)
     };
     let full = render(1);

@@ -18,7 +18,8 @@ fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Image<Vec4> {
     let mut shot = shot.clone();
     let is_sparks = |settings: &Settings| settings.is_stretched() && settings.accumulate.scale == 1;
     for system in shot.preset.systems.iter_mut().filter(|system| !is_sparks(&system.settings)) {
-        (system.settings.accumulate.scale, system.settings.accumulate.upsample) = (scale, upsample);
+        system.settings.accumulate.fix_scale(scale);
+        system.settings.accumulate.upsample = upsample;
     }
     render_on_gpu(&shot, true)
 }

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use glam::UVec2;
 use haze::image::{CompressionEffort, write_png};
 use haze::preset::{AssetFolders, MAX_TIME, Preset};
-use haze::settings::{Choice, RenderPath, Technique, UnknownChoice};
+use haze::settings::{Choice, RenderPath, ScaleMode, Technique, UnknownChoice};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_demo::headless::Headless;
@@ -50,9 +50,9 @@ pub struct ShotArguments {
     /// Seconds since the start of the emission. Default: the preset's.
     #[arg(long, value_name = "S", value_parser = parse_time, allow_hyphen_values = true)]
     time: Option<f32>,
-    /// Pixels per texel of the accumulation target, 1 to 16. Default: the preset's.
+    /// Pixels per texel of the accumulation target, 1 to 16; or `auto`: by the detail of the smoke. Default: the preset's.
     #[arg(long, value_name = "N", value_parser = parse_scale, allow_hyphen_values = true)]
-    scale: Option<u32>,
+    scale: Option<ScaleArgument>,
     /// Soft-particle technique. Default: the preset's.
     #[arg(long, value_name = "T", value_parser = choices::<Technique>())]
     pub technique: Option<Technique>,
@@ -136,7 +136,8 @@ impl ShotArguments {
         let mut preset = Preset::load(&self.preset)?;
         let of_systems = [
             ("systems.emitter.seed", self.seed.map(|seed| seed.to_string())),
-            ("systems.settings.accumulate.scale", self.scale.map(|scale| scale.to_string())),
+            ("systems.settings.accumulate.scale_mode", self.scale.map(|scale| scale.mode().name().into())),
+            ("systems.settings.accumulate.scale", self.scale.and_then(ScaleArgument::pixels)),
             ("systems.settings.path", self.run.path.map(|path| path.name().into())),
             ("systems.settings.technique", self.technique.map(|technique| technique.name().into())),
         ];
@@ -243,9 +244,35 @@ fn parse_time(text: &str) -> Result<f32, String> {
     time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{MAX_TIME} to {MAX_TIME}"))
 }
 
-fn parse_scale(text: &str) -> Result<u32, String> {
-    let scale = text.parse().ok().filter(|scale| (1..=16).contains(scale));
-    scale.ok_or_else(|| format!("{text:?} is not a scale; expected 1 to 16 pixels per texel"))
+/// Value of `--scale`.
+#[derive(Clone, Copy)]
+enum ScaleArgument {
+    Auto,
+    Pixels(u32),
+}
+
+impl ScaleArgument {
+    fn mode(self) -> ScaleMode {
+        match self {
+            Self::Auto => ScaleMode::Auto,
+            Self::Pixels(_) => ScaleMode::Fixed,
+        }
+    }
+
+    fn pixels(self) -> Option<String> {
+        match self {
+            Self::Auto => None,
+            Self::Pixels(pixels) => Some(pixels.to_string()),
+        }
+    }
+}
+
+fn parse_scale(text: &str) -> Result<ScaleArgument, String> {
+    if text == ScaleMode::Auto.name() {
+        return Ok(ScaleArgument::Auto);
+    }
+    let scale = text.parse().ok().filter(|scale| (1..=16).contains(scale)).map(ScaleArgument::Pixels);
+    scale.ok_or_else(|| format!("{text:?} is not a scale; expected 1 to 16 pixels per texel, or auto"))
 }
 
 pub fn parse_seed(text: &str) -> Result<u32, String> {

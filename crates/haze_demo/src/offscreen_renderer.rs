@@ -22,7 +22,7 @@ use haze::formula::shadow::LIGHTS_PER_BLOCK;
 use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, ShadowMap, View};
 use haze::preset::Environment;
 use haze::settings::DebugView;
-use haze::{Descriptor, LightingChoice, MemoryUse, PathChoice, Renderer, SceneDepthKind, Timing, WarmUp};
+use haze::{Descriptor, LightingChoice, MemoryUse, PathChoice, Renderer, ScaleChoice, SceneDepthKind, Timing, WarmUp};
 use haze_author::backdrop::Backdrop;
 
 /// Off-screen renderer; see the module's documentation.
@@ -117,6 +117,11 @@ impl OffscreenRenderer {
     /// Iterates over the lighting resolutions chosen in the last frame, for visible systems where it is `auto`.
     pub fn lighting_choices(&self) -> impl Iterator<Item = LightingChoice> {
         (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.lighting_choice(key))
+    }
+
+    /// Iterates over the scales chosen in the last frame, for visible systems whose scale mode is `auto`.
+    pub fn scale_choices(&self) -> impl Iterator<Item = ScaleChoice> {
+        (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.scale_choice(key))
     }
 
     /// Same as [`Renderer::set_timing`].

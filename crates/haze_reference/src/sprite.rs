@@ -115,7 +115,7 @@ impl VisibleSystem<'_> {
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
         let (technique, projector) = (self.settings.technique, self.projector());
         let sprite = projector.project(particle, texels_per_pixel)?;
-        let ProjectedSprite { centre, radius, amount, frames, lod, stretch } = sprite;
+        let ProjectedSprite { centre, radius, amount, frames, lod, stretch, .. } = sprite;
         let view_depth = -centre.z;
         let (min, max) = if technique.is_sphere() {
             projector.sphere_rectangle(&sprite, texels_per_pixel)

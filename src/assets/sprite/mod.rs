@@ -3,6 +3,7 @@
 #[doc(hidden)]
 pub mod alpha_bounds;
 pub(crate) mod sprite_density;
+pub(crate) mod sprite_detail;
 
 use std::path::Path;
 use std::sync::Arc;

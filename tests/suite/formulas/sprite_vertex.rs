@@ -78,6 +78,7 @@ fn sprite_at(x: &[f32]) -> ProjectedSprite {
         amount: 1.0,
         frames: flipbook_frames(0.0, 3.0),
         lod: 0.0,
+        diameter: 1.0,
         stretch: Vec2::ZERO,
     }
 }
@@ -188,7 +189,7 @@ fn projection() -> Vec<Formula> {
                 let settings = technique(x);
                 let sprite = changed(&settings).projector().project(&particle(x), 0.5);
                 sprite.map_or(vec![0.0; 12], |sprite| {
-                    let ProjectedSprite { centre, radius, amount, frames, lod, stretch } = sprite;
+                    let ProjectedSprite { centre, radius, amount, frames, lod, stretch, .. } = sprite;
                     let frames = [frames.first as f32, frames.second as f32, frames.blend];
                     [&[1.0][..], &centre.to_array(), &[radius, amount, lod], &frames, &stretch.to_array()].concat()
                 })

@@ -69,7 +69,10 @@ pub fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
 
 /// Returns a change of settings to a path and a buffer scale.
 pub fn at_scale(path: RenderPath, scale: u32) -> impl Fn(&mut Settings) {
-    move |settings| (settings.path, settings.accumulate.scale) = (path, scale)
+    move |settings| {
+        settings.path = path;
+        settings.accumulate.fix_scale(scale);
+    }
 }
 
 /// The reference of a group: deferred, at full resolution.

@@ -3,7 +3,7 @@
 pub use egui_gradient::sentence_case;
 
 /// Fields, groups and choices whose names in files are abbreviations, or terms of programmers.
-const SPELLED_OUT: [(&str, &str); 16] = [
+const SPELLED_OUT: [(&str, &str); 17] = [
     ("accumulate", "Smoke buffer"),
     ("cache", "Particles from files"),
     ("environment", "Sky and scene"),
@@ -13,6 +13,7 @@ const SPELLED_OUT: [(&str, &str); 16] = [
     ("hsv_far", "HSV, far hue"),
     ("hsv_near", "HSV, near hue"),
     ("material", "Sprite and ramps"),
+    ("max_error", "Largest error"),
     ("max_side", "Longest side"),
     ("oklab", "OKLab"),
     ("other_tint", "Second tint"),

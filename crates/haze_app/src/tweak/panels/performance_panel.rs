@@ -4,6 +4,8 @@ use std::collections::HashSet;
 
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
+use haze::settings::ScaleMode;
+
 use super::rows::setting_rows::{self, RowContext};
 use super::rows::value_text::grouped;
 use crate::tweak::document::display_names::display_name;
@@ -126,13 +128,15 @@ fn budget(ui: &mut Ui, session: &mut Session) {
     session.report_refused_input(refused, is_edited);
     let timings = &session.timings;
     let preset = &mut session.document.preset;
-    let of_preset = preset.systems.first().map_or(1, |system| system.settings.accumulate.scale);
+    let of_preset = preset.systems.first().map(|system| &system.settings.accumulate);
+    let of_preset = of_preset.filter(|accumulate| accumulate.scale_mode == ScaleMode::Fixed).map(|fixed| fixed.scale);
     let Some(scale) = timings.scale() else { return };
     ui.horizontal_wrapped(|ui| {
-        ui.label(format!("Current scale: {scale} (preset: {of_preset})"));
+        let of_preset_text = of_preset.map_or("automatic".into(), |scale| scale.to_string());
+        ui.label(format!("Current scale: {scale} (preset: {of_preset_text})"));
         let keep = egui::Button::new("Use this scale");
         if ui
-            .add_enabled(scale != of_preset, keep)
+            .add_enabled(Some(scale) != of_preset, keep)
             .on_hover_text("Sets this scale in every system of the preset")
             .clicked()
         {
@@ -165,6 +169,11 @@ fn drawn(ui: &mut Ui, timings: &FrameTimings) {
     // Empty for systems that leave no choice.
     for choice in &timings.stats.choices {
         ui.label(format!("Automatic path: {choice}"));
+    }
+    for choice in &timings.stats.scale_choices {
+        ui.label(format!("Automatic scale: {choice}")).on_hover_text(
+            "The coarsest scale whose predicted error is within the limit of the preset, \"Largest error\"",
+        );
     }
     for choice in &timings.stats.lighting_choices {
         ui.label(format!("Automatic lighting resolution: {choice}")).on_hover_text(

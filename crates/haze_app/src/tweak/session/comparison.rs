@@ -107,7 +107,8 @@ impl CompareWith {
         match self {
             Self::FullResolution => systems.for_each(|system| {
                 let accumulate = &mut system.settings.accumulate;
-                (accumulate.scale, accumulate.max_side) = (1, 16384);
+                accumulate.fix_scale(1);
+                accumulate.max_side = 16384;
             }),
             Self::Forward => systems.for_each(|system| system.settings.path = RenderPath::Forward),
             Self::Saved | Self::Kept(_) | Self::Reference => {}

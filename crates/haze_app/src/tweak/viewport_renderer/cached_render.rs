@@ -85,7 +85,7 @@ pub fn reduced(shot: &Shot, divisor: u32) -> Shot {
 pub fn set_scale(preset: &mut Preset, scale: u32) {
     for system in &mut preset.systems {
         if system.settings.accumulate.depth_source != DepthSource::Host {
-            system.settings.accumulate.scale = scale;
+            system.settings.accumulate.fix_scale(scale);
         }
     }
 }

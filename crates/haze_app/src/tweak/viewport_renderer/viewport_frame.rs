@@ -3,7 +3,7 @@
 use eframe::wgpu;
 use glam::{IVec2, UVec2, Vec2};
 use haze::settings::DebugView;
-use haze::{Error, FrameCounts, FrameTimes, LightingChoice, Overdraw, PathChoice, Timing};
+use haze::{Error, FrameCounts, FrameTimes, LightingChoice, Overdraw, PathChoice, ScaleChoice, Timing};
 use haze_demo::capture::Capture;
 use haze_demo::image_metrics::Comparison;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenMemory};
@@ -53,6 +53,8 @@ pub struct RenderStats {
     pub choices: Vec<PathChoice>,
     /// Lighting resolutions that were chosen where the preset leaves it open.
     pub lighting_choices: Vec<LightingChoice>,
+    /// Scales that were chosen where the preset leaves it open.
+    pub scale_choices: Vec<ScaleChoice>,
     pub memory: OffscreenMemory,
     /// Memory of the strip and the second image, bytes.
     pub other_memory: u64,
@@ -183,6 +185,7 @@ impl RendererState {
             overdraw: self.main.offscreen.renderer().overdraw(),
             choices: self.main.offscreen.path_choices().collect(),
             lighting_choices: self.main.offscreen.lighting_choices().collect(),
+            scale_choices: self.main.offscreen.scale_choices().collect(),
             memory: self.main.offscreen.memory_use(),
             other_memory: others.map(|cached| cached.offscreen.memory_use().total()).sum(),
         }

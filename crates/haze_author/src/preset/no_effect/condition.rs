@@ -5,7 +5,9 @@ use glam::UVec2;
 use haze::assets::builtin;
 use haze::emitter::EmitterShape;
 use haze::preset::PresetSystem;
-use haze::settings::{CoverageMode, DiffuseMode, FadeCurve, SoftScatterMode, SpriteAnimation, Technique, Upsample};
+use haze::settings::{
+    CoverageMode, DiffuseMode, FadeCurve, ScaleMode, SoftScatterMode, SpriteAnimation, Technique, Upsample,
+};
 
 pub fn technique(system: &PresetSystem) -> Technique {
     system.settings.technique
@@ -15,11 +17,16 @@ pub fn is_hard(system: &PresetSystem, _: UVec2) -> bool {
     !technique(system).is_soft()
 }
 
+/// True if a texel is a pixel, whatever the smoke is like.
+pub fn is_at_full_resolution(system: &PresetSystem, size: UVec2) -> bool {
+    let accumulate = &system.settings.accumulate;
+    accumulate.effective_scale(size) == 1 && accumulate.scale_mode == ScaleMode::Fixed
+}
+
 /// True if the upsampling compares depths. It then uses the length of the fade, whether sprites fade or not.
 pub fn upsampling_reads_depth(system: &PresetSystem, size: UVec2) -> bool {
-    let accumulate = &system.settings.accumulate;
-    let is_reduced = !system.settings.is_forward() && accumulate.effective_scale(size) > 1;
-    is_reduced && accumulate.upsample != Upsample::Bilinear
+    let is_reduced = !system.settings.is_forward() && !is_at_full_resolution(system, size);
+    is_reduced && system.settings.accumulate.upsample != Upsample::Bilinear
 }
 
 pub fn shows_through(system: &PresetSystem) -> bool {

@@ -3,14 +3,16 @@
 use glam::Vec3;
 
 use super::condition::{
-    curve_ignores_power, has_no_animation, has_one_frame, ignores_up, is_hard, looks_up_no_ramp, plays_no_flipbook,
-    reads_no_detail, shows_checkerboard_only, shows_through, technique, upsampling_reads_depth, uses_painted_motif,
+    curve_ignores_power, has_no_animation, has_one_frame, ignores_up, is_at_full_resolution, is_hard, looks_up_no_ramp,
+    plays_no_flipbook, reads_no_detail, shows_checkerboard_only, shows_through, technique, upsampling_reads_depth,
+    uses_painted_motif,
 };
 use super::rule::{NoEffectRule, rule};
 use haze::assets::builtin;
 use haze::preset::PresetSystem;
 use haze::settings::{
-    Backlight, BlendOrder, CoverageMode, Grain, RenderPath, SoftScatterMode, SpriteAnimation, Technique,
+    Backlight, BlendOrder, CoverageMode, DepthSource, Grain, RenderPath, ScaleMode, SoftScatterMode, SpriteAnimation,
+    Technique,
 };
 
 /// The first row that holds gives the reason.
@@ -43,6 +45,8 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.accumulate.depth_weight",
             "settings.accumulate.layers",
             "settings.accumulate.scale",
+            "settings.accumulate.scale_mode",
+            "settings.accumulate.max_error",
             "settings.accumulate.max_side",
             "settings.accumulate.depth_source",
             "settings.accumulate.depth_downsample",
@@ -136,8 +140,26 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &["settings.accumulate.layers"],
     ),
     rule(
+        "only with depth_source reduced",
+        |s, _| s.settings.accumulate.depth_source != DepthSource::Reduced,
+        &["settings.accumulate.scale_mode", "settings.accumulate.max_error"],
+    ),
+    rule(
+        "only with scale_mode fixed",
+        |s, _| {
+            let accumulate = &s.settings.accumulate;
+            (accumulate.scale_mode, accumulate.depth_source) == (ScaleMode::Auto, DepthSource::Reduced)
+        },
+        &["settings.accumulate.scale"],
+    ),
+    rule(
+        "only with scale_mode auto",
+        |s, _| s.settings.accumulate.scale_mode != ScaleMode::Auto,
+        &["settings.accumulate.max_error"],
+    ),
+    rule(
         "only at a scale above 1",
-        |s, size| s.settings.accumulate.effective_scale(size) == 1,
+        is_at_full_resolution,
         &[
             "settings.accumulate.depth_downsample",
             "settings.accumulate.upsample",
