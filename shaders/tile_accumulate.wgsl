@@ -121,44 +121,129 @@ fn sprite_index(list: vec2u, at: u32) -> u32 {
 // texture lookup.
 const TILE: vec2u = vec2u(8u, 16u);
 const BATCH: u32 = 64u;
+// Parts of the list that a workgroup of `split` traverses at the same time, where a target has too few texels to keep the
+// adapter busy: most of the time is then spent waiting for lookups.
+const SPLIT: u32 = 4u;
+const INVOCATIONS: u32 = 64u;
 
-// Sprites of a batch that touch the tile, front to back.
+// Sprites of a batch that touch the tile, part by part, front to back.
 var<workgroup> batch: array<TileSprite, BATCH>;
 var<workgroup> batch_values: array<SpriteValues, BATCH>;
 // One bit for each sprite of the batch.
 var<workgroup> touching: array<atomic<u32>, 2>;
 // 1 if any texel of the tile is not done.
 var<workgroup> unfinished: atomic<u32>;
-// Front of the batch's first sprite, view depth.
-var<workgroup> front: f32;
+// Front of the batch's first sprite in each part, view depth.
+var<workgroup> fronts: array<f32, SPLIT>;
 // Bits of the farthest view depth of the scene in the tile. It is positive, so that its bits order as an integer.
 var<workgroup> farthest: atomic<u32>;
+// Texels of one part, as the targets' textures. The amount's place has the transmittance.
+var<workgroup> behind: array<array<vec4f, MAX_TARGET_ATTACHMENTS>, INVOCATIONS>;
+
+// Two texels, one below the other.
+struct TexelPair {
+    a: Texel,
+    b: Texel,
+}
 
 @compute @workgroup_size(8, 8)
-fn cooperative(
-    @builtin(local_invocation_id) local_place: vec3u,
-    @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
+fn cooperative(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
+    write_pair(first_texel(workgroup, local), traverse_part(workgroup.xy * TILE, local, 1u));
+}
+
+@compute @workgroup_size(8, 8, SPLIT)
+fn split(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
+    let index = index_in_part(local);
+    var texels = traverse_part(workgroup.xy * TILE, local, SPLIT);
+    // Adds each part behind the one in front of it, from the back.
+    for (var part = SPLIT - 1u; part > 0u; part--) {
+        if local.z == part {
+            behind[index] = slots_of(texels.a);
+        }
+        workgroupBarrier();
+        if local.z + 1u == part {
+            texels.a = with_behind(texels.a, behind[index]);
+        }
+        workgroupBarrier();
+        if local.z == part {
+            behind[index] = slots_of(texels.b);
+        }
+        workgroupBarrier();
+        if local.z + 1u == part {
+            texels.b = with_behind(texels.b, behind[index]);
+        }
+        workgroupBarrier();
+    }
+    if local.z == 0u {
+        write_pair(first_texel(workgroup, local), texels);
+    }
+}
+
+fn first_texel(tile: vec3u, local: vec3u) -> vec2u {
+    return tile.xy * TILE + local.xy * vec2u(1u, 2u);
+}
+
+fn index_in_part(local: vec3u) -> u32 {
+    return local.y * 8u + local.x;
+}
+
+fn slots_of(texel: Texel) -> array<vec4f, MAX_TARGET_ATTACHMENTS> {
+    return slots_from_attachments(vec4f(texel.normals, texel.transmittance), texel.attachments);
+}
+
+// Returns the texel with another one behind it.
+fn with_behind(texel: Texel, slots: array<vec4f, MAX_TARGET_ATTACHMENTS>) -> Texel {
+    let seen = select(texel.transmittance, 1.0, WEIGHTED);
+    var seen_slots = slots;
+    for (var slot = 0u; slot < ATTACHMENT_COUNT; slot++) {
+        seen_slots[slot] *= seen;
+    }
+    var next = texel;
+    next.normals += seen_slots[0].rgb;
+    next.attachments = add_attachments(texel.attachments, attachments_from_slots(seen_slots));
+    next.transmittance *= slots[0].a;
+    return next;
+}
+
+fn write_pair(place: vec2u, texels: TexelPair) {
     let size = vec2u(system.target_size);
-    let low = workgroup.xy * TILE;
-    let place = low + local_place.xy * vec2u(1u, 2u);
     let below = place + vec2u(0u, 1u);
+    if all(place < size) {
+        write_texel(place, texels.a);
+    }
+    if all(below < size) {
+        write_texel(below, texels.b);
+    }
+}
+
+// Traverses a part of a tile's list: that of the invocation, of so many parts. All invocations of a workgroup call it.
+// `low`: first texel of the tile.
+fn traverse_part(low: vec2u, local_place: vec3u, parts: u32) -> TexelPair {
+    let size = vec2u(system.target_size);
+    let part = local_place.z;
+    let local = index_in_part(local_place);
+    let place = low + local_place.xy * vec2u(1u, 2u);
     var a = init_texel(min(place, size - 1u));
-    var b = init_texel(min(below, size - 1u));
+    var b = init_texel(min(place + vec2u(0u, 1u), size - 1u));
     atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
     let bin = low / tiles.bin_side;
     let list = bins[bin.y * tiles.columns + bin.x];
     let entries = list.y * tiles.loops;
+    // Entries of each part, and of each part of a batch.
+    let length = (entries + parts - 1u) / parts;
+    let share = BATCH / parts;
+    let start = part * length;
+    let stop = min(start + length, entries);
     let middle = vec2f(low) + 0.5 * vec2f(TILE);
     workgroupBarrier();
     let end = bitcast<f32>(atomicLoad(&farthest)) + system.show_through_distance;
-    for (var first = 0u; first < entries; first += BATCH) {
-        if local == 0u {
+    for (var first = 0u; first < length; first += share) {
+        if local == 0u && part == 0u {
             atomicStore(&touching[0], 0u);
             atomicStore(&touching[1], 0u);
         }
-        if !(is_opaque_or_occluded(a, front) && is_opaque_or_occluded(b, front)) {
+        let front = fronts[part];
+        if start + first < stop && !(is_opaque_or_occluded(a, front) && is_opaque_or_occluded(b, front)) {
             atomicStore(&unfinished, 1u);
         }
         if workgroupUniformLoad(&unfinished) == 0u {
@@ -167,11 +252,11 @@ fn cooperative(
         var sprite: TileSprite;
         var values: SpriteValues;
         var is_kept = false;
-        if first + local < entries {
+        if local < share && start + first + local < stop {
             // `debug_loop`: repeats the list.
-            let index = sprite_index(list, (first + local) % list.y);
+            let index = sprite_index(list, (start + first + local) % list.y);
             if local == 0u {
-                front = sprite_front(sprites[index].centre_radius);
+                fronts[part] = sprite_front(sprites[index].centre_radius);
             }
             // Most sprites of a bin do not touch this tile: reads only the rectangle of those.
             if rects_meet(rects[index], low, low + TILE) {
@@ -185,28 +270,31 @@ fn cooperative(
                 is_kept = meets && sprite_front(sprite.centre_radius) <= end;
             }
         }
+        let entry = part * share + local;
         if is_kept {
-            atomicOr(&touching[local / 32u], 1u << (local % 32u));
+            atomicOr(&touching[entry / 32u], 1u << (entry % 32u));
         }
         workgroupBarrier();
         let kept = vec2u(atomicLoad(&touching[0]), atomicLoad(&touching[1]));
         if is_kept {
-            let nearer = (1u << (local % 32u)) - 1u;
-            let before = countOneBits(select(vec2u(kept.x & nearer, 0u), vec2u(kept.x, kept.y & nearer), local >= 32u));
-            batch[before.x + before.y] = sprite;
+            let at = count_below(kept, entry);
+            batch[at] = sprite;
             if has_values() {
-                batch_values[before.x + before.y] = values;
+                batch_values[at] = values;
             }
         }
-        if local == 0u {
+        if local == 0u && part == 0u {
             atomicStore(&unfinished, 0u);
         }
         workgroupBarrier();
-        let counts = countOneBits(kept);
-        let count = counts.x + counts.y;
+        let last = count_below(kept, (part + 1u) * share);
         // llvmpipe's textureLoad takes the mip level of a lane that has left the loop. No lane leaves it under exact filtering,
         // which tests use.
-        for (var at = 0u; at < count && (EXACT_FILTERING || !(is_opaque(a) && is_opaque(b))); at++) {
+        for (
+            var at = count_below(kept, part * share);
+            at < last && (EXACT_FILTERING || !(is_opaque(a) && is_opaque(b)));
+            at++
+        ) {
             let is_done = is_opaque(a) && is_opaque(b);
             let sprite = batch[at];
             let values = values_in_batch(at);
@@ -220,12 +308,12 @@ fn cooperative(
             }
         }
     }
-    if all(place < size) {
-        write_texel(place, a);
-    }
-    if all(below < size) {
-        write_texel(below, b);
-    }
+    return TexelPair(a, b);
+}
+
+// Number of bits below a bit of 0 to 64.
+fn count_below(bits: vec2u, bit: u32) -> u32 {
+    return countOneBits(bits.x & bits_below(min(bit, 32u))) + countOneBits(bits.y & bits_below(max(bit, 32u) - 32u));
 }
 
 fn values_in_batch(at: u32) -> SpriteValues {

@@ -277,6 +277,7 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filt
             stops: layers == Layers::Visible && !weighted,
             // Per-invocation traversal loads sprite texels in its own way, which is not the reference's filter.
             cooperative: cooperative || exact_filtering,
+            split: false,
         },
     }
 }

@@ -50,6 +50,13 @@ const GLOW_MUTANTS: &[Mutant] = &[
     ("rows of glows swapped", "light_target.wgsl", "vec2u(light, 1u)", "vec2u(light, 0u)"),
 ];
 
+/// Mistakes in the traversal of a list in parts. It is cooperative, which exact filtering selects on every adapter.
+const SPLIT_MUTANTS: &[Mutant] = &[
+    ("opaque parts in front", "tile_accumulate.wgsl", "next.transmittance *= slots[0].a", "next.transmittance *= 1.0"),
+    ("parts behind unhidden", "tile_accumulate.wgsl", "seen_slots[slot] *= seen", "seen_slots[slot] *= 1.0"),
+    ("parts that overlap", "tile_accumulate.wgsl", "min(start + length, entries)", "entries"),
+];
+
 /// A context with one shader replaced.
 fn context((name, file, from, to): &Mutant) -> OffscreenContext {
     let text = shader::source(file).unwrap();
@@ -95,10 +102,11 @@ fn mistakes_in_shaders_fail_golden_images_and_agreement() {
 }
 
 #[test]
-fn mistakes_in_tiles_and_their_glow_change_the_frame() {
+fn mistakes_in_tiles_their_glow_and_their_lists_change_the_frame() {
     if is_tiled_available() {
-        expect_changes("campfire", TILE_MUTANTS);
-        expect_changes("backlit_fog", GLOW_MUTANTS);
+        expect_changes("campfire", false, TILE_MUTANTS);
+        expect_changes("backlit_fog", false, GLOW_MUTANTS);
+        expect_changes("backlit_fog", true, SPLIT_MUTANTS);
     }
 }
 
@@ -106,17 +114,17 @@ fn mistakes_in_tiles_and_their_glow_change_the_frame() {
 const CHANGED: f32 = 80.0;
 
 /// Draws a preset with each mutant by tiles, which must change the frame.
-fn expect_changes(preset: &str, mutants: &[Mutant]) {
+fn expect_changes(preset: &str, exact_filtering: bool, mutants: &[Mutant]) {
     let mut shot = shot(preset, glam::UVec2::new(320, 180));
     for system in &mut shot.preset.systems {
         system.settings.path = RenderPath::Tiled;
         system.settings.accumulate.lighting_resolution = LightingResolution::Target;
-        system.settings.accumulate.scale = 4;
+        system.settings.accumulate.fix_scale(4);
     }
     let gpu = gpu();
-    let clean = drawn(&OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue), &shot, false);
+    let clean = drawn(&OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue), &shot, exact_filtering);
     for mutant in mutants {
-        let psnr = psnr(&drawn(&context(mutant), &shot, false), &clean);
+        let psnr = psnr(&drawn(&context(mutant), &shot, exact_filtering), &clean);
         println!("{}: {psnr:.1} dB", mutant.0);
         assert!(psnr < CHANGED, "{} leaves the frame as it is: {psnr:.1} dB", mutant.0);
     }

@@ -14,8 +14,8 @@ use crate::renderer::targets::{TiledFormats, attachment_constants, tiled_formats
 use crate::settings::{AccumulationFormat, NormalEncoding};
 use crate::view_setup::AttachmentSet;
 
-/// Texels per workgroup of the entry points `cooperative` and `per_invocation` in `shaders/tile_accumulate.wgsl`.
-const COOPERATIVE_TILE: UVec2 = UVec2::new(8, 16);
+/// Texels per workgroup of the entry points `cooperative` and `split`, and of `per_invocation`, in `shaders/tile_accumulate.wgsl`.
+pub(crate) const COOPERATIVE_TILE: UVec2 = UVec2::new(8, 16);
 const PER_INVOCATION_TILE: UVec2 =
     UVec2::new(tile_refine::PER_INVOCATION_TILE.x, 8 * tile_refine::PER_INVOCATION_TILE.y);
 
@@ -33,6 +33,8 @@ pub(crate) struct TileAccumulateKey {
     pub stops: bool,
     /// True for cooperative traversal, false for per-invocation traversal.
     pub cooperative: bool,
+    /// True if a cooperative workgroup traverses parts of its list at the same time.
+    pub split: bool,
 }
 
 impl TileAccumulateKey {
@@ -45,7 +47,11 @@ impl TileAccumulateKey {
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileAccumulateKey) -> ComputePipelineDescription {
     ComputePipelineDescription {
-        entry_point: if key.cooperative { "cooperative" } else { "per_invocation" },
+        entry_point: match (key.cooperative, key.split) {
+            (true, true) => "split",
+            (true, false) => "cooperative",
+            (false, _) => "per_invocation",
+        },
         constants: key.sprite.constants(attachment_constants(key.attachments).chain([
             enum_constant!("NORMAL_ENCODING", key.encoding),
             bool_constant("HOST_DEPTH", key.host_depth),

@@ -175,7 +175,11 @@ impl TiledPipelines {
             tile_bin::keys(keys.accumulate.cooperative, either).try_for_each(|key| self.bin.check(key))?;
         }
         keys.refine().into_iter().try_for_each(|key| self.refine.check(key))?;
-        self.accumulate.check(keys.accumulate)
+        // The size of the target decides which one is used.
+        for split in [false, keys.accumulate.cooperative] {
+            self.accumulate.check(TileAccumulateKey { split, ..keys.accumulate })?;
+        }
+        Ok(())
     }
 
     /// Compiles the pipelines that measure a host's particles.

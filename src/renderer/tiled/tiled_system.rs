@@ -17,7 +17,7 @@ use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
-use crate::renderer::pass::tile_accumulate::TileAccumulate;
+use crate::renderer::pass::tile_accumulate::{COOPERATIVE_TILE, TileAccumulate, TileAccumulateKey};
 use crate::renderer::pass::tile_bin::TileBin;
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
@@ -36,6 +36,16 @@ const BIN_SIDE_PER_INVOCATION: u32 = 32;
 const BIN_SIDE_COOPERATIVE: u32 = 32;
 const BIN_SIDE_LARGE: u32 = 64;
 const LARGE_BIN_PARTICLES: u32 = 1 << 16;
+
+/// Most tiles of a target whose texels are shared by several invocations, and the same for deep smoke, whose lists are long.
+/// An H200, which has more processors than most, gains up to 4,000 tiles; it loses little where a smaller GPU would lose more.
+const SPLIT_TILES: u32 = 512;
+const SPLIT_TILES_OF_MANY_LAYERS: u32 = 2048;
+const MANY_LAYERS: f64 = 10.0;
+/// Fewest sprites for it.
+const MIN_SPLIT_SPRITES: f64 = 16.0;
+/// Largest mean optical depth for it: `OPAQUE` in `shaders/tile_accumulate.wgsl`.
+const OPAQUE_DEPTH: f64 = 10.0 * std::f64::consts::LN_2;
 
 /// Larger than any view depth, metres. Twice this value is still finite in f32.
 const BEYOND_ANY_DEPTH: f32 = 1.0e38;
@@ -77,6 +87,8 @@ impl TiledSystem {
         let TiledInputs { sprites, size, attachments, depth, workload } = *inputs;
         let max_words = max_storage_words(&tiled.limits);
         let cooperative = keys.accumulate.cooperative;
+        let split = cooperative && workload.is_some_and(|workload| splits_traversal(size, workload));
+        let keys = TiledKeys { accumulate: TileAccumulateKey { split, ..keys.accumulate }, ..keys };
         let BinLayout { side: bin_side, columns, rows, runs } =
             BinLayout::new(size, sprites.count, cooperative, max_words);
         let bins = columns * rows;
@@ -155,6 +167,14 @@ impl TiledSystem {
         }
         self.buffers.get_or_insert_with(|| TileBuffers::new(gpu.device, tiled, needed))
     }
+}
+
+/// True if several invocations should share each texel of a target. They keep a GPU busy where there are few texels; elsewhere
+/// they cost time, as they do where the smoke in front hides the parts behind.
+fn splits_traversal(size: UVec2, workload: &PathWorkload) -> bool {
+    let tiles = size.x.div_ceil(COOPERATIVE_TILE.x) * size.y.div_ceil(COOPERATIVE_TILE.y);
+    let most = if workload.layers() >= MANY_LAYERS { SPLIT_TILES_OF_MANY_LAYERS } else { SPLIT_TILES };
+    tiles <= most && workload.sprites >= MIN_SPLIT_SPRITES && workload.layers() * workload.optical_depth <= OPAQUE_DEPTH
 }
 
 /// Division of a target into bins, and of its sprites into runs.
