@@ -84,6 +84,12 @@ pub fn bits_below(count: u32) -> u32 {
     ((1_u64 << count.min(32)) - 1) as u32
 }
 
+/// Number of bits below a bit of 0 to 64.
+pub fn count_below(bits: UVec2, bit: u32) -> u32 {
+    let words = u64::from(bits.x) | (u64::from(bits.y) << 32);
+    (u128::from(words) & ((1 << bit) - 1)).count_ones()
+}
+
 /// Sprites of a batch that may be visible in a part of their bin, one bit each. `lists` has the words of `tile_refine`
 /// behind the list.
 pub fn bits_of(lists: &[u32], list: UVec2, batch: u32, part: u32) -> u32 {

@@ -239,6 +239,15 @@ fn traversal() -> Vec<Formula> {
             mutants: &[("0xffffffffu, count >= 32u", "0u, count >= 32u"), ("(1u << count) - 1u", "(2u << count) - 1u")],
         },
         Formula {
+            name: "count_below",
+            file: "tile_accumulate.wgsl",
+            wgsl: "y(0, f32(count_below(vec2u(0xda5a0f01u, 0x8000ffffu), u32(x(0)))));",
+            reference: |x| vec![tiles::count_below(UVec2::new(0xda5a_0f01, 0x8000_ffff), x[0] as u32) as f32],
+            cases: (0..=64_u8).map(|bit| vec![f32::from(bit)]).collect(),
+            tolerance: 0.0,
+            mutants: &[("min(bit, 32u)", "min(bit, 31u)"), ("max(bit, 32u) - 32u", "max(bit, 32u) - 31u")],
+        },
+        Formula {
             name: "is_opaque",
             file: "tile_accumulate.wgsl",
             wgsl: "STOPS = x(0) > 0.5; var t: Texel; t.transmittance = x(1); y(0, f32(is_opaque(t)));",
