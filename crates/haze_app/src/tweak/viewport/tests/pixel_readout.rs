@@ -122,10 +122,8 @@ fn pointing_at_a_ramp_highlights_the_smoke_that_samples_it() {
     let ramp = harness.get_by_label("Diffuse ramp").rect();
     harness.hover_at(egui::pos2(ramp.center().x, ramp.center().y));
     harness.run_steps(3);
-    let flash = brightness(&picture(&mut harness), viewport);
-    harness.run_steps(60);
     let lit = brightness(&picture(&mut harness), viewport);
-    assert!(lit > before + 0.5 && flash > lit + 0.2, "{before} {flash} {lit}");
+    assert!(lit > before + 0.5, "{before} {lit}");
     harness.hover_at(egui::pos2(5.0, 5.0));
     harness.run_steps(3);
     assert!((brightness(&picture(&mut harness), viewport) - before).abs() < 0.1);
