@@ -52,8 +52,7 @@ const MAX_FINER_INTERVAL: u32 = 16;
 ///
 /// The measurements may be of one system, or of all systems, which then share the scale. Systems that are compared with
 /// the host's own depth ([`DepthSource::Host`](super::DepthSource::Host)) support scale 1 only, and those whose
-/// `scale_mode` is `auto` choose their own. `docs/recipes.md` has
-/// an example host.
+/// `scale_mode` is `auto` choose their own. `docs/recipes.md` has an example host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleBudget {
     /// May be changed at any time.

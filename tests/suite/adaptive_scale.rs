@@ -47,7 +47,7 @@ fn error([a, b, behind]: [&Image<Vec4>; 3]) -> f32 {
     (sum / f64::from(count.max(1))).sqrt() as f32
 }
 
-/// Renders shots with one renderer.
+/// Renders shots with one renderer until a scale is chosen afresh.
 struct Stage {
     renderer: OffscreenRenderer,
 }

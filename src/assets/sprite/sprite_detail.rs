@@ -6,8 +6,8 @@ use super::Sprite;
 
 /// Mip levels that are measured; the last one stands for all that follow.
 const LEVELS: usize = 6;
-/// Frames that stand for the whole flipbook, and texels that stand for a whole frame: means of so many are within a few hundredths,
-/// and take half a millisecond.
+/// Frames that stand for the whole flipbook, and texels that stand for a whole frame. The CPU renderer measures a sprite in each
+/// frame, and would take many times as long for all of them.
 const FRAMES: u32 = 2;
 const TEXELS: u32 = 1024;
 /// Distance of the texels, which meets all places within the texels of a coarser level.
