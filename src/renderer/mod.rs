@@ -172,9 +172,9 @@ impl Renderer {
                 [(1.0, RampSteps::default()), (2.0, RampSteps::default()), (2.0, RampSteps::HARD)]
             {
                 let resolved = ResolvedSettings::new(settings, 1.0, view.size, frame_count, &ramps, shared.support);
-                let scales = resolved.candidate_scales();
                 let paths = settings.path.candidates();
-                for (scale, path) in scales.into_iter().flat_map(|scale| paths.iter().map(move |path| (scale, *path))) {
+                let scales = resolved.candidate_scales();
+                for (scale, path) in scales.flat_map(|scale| paths.iter().map(move |path| (scale, *path))) {
                     let settings = resolved.with_scale(scale).with_path(path);
                     for back_faces in [false, true] {
                         shared.pipelines.compile(&plan(&inputs, &settings, back_faces))?;

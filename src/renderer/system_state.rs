@@ -27,8 +27,8 @@ use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Particle, ParticleSystem};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
-    ErrorPrediction, LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim,
-    SystemInput, SystemSetup, TexelGrid, ViewGeometry, caster_uniform, light_uniforms, system_setup,
+    LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
+    SystemSetup, TexelGrid, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
 
 /// Buffers and targets of one system, and its passes of the current frame.
@@ -329,25 +329,19 @@ impl SystemState {
             time: frame.time,
             shadow: smoke_shadow,
         };
-        let Some(setup) = system_setup(view, context.host_size, &in_world) else {
+        let Some(mut setup) = system_setup(view, context.host_size, &in_world) else {
             let uniform = caster_uniform(&in_world);
             let caster = self.prepare_hidden(context, system, (&space, &settings, &uniform));
             self.hidden = caster.map(|caster| HiddenSystem { uniform, caster });
             return None;
         };
         let trim = SpriteTrim::new(&settings, material);
-        let view_uniform = view.uniform(false);
-        let scale_choice = settings.adapts_scale().then(|| {
-            let projector = setup.projector(&view_uniform, &settings, &trim);
-            let prediction = known.map(|known| ErrorPrediction::new(&projector, &setup, known, &settings, material));
-            ScaleChoice::new(prediction.as_ref(), &settings, self.chosen_scale)
-        });
+        let mut settings = settings;
+        let scale_choice =
+            ScaleChoice::apply(view, &mut settings, &mut setup, &trim, material, known, self.chosen_scale);
         self.chosen_scale = scale_choice.map(|choice| choice.scale);
-        let (settings, setup) = match self.chosen_scale {
-            Some(scale) => (settings.with_scale(scale), setup.with_scale(view, scale)),
-            None => (settings, setup),
-        };
         let workload = matches!(settings.path, RenderPath::Auto | RenderPath::Tiled).then(|| {
+            let view_uniform = view.uniform(false);
             let projector = setup.projector(&view_uniform, &settings, &trim);
             estimate_workload(&projector, &setup.grid(), system.particles.count(), known, &settings)
         });

@@ -22,7 +22,6 @@ mod view_lights;
 pub use attachment_role::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
 pub use density_splat::{cell_optical_depths, density_radius, density_splat, erosion_of, sprite_optical_depth};
 pub use drawing_order::DrawingOrder;
-pub use error_prediction::ErrorPrediction;
 pub use lighting_choice::LightingChoice;
 pub use optical_depth::optical_depth;
 pub use particle_measures::ParticleMeasures;

@@ -1,6 +1,6 @@
 //! Settings of a system for one frame, without open choices.
 
-use std::ops::Deref;
+use std::{iter, ops::Deref};
 
 use glam::UVec2;
 
@@ -80,12 +80,10 @@ impl ResolvedSettings {
     }
 
     /// Scales that select different pipelines, of those that may be chosen.
-    pub fn candidate_scales(&self) -> [u32; 2] {
-        if self.adapts_scale() {
-            [self.finest_scale, self.finest_scale.max(COARSEST_AUTO_SCALE)]
-        } else {
-            [self.scale; 2]
-        }
+    pub fn candidate_scales(&self) -> impl Iterator<Item = u32> + use<> {
+        let adapts = self.adapts_scale();
+        let finest = if adapts { self.finest_scale } else { self.scale };
+        iter::once(finest).chain((adapts && finest < COARSEST_AUTO_SCALE).then_some(COARSEST_AUTO_SCALE))
     }
 
     /// True if the scale is chosen for each frame.

@@ -4,6 +4,11 @@ use std::fmt;
 
 use super::error_prediction::ErrorPrediction;
 use super::resolved_settings::ResolvedSettings;
+use super::sprite_projector::SpriteTrim;
+use super::system_setup::SystemSetup;
+use super::view_geometry::ViewGeometry;
+use crate::assets::material_assets::MaterialInfo;
+use crate::frame::Particle;
 use crate::settings::COARSEST_AUTO_SCALE;
 
 /// Share of the largest error that the predicted one may be above or below before the scale changes: a moving camera does
@@ -26,14 +31,34 @@ pub struct ScaleChoice {
 }
 
 impl ScaleChoice {
-    /// Chooses for settings that leave the scale open. `prediction`: `None` if the particles are unknown, which keeps the
-    /// fixed scale. `before`: choice of the frame before, which is kept as long as it is nearly right.
-    pub fn new(prediction: Option<&ErrorPrediction>, settings: &ResolvedSettings, before: Option<u32>) -> Self {
-        let max_error = settings.accumulate.max_error;
-        match prediction {
-            Some(prediction) => Self::within(prediction, settings.finest_scale, max_error, before),
-            None => Self { scale: settings.scale, error: None, coarser_error: None, max_error },
+    /// Chooses the scale if the settings leave it open, and applies it to the settings and the setup. `particles`: with
+    /// the number of sprites that each stands for; `None` if they are unknown, which keeps the fixed scale. `before`: choice
+    /// of the frame before, which is kept as long as it is nearly right.
+    pub fn apply(
+        view: &ViewGeometry,
+        settings: &mut ResolvedSettings,
+        setup: &mut SystemSetup,
+        trim: &SpriteTrim,
+        material: &MaterialInfo,
+        particles: Option<(&[Particle], u32)>,
+        before: Option<u32>,
+    ) -> Option<Self> {
+        if !settings.adapts_scale() {
+            return None;
         }
+        let max_error = settings.accumulate.max_error;
+        let choice = match particles {
+            Some(particles) => {
+                let view = view.uniform(false);
+                let projector = setup.projector(&view, settings, trim);
+                let prediction = ErrorPrediction::new(&projector, setup, particles, settings, material);
+                Self::within(&prediction, settings.finest_scale, max_error, before)
+            }
+            None => Self { scale: settings.scale, error: None, coarser_error: None, max_error },
+        };
+        *settings = settings.with_scale(choice.scale);
+        *setup = setup.with_scale(view, choice.scale);
+        Some(choice)
     }
 
     fn within(prediction: &ErrorPrediction, finest: u32, max_error: f32, before: Option<u32>) -> Self {

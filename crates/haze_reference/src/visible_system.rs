@@ -19,8 +19,8 @@ use haze::frame::validate_input::{
 use haze::frame::{Bounds, Particle, View};
 use haze::settings::{BlendOrder, DebugView};
 use haze::view_setup::{
-    ErrorPrediction, ParticleMeasures, ParticleSpace, ResolvedSettings, ScaleChoice, SmokeShadow, SpriteTrim, Support,
-    SystemInput, SystemSetup, ViewGeometry, caster_uniform, light_uniforms, system_setup,
+    ParticleMeasures, ParticleSpace, ResolvedSettings, ScaleChoice, SmokeShadow, SpriteTrim, Support, SystemInput,
+    SystemSetup, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
 
 /// Visible system, with the input of its passes.
@@ -81,17 +81,10 @@ impl<'a> VisibleSystem<'a> {
             shadow,
         };
         let setup = system_setup(view, frame.view.size, &in_world);
-        let setup = setup.ok_or_else(|| Box::new(caster_uniform(&in_world)))?;
+        let mut setup = setup.ok_or_else(|| Box::new(caster_uniform(&in_world)))?;
         let trim = SpriteTrim::new(&settings, material);
-        let (settings, setup) = if settings.adapts_scale() {
-            let view_uniform = view.uniform(false);
-            let projector = setup.projector(&view_uniform, &settings, &trim);
-            let prediction = ErrorPrediction::new(&projector, &setup, (system.particles, 1), &settings, material);
-            let ScaleChoice { scale, .. } = ScaleChoice::new(Some(&prediction), &settings, None);
-            (settings.with_scale(scale), setup.with_scale(view, scale))
-        } else {
-            (settings, setup)
-        };
+        let mut settings = settings;
+        ScaleChoice::apply(view, &mut settings, &mut setup, &trim, material, Some((system.particles, 1)), None);
         let mut particles = Vec::new();
         measures.order.write(system.particles, settings.order() == BlendOrder::Sorted, &mut particles);
         Ok(Self {
