@@ -1,6 +1,7 @@
 // depth_slopes: fits a line to the lit smoke over depth around each texel, for its upsampling.
 // Reads   lit smoke, reduced depth.
 // Writes  change of the lit smoke over SLOPE_LENGTH of a soft fade; Rgba16Float. Zero where depth hardly changes.
+//         In compute also the cells with such a change.
 // Blend   none.
 // Source  He and Sun, "Fast guided filter", 2015: the coefficients are fitted at low resolution.
 
@@ -18,11 +19,28 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
 }
 
 @group(3) @binding(2) var written: texture_storage_2d<rgba16float, write>;
+// As slope_cells in lib/smoke_tiles.wgsl.
+@group(3) @binding(3) var written_cells: texture_storage_2d<r32float, write>;
 
+var<workgroup> has_slope: atomic<u32>;
+
+// A workgroup is a cell of CELL_SIDE² texels.
 @compute @workgroup_size(8, 8)
-fn texels(@builtin(global_invocation_id) id: vec3u) {
+fn texels(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) cell: vec3u,
+    @builtin(local_invocation_index) index: u32,
+) {
     if all(id.xy < vec2u(system.target_size)) {
-        textureStore(written, id.xy, slope_at(vec2i(id.xy)));
+        let slope = slope_at(vec2i(id.xy));
+        textureStore(written, id.xy, slope);
+        if any(slope != vec4f(0.0)) {
+            atomicStore(&has_slope, 1u);
+        }
+    }
+    workgroupBarrier();
+    if index == 0u {
+        textureStore(written_cells, cell.xy, vec4f(f32(atomicLoad(&has_slope))));
     }
 }
 

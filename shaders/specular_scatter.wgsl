@@ -18,6 +18,7 @@ struct QuadVertex {
     // Of the Glow.
     @location(1) @interpolate(flat, either) color: vec3f,
     @location(2) @interpolate(flat, either) light: u32,
+    @location(3) @interpolate(flat, either) texel_size: vec2f,
 }
 
 @vertex
@@ -35,6 +36,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     out.uv = corner;
     out.color = glow.color;
     out.light = instance;
+    out.texel_size = filter_texel_size();
     return out;
 }
 
@@ -47,7 +49,7 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     let pixel = in.position.xy - view.origin;
     var amount = 0.0;
     if LIT {
-        amount = sample_lit(pixel).a;
+        amount = sample_lit(pixel, in.texel_size).a;
     } else {
         amount = sample_target(accumulation, pixel).a;
     }

@@ -1,6 +1,7 @@
 // transfer_lit: draws smoke that light_target has lit: over the system's bounding box, or over the tiles that hold smoke,
 // then with the glow of lights behind it.
-// Reads   lit smoke and its depth slopes, reduced depth, scene depth, coverage ramp; cells with smoke, glows, specular ramp.
+// Reads   lit smoke and its depth slopes, reduced depth, scene depth, coverage ramp; cells with smoke and with slopes, glows,
+//         specular ramp.
 // Writes  the host's color target: linear light.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", option 1: lighting at the target's resolution; "Specular scattering".
@@ -14,6 +15,8 @@
 
 // True: an instance is a tile of the target; light_target has computed smoke_cells.
 override TILES: bool = false;
+// True: tiles without slopes are filtered by the hardware; depth_slopes has computed slope_cells.
+override SLOPE_CELLS: bool = false;
 // True: adds the glow of lights, which light_target has computed.
 override GLOWS: bool = false;
 
@@ -24,6 +27,9 @@ struct BoxVertex {
     @builtin(position) position: vec4f,
     // First light whose glow reaches the tile, and one past the last.
     @location(0) @interpolate(flat, either) glowing: vec2u,
+    // 0 if no texel of the tile has a slope, otherwise 1.
+    @location(1) @interpolate(flat, either) has_slopes: u32,
+    @location(2) @interpolate(flat, either) texel_size: vec2f,
 }
 
 @vertex
@@ -34,13 +40,13 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
             tile_origin(instance, vec2u(system.target_size), tile_side(system.scale)),
         );
     }
-    return BoxVertex(box_position(index), vec2u(0u));
+    return BoxVertex(box_position(index), vec2u(0u), 1u, filter_texel_size());
 }
 
 fn tile_vertex(side: vec2f, first_texel: vec2u) -> BoxVertex {
-    if !tile_has_smoke(first_texel) {
+    if !tile_has(smoke_cells, first_texel) {
         // Outside the clip volume.
-        return BoxVertex(vec4f(2.0, 2.0, 2.0, 1.0), vec2u(0u));
+        return BoxVertex(vec4f(2.0, 2.0, 2.0, 1.0), vec2u(0u), 0u, vec2f(0.0));
     }
     // Tested in front of the box, none of which is nearer.
     let clip = view.clip_from_view * vec4f(0.0, 0.0, -max(system.bounds_near, view.near), 1.0);
@@ -50,7 +56,11 @@ fn tile_vertex(side: vec2f, first_texel: vec2u) -> BoxVertex {
     if GLOWS {
         glowing = lights_that_reach(tile_corner(first_texel, vec2f(0.0)), tile_corner(first_texel, vec2f(1.0)));
     }
-    return BoxVertex(position, glowing);
+    var has_slopes = true;
+    if SLOPE_CELLS {
+        has_slopes = tile_has(slope_cells, first_texel);
+    }
+    return BoxVertex(position, glowing, u32(has_slopes), filter_texel_size());
 }
 
 // Range of the lights whose glow reaches a rectangle of pixels.
@@ -71,7 +81,13 @@ fn lights_that_reach(low: vec2f, high: vec2f) -> vec2u {
 @fragment
 fn fragment(in: BoxVertex) -> @location(0) vec4f {
     let pixel = in.position.xy - view.origin;
-    let lit = sample_lit(pixel);
+    var lit: vec4f;
+    if SLOPE_CELLS && in.has_slopes == 0u {
+        let place = filtered_place(pixel / f32(system.scale) - system.target_origin, in.texel_size);
+        lit = textureSampleLevel(accumulation, linear_sampler, place, 0.0);
+    } else {
+        lit = sample_lit(pixel, in.texel_size);
+    }
     let amount = lit.a;
     if amount <= 0.0 {
         discard;

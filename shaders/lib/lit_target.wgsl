@@ -6,9 +6,9 @@
 // Output of depth_slopes.
 @group(3) @binding(2) var depth_slopes: texture_2d<f32>;
 
-// Samples the lit smoke at a pixel of the view. Under UPSAMPLE_GUIDED, each texel is carried to the pixel's depth along
+// Samples the lit smoke at a pixel of the view. `texel_size`: filter_texel_size(). Under UPSAMPLE_GUIDED, each texel is carried to the pixel's depth along
 // its slope. The filter does not depend on depth where no slope is near, which is most of a picture.
-fn sample_lit(pixel: vec2f) -> vec4f {
+fn sample_lit(pixel: vec2f, texel_size: vec2f) -> vec4f {
     if UPSAMPLE != UPSAMPLE_GUIDED || system.scale == 1u {
         return sample_target(accumulation, pixel);
     }
@@ -17,9 +17,9 @@ fn sample_lit(pixel: vec2f) -> vec4f {
         return vec4f(0.0);
     }
     if !EXACT_FILTERING {
-        let inside = clamp(texel, vec2f(0.5), system.target_size - 0.5) / vec2f(textureDimensions(accumulation));
-        if all(textureSampleLevel(depth_slopes, linear_sampler, inside, 0.0) == vec4f(0.0)) {
-            return textureSampleLevel(accumulation, linear_sampler, inside, 0.0);
+        let place = filtered_place(texel, texel_size);
+        if all(textureSampleLevel(depth_slopes, linear_sampler, place, 0.0) == vec4f(0.0)) {
+            return textureSampleLevel(accumulation, linear_sampler, place, 0.0);
         }
     }
     let corner = texel - 0.5;
@@ -56,6 +56,16 @@ fn sample_lit(pixel: vec2f) -> vec4f {
         return four;
     }
     return mix(mean_of_sixteen(base, fraction, depth), four, share);
+}
+
+// Coordinate at which the hardware filters the texels around a place; all of them are in the part in use.
+fn filtered_place(texel: vec2f, texel_size: vec2f) -> vec2f {
+    return clamp(texel, vec2f(0.5), system.target_size - 0.5) * texel_size;
+}
+
+// Size of a texel in the coordinates of the hardware's filter. For vertex shaders: the lookup is slow on NVIDIA's GPUs.
+fn filter_texel_size() -> vec2f {
+    return 1.0 / vec2f(textureDimensions(accumulation));
 }
 
 // Mean of the sixteen texels around a pixel, mostly of those near its depth.

@@ -9,6 +9,8 @@ const MIN_TILE_PIXELS: u32 = 32u;
 
 // Output of light_target: 1 for each cell with smoke, otherwise 0.
 @group(3) @binding(3) var smoke_cells: texture_2d<f32>;
+// Output of depth_slopes: 1 for each cell with a slope, otherwise 0.
+@group(3) @binding(5) var slope_cells: texture_2d<f32>;
 
 // Side of a tile, texels: a multiple of CELL_SIDE. `scale`: pixels per texel.
 fn tile_side(scale: u32) -> u32 {
@@ -27,15 +29,15 @@ fn tile_origin(tile: u32, target_size: vec2u, side: u32) -> vec2u {
     return vec2u(tile % across, tile / across) * side;
 }
 
-// True if a pixel of the tile can show smoke: a cell of the tile has some, or one that an upsampler reads there.
-fn tile_has_smoke(first_texel: vec2u) -> bool {
+// True if a cell of the tile is marked, or one that an upsampler reads for its pixels.
+fn tile_has(cells: texture_2d<f32>, first_texel: vec2u) -> bool {
     let border = select(1, 0, system.scale == 1u);
     let last_cell = (vec2i(system.target_size) - 1) / i32(CELL_SIDE);
     let low = max(vec2i(first_texel / CELL_SIDE) - border, vec2i(0));
     let high = min(vec2i((first_texel + tile_side(system.scale) - 1u) / CELL_SIDE) + border, last_cell);
     for (var y = low.y; y <= high.y; y++) {
         for (var x = low.x; x <= high.x; x++) {
-            if textureLoad(smoke_cells, vec2i(x, y), 0).r > 0.0 {
+            if textureLoad(cells, vec2i(x, y), 0).r > 0.0 {
                 return true;
             }
         }

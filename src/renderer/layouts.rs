@@ -113,6 +113,7 @@ impl Layouts {
                     texture(filterable, D2),
                     texture(unfilterable, D2),
                     texture(unfilterable, D2),
+                    texture(unfilterable, D2),
                 ],
             ),
             scene_shadow: layout(

@@ -221,6 +221,7 @@ fn deferred<'a>(
         depth_test,
         overdraw: false,
     };
+    let depth_slopes = (lights_target && upsample == Upsample::Guided && settings.scale > 1).then_some(DepthSlopesKey);
     DeferredPlan {
         reads_linear,
         depth_downsample: (!host_depth).then(|| downsample(false)),
@@ -239,12 +240,13 @@ fn deferred<'a>(
             .then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         computes_texels,
         light_target: lights_target.then_some(lighting),
-        depth_slopes: (lights_target && upsample == Upsample::Guided && settings.scale > 1).then_some(DepthSlopesKey),
+        depth_slopes,
         transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
         transfer_lit: lights_target.then_some(TransferLitKey {
             drawn,
             tiles: computes_texels,
             glows: computes_texels && glows,
+            slope_cells: computes_texels && depth_slopes.is_some() && !exact_filtering,
             upsample,
             coverage,
             ramp_filter,

@@ -89,8 +89,10 @@ impl SystemTargets {
             let transfer = bind_transfer(amount);
             let lit = accumulation.lit.as_ref().unwrap_or(amount);
             let (cells, glows) = (accumulation.smoke_cells.as_ref(), accumulation.glows.as_ref());
+            let slope_cells = accumulation.slope_cells.as_ref().unwrap_or(lit);
             let lit_inputs = |slopes| {
-                let textures = [lit, depth.unwrap_or(lit), slopes, cells.unwrap_or(lit), glows.unwrap_or(lit)];
+                let (cells, glows) = (cells.unwrap_or(lit), glows.unwrap_or(lit));
+                let textures = [lit, depth.unwrap_or(lit), slopes, cells, glows, slope_cells];
                 bind_textures(device, "haze lit inputs", &layouts.lit, textures)
             };
             // Passes that compute texels write the last of their textures.
@@ -114,7 +116,7 @@ impl SystemTargets {
                 }),
                 depth_slopes: depth_slopes.map(|slopes| match computed_texels {
                     Some(computed) => {
-                        let textures = [lit, depth.unwrap_or(lit), slopes];
+                        let textures = [lit, depth.unwrap_or(lit), slopes, slope_cells];
                         bind_textures(device, "haze depth_slopes inputs", &computed.depth_slopes, textures)
                     }
                     None => lit_inputs(lit),

@@ -41,6 +41,7 @@ const MUTANTS: &[Mutant] = &[
 const TILE_MUTANTS: &[Mutant] = &[
     ("no border of tiles", "lib/smoke_tiles.wgsl", "select(1, 0, system.scale == 1u)", "0"),
     ("cells of other tiles", "lib/smoke_tiles.wgsl", "vec2i(first_texel / CELL_SIDE)", "vec2i(first_texel)"),
+    ("no cell with a slope", "depth_slopes.wgsl", "atomicStore(&has_slope, 1u)", "atomicStore(&has_slope, 0u)"),
 ];
 
 /// Mistakes in the glow that transfer_lit adds.

@@ -2,7 +2,7 @@
 //! `TexelPass` records it.
 //!
 //! Reads: lit smoke, reduced depth.
-//! Writes: slopes, Rgba16Float.
+//! Writes: slopes, Rgba16Float; in compute also the cells with slopes.
 //! Blend: none.
 //! Source: He and Sun, "Fast guided filter", 2015.
 

@@ -69,6 +69,8 @@ pub(crate) struct AccumulationTarget {
     pub glows: Option<wgpu::TextureView>,
     /// Change of the lit smoke with depth.
     pub depth_slopes: Option<wgpu::TextureView>,
+    /// Cells with such a change, if compute shaders fit it.
+    pub slope_cells: Option<wgpu::TextureView>,
     /// `None` if sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// Coarser copy of the reduced depth, if the backend cannot test what it samples.
@@ -138,6 +140,8 @@ impl AccumulationTarget {
         let lights = UVec2::new(MAX_LIGHTS as u32, 2);
         let glows = computes_light.then(|| textures.create_whole("haze glows", GLOWS_FORMAT, lights));
         let depth_slopes = key.depth_slopes.then(|| textures.create_whole("haze depth slopes", LIT_FORMAT, size));
+        let slope_cells = (key.depth_slopes && key.computes_texels)
+            .then(|| textures.create_whole("haze slope cells", CELLS_FORMAT, cells));
         let is_reduced = key.depth_source == DepthSource::Reduced;
         textures.written = written(key.computes_depth);
         let depth_format = if key.computes_depth { COMPUTED_DEPTH_FORMAT } else { REDUCED_DEPTH_FORMAT };
@@ -156,6 +160,7 @@ impl AccumulationTarget {
             smoke_cells,
             glows,
             depth_slopes,
+            slope_cells,
             reduced_depth,
             depth_copy,
             bytes,

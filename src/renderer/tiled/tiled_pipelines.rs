@@ -282,7 +282,7 @@ impl TiledLayouts {
                 "haze light_target inputs",
                 &[transfer_types().as_slice(), &[lit, flat(CELLS_FORMAT), flat(GLOWS_FORMAT)]].concat(),
             ),
-            depth_slopes: layout("haze depth_slopes inputs", &[depth, depth, lit]),
+            depth_slopes: layout("haze depth_slopes inputs", &[depth, depth, lit, flat(CELLS_FORMAT)]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
             gather: layout("haze tile_gather inputs", &[uniform, read, read, read, written, written, written]),

@@ -152,7 +152,7 @@ fn lit_targets() -> Vec<Formula> {
             name: "sample_lit",
             file: "lib/lit_target.wgsl",
             wgsl: "UPSAMPLE = u32(x(0)); system.scale = select(2u, 1u, x(3) < 0.2); system.depth_limit = 8.0; \
-                   system.smoke_depth_limit = 6.0; y4(0, sample_lit(vec2f(x(1), x(2))));",
+                   system.smoke_depth_limit = 6.0; y4(0, sample_lit(vec2f(x(1), x(2)), filter_texel_size()));",
             reference: |x| {
                 let settings = changed(|s| s.accumulate.upsample = Upsample::ALL[x[0] as usize]);
                 let change = |visible: &mut VisibleSystem<'_>| {
