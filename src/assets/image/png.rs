@@ -151,12 +151,12 @@ pub(super) fn encode_png(path: &Path, picture: &DynamicImage, effort: Compressio
     match effort {
         CompressionEffort::Quick => encoded(CompressionType::Fast, FilterType::Adaptive),
         CompressionEffort::Small => {
-            // Encodes with both filters and keeps the smaller file.
-            let mut tries = [FilterType::Adaptive, FilterType::Paeth].map(|filter| (filter, Ok(Vec::new())));
+            // Encodes with every filter that is the best one for some images, and keeps the smallest file.
+            let filters = [FilterType::Adaptive, FilterType::Paeth, FilterType::Sub, FilterType::Up];
+            let mut tries = filters.map(|filter| (filter, Ok(Vec::new())));
             parallel_for_each(tries.iter_mut(), |(filter, bytes)| *bytes = encoded(SMALL, *filter));
-            let [adaptive, paeth] = tries.map(|(_, bytes)| bytes);
-            let (adaptive, paeth) = (adaptive?, paeth?);
-            Ok(if paeth.len() < adaptive.len() { paeth } else { adaptive })
+            let files: Vec<_> = tries.into_iter().map(|(_, bytes)| bytes).collect::<Result<_, _>>()?;
+            Ok(files.into_iter().min_by_key(Vec::len).unwrap_or_default())
         }
     }
 }
