@@ -2,19 +2,17 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use super::noise::NoiseVolume;
 use super::ramp::Ramp;
-use super::ramp_steps::{RampSteps, largest_step};
+use super::ramp_steps::RampSteps;
 use super::sprite::Sprite;
 use super::sprite::alpha_bounds::AlphaBounds;
 use super::sprite::sprite_density::SpriteDensity;
 use super::sprite::sprite_detail::SpriteDetail;
 use crate::error::FieldError;
-use crate::formula::diffuse_bake::zonal_coefficients;
-use crate::formula::ramp::sample_ramp_2d;
-use crate::settings::{RampFilter, Settings};
+use crate::settings::Settings;
 
 /// Decoded images of a particle system. The reference renderer samples these; the GPU renderer uploads them.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,10 +84,6 @@ impl MaterialAssets {
 
     /// Sizes and frame counts, as validation and the view setup need them.
     pub fn info(&self) -> MaterialInfo {
-        // v = 1: the row of fully opaque smoke.
-        let zonal = |ramp| {
-            zonal_coefficients(|cos| sample_ramp_2d(ramp, RampFilter::Bilinear, Vec2::new(cos * 0.5 + 0.5, 1.0)))
-        };
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,
             alpha_bounds: Arc::new(AlphaBounds::new(&self.sprite, self.six_way.as_ref())),
@@ -100,17 +94,17 @@ impl MaterialAssets {
             }),
             noise_size: self.noise.size() as f32,
             six_way: self.six_way.as_ref().map(|maps| (maps.size(), maps.frame_count())),
-            density: SpriteDensity::new(&self.sprite),
-            sprite_detail: SpriteDetail::new(&self.sprite),
-            zonal: zonal(&self.diffuse_ramp),
-            backlight_zonal: zonal(&self.backlight_ramp),
+            density: *self.sprite.density(),
+            sprite_detail: *self.sprite.detail(),
+            zonal: self.diffuse_ramp.zonal(),
+            backlight_zonal: self.backlight_ramp.zonal(),
             ramp_steps: RampSteps {
-                diffuse: largest_step(&self.diffuse_ramp),
-                backlight: largest_step(&self.backlight_ramp),
-                soft_scatter: largest_step(&self.soft_scatter_ramp),
-                shadow: largest_step(&self.shadow_ramp),
-                motif: largest_step(&self.motif),
-                fire: largest_step(&self.fire_ramp),
+                diffuse: self.diffuse_ramp.largest_step(),
+                backlight: self.backlight_ramp.largest_step(),
+                soft_scatter: self.soft_scatter_ramp.largest_step(),
+                shadow: self.shadow_ramp.largest_step(),
+                motif: self.motif.largest_step(),
+                fire: self.fire_ramp.largest_step(),
             },
         }
     }

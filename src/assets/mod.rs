@@ -11,6 +11,7 @@ pub mod file_type;
 pub mod image;
 pub mod json;
 pub mod material_assets;
+pub(crate) mod measured;
 #[cfg(target_arch = "wasm32")]
 pub mod memory_files;
 pub mod noise;

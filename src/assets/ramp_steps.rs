@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3, vec2};
 
-use super::ramp::Ramp;
 use crate::formula::ramp::sample_ramp_2d;
+use crate::formula::texture::Texture2d;
 use crate::settings::{Backlight, DiffuseMode, RampFilter, Settings, SoftScatterMode};
 
 /// Positions across a ramp that are compared, and rows of it.
@@ -51,7 +51,7 @@ impl RampSteps {
 }
 
 /// Returns the largest step of a ramp, across it or up.
-pub(crate) fn largest_step(ramp: &Ramp) -> f32 {
+pub(crate) fn largest_step(ramp: &impl Texture2d) -> f32 {
     let place = |index: u32, count: u32| index as f32 / (count - 1) as f32;
     let color = |at: Vec2| sample_ramp_2d(ramp, RampFilter::Bilinear, at);
     let mut brightest = 0.0_f32;
@@ -78,6 +78,7 @@ mod tests {
 
     use super::*;
     use crate::assets::builtin;
+    use crate::assets::ramp::Ramp;
 
     fn gradient(color: impl Fn(f32) -> f32) -> Ramp {
         Ramp::from_linear(UVec2::new(256, 1), (0..256).map(|x| Vec3::splat(color(x as f32 / 255.0))))

@@ -8,20 +8,27 @@ pub use ramp_role::RampRole;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{UVec2, Vec3, Vec4};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 use half::f16;
 use image::DynamicImage;
 
 use crate::assets::image::{decode_color_png, read_file};
+use crate::assets::measured::Measured;
+use crate::assets::ramp_steps::largest_step;
 use crate::error::Error;
 use crate::formula::color::linear_from_srgb;
+use crate::formula::diffuse_bake::zonal_coefficients;
+use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::texture::Texture2d;
+use crate::settings::RampFilter;
 
 /// A decoded ramp: linear RGB in half floats, as on the GPU. A 1D ramp has one row. A clone shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ramp {
     size: UVec2,
     texels: Arc<[[f16; 4]]>,
+    largest_step: Measured<f32>,
+    zonal: Measured<[Vec3; 3]>,
 }
 
 impl Ramp {
@@ -37,7 +44,8 @@ impl Ramp {
             .map(|color| [color.x, color.y, color.z, 1.0].map(f16::from_f32))
             .collect();
         texels.resize((size.x * size.y) as usize, [f16::ZERO; 4]);
-        Self { size, texels: texels.into() }
+        let (largest_step, zonal) = Default::default();
+        Self { size, texels: texels.into(), largest_step, zonal }
     }
 
     /// Converts an sRGB image of 8 or 16 bits per channel. Alpha is ignored;
@@ -84,6 +92,17 @@ impl Ramp {
     /// Returns the size of the texels, bytes.
     pub fn memory(&self) -> u64 {
         size_of_val(&*self.texels) as u64
+    }
+
+    /// Returns the largest step, by which `lighting_resolution` `auto` decides.
+    pub(crate) fn largest_step(&self) -> f32 {
+        *self.largest_step.get_or_measure(|| largest_step(self))
+    }
+
+    /// Returns the zonal harmonic coefficients of the row of fully opaque smoke.
+    pub(crate) fn zonal(&self) -> [Vec3; 3] {
+        let color = |cos: f32| sample_ramp_2d(self, RampFilter::Bilinear, Vec2::new(cos * 0.5 + 0.5, 1.0));
+        *self.zonal.get_or_measure(|| zonal_coefficients(color))
     }
 
     /// Returns the texels for upload: `Rgba16Float`, row 0 of the second axis first.

@@ -12,8 +12,11 @@ use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
 
 use crate::assets::image::{Image, decode_png, read_file};
+use crate::assets::measured::Measured;
 use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
+use sprite_density::SpriteDensity;
+use sprite_detail::SpriteDetail;
 
 /// Layout of frames in a sprite's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -40,6 +43,8 @@ pub struct Sprite {
     frame_count: u32,
     /// Mip levels. Each level holds its frames in order, row by row from the top.
     levels: Vec<Arc<[[u8; 4]]>>,
+    density: Measured<SpriteDensity>,
+    detail: Measured<SpriteDetail>,
 }
 
 /// Maximum number of frames: the number of array layers that WebGL2 guarantees.
@@ -111,7 +116,8 @@ impl Sprite {
 
     /// Builds the mip levels of frames below each other, `size` texels a side each.
     pub fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
-        let mut sprite = Self { size, frame_count, levels: vec![texels.into()] };
+        let (density, detail) = Default::default();
+        let mut sprite = Self { size, frame_count, levels: vec![texels.into()], density, detail };
         for level in 1..=size.ilog2() {
             let coarse = sprite.level_size(level);
             let fine = sprite.level_size(level - 1);
@@ -159,6 +165,16 @@ impl Sprite {
     /// Returns the size of the texels, bytes.
     pub fn memory(&self) -> u64 {
         self.levels.iter().map(|level| size_of_val(&**level) as u64).sum()
+    }
+
+    /// Returns its density, for shadow.
+    pub(crate) fn density(&self) -> &SpriteDensity {
+        self.density.get_or_measure(|| SpriteDensity::new(self.size, &self.levels[0]))
+    }
+
+    /// Returns the detail of its image that coarse targets lose.
+    pub(crate) fn detail(&self) -> &SpriteDetail {
+        self.detail.get_or_measure(|| SpriteDetail::new(self, self.frame_count))
     }
 
     /// Returns the texels of a frame, row by row from the top.

@@ -1,6 +1,5 @@
 //! Density of a sprite's image, as the shadow of smoke needs it.
 
-use super::Sprite;
 use crate::formula::density_grid::mean_optical_depth;
 use crate::formula::grain::eroded;
 
@@ -22,10 +21,11 @@ pub(crate) struct SpriteDensity {
 }
 
 impl SpriteDensity {
-    pub fn new(sprite: &Sprite) -> Self {
+    /// Measures frames below each other. `side`: of a frame, texels.
+    pub fn new(side: u32, texels: &[[u8; 4]]) -> Self {
         let mut counts = [0_u32; 256];
         let mut total = 0_u32;
-        for alpha in sprite.level_bytes(0).iter().skip(3).step_by(4) {
+        for [.., alpha] in texels {
             counts[usize::from(*alpha)] += 1;
             total += 1;
         }
@@ -47,15 +47,14 @@ impl SpriteDensity {
             }
         }
         let eroded_share = mean(|alpha| eroded(alpha, 0.0, 1.0)) / mean_alpha.max(1.0e-6);
-        Self { mean_alpha, peak_alpha: 0.5 * (low + high), eroded_share, reach: reach(sprite) }
+        Self { mean_alpha, peak_alpha: 0.5 * (low + high), eroded_share, reach: reach(side, texels) }
     }
 }
 
 /// Standard deviation of the optical depth from the sprites' centres, along an axis, over that of a bump of radius 1.
-fn reach(sprite: &Sprite) -> f32 {
-    let side = sprite.size();
+fn reach(side: u32, texels: &[[u8; 4]]) -> f32 {
     let (mut total, mut squares) = (0.0_f64, 0.0_f64);
-    for (texel, alpha) in (0..).zip(sprite.level_bytes(0).iter().skip(3).step_by(4)) {
+    for (texel, [.., alpha]) in (0..).zip(texels) {
         let depth = -(1.0 - (f32::from(*alpha) / 255.0).min(MAX_ALPHA)).ln();
         let place = [texel % side, texel / side % side].map(|at| (at as f32 + 0.5) / side as f32 * 2.0 - 1.0);
         total += f64::from(depth);
@@ -69,6 +68,7 @@ fn reach(sprite: &Sprite) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Sprite;
     use super::*;
     use crate::assets::builtin;
     use crate::formula::grain::kept_share;
@@ -83,7 +83,7 @@ mod tests {
                 [128, 128, 255, (40.0 * bump[0] * bump[1]).round() as u8]
             };
             let sprite = Sprite::with_levels(SIDE, 1, (0..SIDE * SIDE).map(texel).collect());
-            let reach = SpriteDensity::new(&sprite).reach;
+            let reach = sprite.density().reach;
             assert!((reach / radius - 1.0).abs() < 0.03, "{radius}: {reach}");
         }
     }
@@ -93,7 +93,7 @@ mod tests {
         for name in ["puff", "wisp", "strands"] {
             let sprite = builtin::find(builtin::SPRITES, name).unwrap().sprite().unwrap();
             let noise = builtin::find(builtin::NOISES, "fbm").unwrap().noise().unwrap();
-            let SpriteDensity { eroded_share, .. } = SpriteDensity::new(&sprite);
+            let SpriteDensity { eroded_share, .. } = *sprite.density();
             let alphas: Vec<_> =
                 sprite.level_bytes(0).iter().skip(3).step_by(4).map(|a| f32::from(*a) / 255.0).collect();
             let densities: Vec<_> = noise.bytes().iter().skip(3).step_by(4).map(|a| f32::from(*a) / 255.0).collect();
@@ -111,7 +111,7 @@ mod tests {
     fn depth_of_a_sprite_is_exact_for_faint_and_for_opaque_smoke() {
         let alphas = [0, 40, 128, 200, 255, 90, 10, 0, 0];
         let sprite = Sprite::with_levels(3, 1, alphas.map(|alpha| [128, 128, 255, alpha]).to_vec());
-        let SpriteDensity { mean_alpha, peak_alpha, .. } = SpriteDensity::new(&sprite);
+        let SpriteDensity { mean_alpha, peak_alpha, .. } = *sprite.density();
         let exact = |amount: f32| {
             let depth = |code: u8| -(1.0 - amount * (f32::from(code) / 255.0).min(0.98)).ln();
             alphas.into_iter().map(depth).sum::<f32>() / 9.0
@@ -120,7 +120,7 @@ mod tests {
             let depth = mean_optical_depth(amount, mean_alpha, peak_alpha);
             assert!((depth / exact(amount) - 1.0).abs() < tolerance, "{amount}: {depth}, expected {}", exact(amount));
         }
-        let clear = SpriteDensity::new(&Sprite::with_levels(1, 1, vec![[0; 4]]));
+        let clear = SpriteDensity::new(1, &[[0; 4]]);
         assert!(mean_optical_depth(1.0, clear.mean_alpha, clear.peak_alpha).abs() < 1e-9);
     }
 }

@@ -2,12 +2,11 @@
 
 use glam::{UVec2, Vec2, Vec4, Vec4Swizzles};
 
-use super::Sprite;
+use crate::formula::texture::Texture2dArray;
 
 /// Mip levels that are measured; the last one stands for all that follow.
 const LEVELS: usize = 6;
-/// Frames that stand for the whole flipbook, and texels that stand for a whole frame. The CPU renderer measures a sprite in each
-/// frame, and would take many times as long for all of them.
+/// Frames that stand for the whole flipbook, and texels that stand for a whole frame.
 const FRAMES: u32 = 2;
 const TEXELS: u32 = 1024;
 /// Distance of the texels, which meets all places within the texels of a coarser level.
@@ -33,9 +32,9 @@ pub(crate) struct LostDetail {
 }
 
 impl SpriteDetail {
-    pub fn new(sprite: &Sprite) -> Self {
-        let step = sprite.frame_count().div_ceil(FRAMES).max(1);
-        let frames = || (0..sprite.frame_count()).step_by(step as usize);
+    pub fn new(sprite: &impl Texture2dArray, frame_count: u32) -> Self {
+        let step = frame_count.div_ceil(FRAMES).max(1);
+        let frames = || (0..frame_count).step_by(step as usize);
         let mean = |square: &dyn Fn(u32) -> [f64; 2]| {
             let sum = frames().map(square).fold([0.0; 2], |sum, x| [sum[0] + x[0], sum[1] + x[1]]);
             sum.map(|sum| (sum / frames().count() as f64).sqrt() as f32)
@@ -46,8 +45,7 @@ impl SpriteDetail {
             let [amount, normal] = mean(&|frame| squared_loss(sprite, frame, level));
             LostDetail { amount, normal }
         });
-        let size = sprite.size();
-        let [amount, _] = mean(&|frame| mean_squares(size, |at| sprite.texel(0, frame, at.x, at.y)));
+        let [amount, _] = mean(&|frame| mean_squares(sprite.dimensions(0), |at| sprite.load(at, frame, 0)));
         Self { amount, lost }
     }
 
@@ -68,10 +66,10 @@ impl SpriteDetail {
 
 /// Mean squares of the difference between a frame and one of its levels, upsampled: of the amount, and of the normal times the
 /// amount.
-fn squared_loss(sprite: &Sprite, frame: u32, level: u32) -> [f64; 2] {
-    let (size, coarse) = (sprite.size(), sprite.level_size(level));
+fn squared_loss(sprite: &impl Texture2dArray, frame: u32, level: u32) -> [f64; 2] {
+    let (size, coarse) = (sprite.dimensions(0), sprite.dimensions(level));
     let premultiplied = |level, x: u32, y: u32| {
-        let texel = sprite.texel(level, frame, x, y);
+        let texel = sprite.load(UVec2::new(x, y), frame, level);
         ((texel.xyz() * 2.0 - 1.0) * texel.w).extend(texel.w)
     };
     let scale = coarse as f32 / size as f32;
@@ -98,12 +96,12 @@ fn mean_squares(size: u32, texel: impl Fn(UVec2) -> Vec4) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::super::Sprite;
     use crate::assets::builtin;
 
     #[test]
     fn coarse_texels_lose_more_of_fine_sprites() {
-        let of = |name| SpriteDetail::new(&builtin::find(builtin::SPRITES, name).unwrap().sprite().unwrap());
+        let of = |name| *builtin::find(builtin::SPRITES, name).unwrap().sprite().unwrap().detail();
         for name in ["puff", "wisp", "strands"] {
             let detail = of(name);
             let lods = (-8..=24).map(|step| 0.25 * step as f32);
@@ -116,7 +114,7 @@ mod tests {
 
     #[test]
     fn an_even_sprite_loses_nothing() {
-        let even = SpriteDetail::new(&Sprite::with_levels(16, 1, vec![[128, 128, 255, 90]; 256]));
+        let even = *Sprite::with_levels(16, 1, vec![[128, 128, 255, 90]; 256]).detail();
         assert!((-4..8).all(|lod| even.lost(lod as f32).amount < 0.01), "{even:?}");
         assert!((even.amount - 90.0 / 255.0).abs() < 1.0e-3, "{even:?}");
     }
