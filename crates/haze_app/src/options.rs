@@ -12,6 +12,7 @@ use haze::preset::{AssetFolders, MAX_TIME, Preset};
 use haze::settings::{Choice, RenderPath, ScaleMode, Technique, UnknownChoice};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
+use haze_author::preset::no_effect_reason_of_set;
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 use image::DynamicImage;
@@ -146,8 +147,15 @@ impl ShotArguments {
             value.map_or(Ok(String::new()), |value| preset.set_field(field, &value))?;
         }
         preset.time = self.time.unwrap_or(preset.time);
+        let mut set = Vec::new();
         for (field, value) in &self.set {
-            preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
+            let name = preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
+            set.push((field, name));
+        }
+        for (field, name) in &set {
+            if let Some(reason) = no_effect_reason_of_set(&preset, field, name, self.run.size) {
+                print_error(format_args!("--set {field} has no effect: {reason}"));
+            }
         }
         let shot = self.shot(preset)?;
         self.check_outputs(&shot, outputs)?;

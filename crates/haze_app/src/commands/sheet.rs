@@ -3,10 +3,12 @@
 use clap::Args;
 use glam::UVec2;
 use haze::{Error, FieldError};
+use haze_author::preset::no_effect_reason_of_set;
 use pollster::block_on;
 
 use crate::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
 use crate::options::{ShotArguments, parse_assignment, with_option};
+use crate::output::print_error;
 
 #[derive(Args)]
 #[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is this size divided by the number of columns")))]
@@ -35,14 +37,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let columns = column_count(values.len());
     let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
     let mut name = String::new();
-    let mut cells = Vec::new();
+    let (mut cells, mut reasons) = (Vec::new(), Vec::new());
     for value in values {
         let mut preset = base.preset.clone();
         let set = preset.set_field(field, value).map_err(|error: FieldError| with_option("--vary", error));
         name = set?;
+        reasons.push(no_effect_reason_of_set(&preset, field, &name, size));
         let mut shot = arguments.shot.shot(preset)?;
         shot.size = size;
         cells.push((value.clone(), shot));
+    }
+    if let Some(&[Some(reason), ..]) = reasons.iter().all(Option::is_some).then_some(&reasons[..]) {
+        print_error(format_args!("--vary {field} has no effect: {reason}"));
     }
     let backend = arguments.shot.run.backend()?;
     let mut sheet =

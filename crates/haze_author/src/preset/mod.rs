@@ -8,7 +8,7 @@ mod settings_page;
 mod tooltips;
 
 pub use file_check::check_files;
-pub use no_effect::no_effect_reason;
+pub use no_effect::{no_effect_reason, no_effect_reason_of_set};
 pub use role_check::role_warnings;
 pub use schema::schema;
 pub use settings_page::settings_page;

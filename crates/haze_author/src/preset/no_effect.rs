@@ -8,6 +8,7 @@ use glam::UVec2;
 
 use haze::frame::{Light, LightKind};
 use haze::preset::{Environment, Preset, SceneName};
+use haze::settings::field_values;
 use rule::{NoEffectRule, find_reason, rule};
 use system_rules::SYSTEM_RULES;
 
@@ -85,6 +86,19 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
     find_reason(ENVIRONMENT_RULES, &preset.environment, path.strip_prefix("environment.")?, size)
 }
 
+/// Returns the reason why none of the fields that [`set_field`](haze::settings::set_field) has set has an effect; `None` if
+/// one has. `path`: as it was given; `name`: as it was returned.
+pub fn no_effect_reason_of_set(preset: &Preset, path: &str, name: &str, size: UVec2) -> Option<&'static str> {
+    let is_set = |field: &str| without_indices(field) == name && (!path.contains('[') || field.ends_with(path));
+    let fields = field_values(preset).into_iter().map(|(field, _)| field).filter(|field| is_set(field));
+    let reasons: Option<Vec<_>> = fields.map(|field| no_effect_reason(preset, &field, size)).collect();
+    reasons?.first().copied()
+}
+
+fn without_indices(path: &str) -> String {
+    path.split('.').map(|step| step.split_once('[').map_or(step, |(name, _)| name)).collect::<Vec<_>>().join(".")
+}
+
 /// Conditions under which a field has an effect, for a dotted path without list indices.
 pub(super) fn effect_conditions(path: &str) -> impl Iterator<Item = &'static str> {
     fn of<T>(rules: &'static [NoEffectRule<T>], field: Option<&str>) -> Vec<&'static str> {
@@ -105,7 +119,7 @@ pub(super) fn effect_conditions(path: &str) -> impl Iterator<Item = &'static str
 mod tests {
     use super::*;
     use haze::preset::PresetSystem;
-    use haze::settings::field_values;
+    use haze::settings::ScaleMode;
 
     #[test]
     fn every_row_names_existing_fields() {
@@ -133,5 +147,21 @@ mod tests {
         let mut reasons: Vec<_> = SYSTEM_RULES.iter().map(|rule| rule.reason).collect();
         reasons.sort_unstable();
         assert!(reasons.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+
+    #[test]
+    fn a_set_has_no_effect_if_none_of_its_fields_has_one() {
+        let mut preset = Preset { systems: vec![PresetSystem::default(); 2], ..Preset::default() };
+        preset.systems[1].settings.accumulate.scale_mode = ScaleMode::Auto;
+        let reason = |preset: &mut Preset, path: &str| {
+            let name = preset.set_field(path, "3").unwrap();
+            no_effect_reason_of_set(preset, path, &name, UVec2::new(640, 360))
+        };
+        assert_eq!(reason(&mut preset, "accumulate.scale"), None);
+        assert_eq!(reason(&mut preset, "systems[0].settings.accumulate.scale"), None);
+        let only_fixed = Some("only with scale_mode fixed");
+        assert_eq!(reason(&mut preset, "systems[1].settings.accumulate.scale"), only_fixed);
+        preset.systems[0].settings.accumulate.scale_mode = ScaleMode::Auto;
+        assert_eq!(reason(&mut preset, "accumulate.scale"), only_fixed);
     }
 }

@@ -40,6 +40,20 @@ fn a_preset_finds_files_in_its_folder() {
 }
 
 #[test]
+fn a_setting_without_effect_is_reported() {
+    let folder = folder();
+    let output = render(folder.path(), &["corridor", "--set", "accumulate.scale=8"]);
+    let note = "haze: --set accumulate.scale has no effect: only with scale_mode fixed\n";
+    assert_eq!((output.status.success(), stderr(&output).as_str()), (true, note));
+    let output = render(folder.path(), &["corridor", "--set", "accumulate.scale=8", "--set", "scale_mode=fixed"]);
+    assert_eq!((output.status.success(), stderr(&output).as_str()), (true, ""));
+    let sheet = ["sheet", "corridor", "--size", "64x36", "--backend", "cpu", "-o", "a.png"];
+    let vary = |field: &str| stderr(&haze(folder.path(), &[&sheet[..], &["--vary", field]].concat()));
+    assert_eq!(vary("accumulate.scale=2,4"), note.replace("--set", "--vary"));
+    assert_eq!(vary("accumulate.max_error=0.05,0.1"), "");
+}
+
+#[test]
 fn presets_are_listed_checked_and_described() {
     let folder = folder();
     let text = |arguments: &[&str]| {
