@@ -30,6 +30,27 @@ pub enum RampPlace {
     TwoAxes(TwoAxisRamp, Vec2),
 }
 
+impl RampPlace {
+    /// Returns true if both are on the same ramp, and nearly at the same place.
+    pub fn is_near(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Diffuse(a), Self::Diffuse(b))
+            | (Self::SoftScatter(a), Self::SoftScatter(b))
+            | (Self::Coverage(a), Self::Coverage(b)) => is_near(a, b),
+            (Self::TwoAxes(ramp, a), Self::TwoAxes(other, b)) => ramp == other && is_near_2d(a, b),
+            _ => false,
+        }
+    }
+}
+
+fn is_near(a: f32, b: f32) -> bool {
+    (a - b).abs() <= NEAR
+}
+
+fn is_near_2d(a: Vec2, b: Vec2) -> bool {
+    is_near(a.x, b.x) && is_near(a.y, b.y)
+}
+
 /// Ramp that is looked up by two coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TwoAxisRamp {
@@ -156,14 +177,11 @@ impl RampSurvey {
 
     /// Returns the sampled pixels whose smoke samples a place on a ramp.
     pub fn at(&self, system: usize, ramp_place: RampPlace) -> Vec<UVec2> {
-        let is_near = |a: f32, b: f32| (a - b).abs() <= NEAR;
         let looks_up = |probe: &SystemProbe| match ramp_place {
             RampPlace::Diffuse(x) => probe.lights.iter().any(|light| is_near(light.coordinate, x)),
             RampPlace::SoftScatter(x) => is_near(probe.amount, x),
             RampPlace::Coverage(x) => is_near(probe.coverage_coordinate, x),
-            RampPlace::TwoAxes(ramp, place) => {
-                ramp.lookups(probe).any(|(_, at)| is_near(at.x, place.x) && is_near(at.y, place.y))
-            }
+            RampPlace::TwoAxes(ramp, place) => ramp.lookups(probe).any(|(_, at)| is_near_2d(at, place)),
         };
         self.probes_of_system(system).filter(|(_, probe)| looks_up(probe)).map(|(pixel, _)| *pixel).collect()
     }

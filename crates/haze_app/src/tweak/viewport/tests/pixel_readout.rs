@@ -121,9 +121,11 @@ fn pointing_at_a_ramp_highlights_the_smoke_that_samples_it() {
     // The middle of the diffuse ramp, which most of the lit smoke samples.
     let ramp = harness.get_by_label("Diffuse ramp").rect();
     harness.hover_at(egui::pos2(ramp.center().x, ramp.center().y));
-    harness.run_steps(3);
+    harness.step();
+    let flash = brightness(&picture(&mut harness), viewport);
+    harness.run_steps(10);
     let lit = brightness(&picture(&mut harness), viewport);
-    assert!(lit > before + 0.5, "{before} {lit}");
+    assert!(lit > before + 0.5 && flash > lit + 0.3, "{before} {flash} {lit}");
     harness.hover_at(egui::pos2(5.0, 5.0));
     harness.run_steps(3);
     assert!((brightness(&picture(&mut harness), viewport) - before).abs() < 0.1);
