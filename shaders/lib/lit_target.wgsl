@@ -6,8 +6,9 @@
 // Output of depth_slopes.
 @group(3) @binding(2) var depth_slopes: texture_2d<f32>;
 
-// Samples the lit smoke at a pixel of the view. `texel_size`: filter_texel_size(). Under UPSAMPLE_GUIDED, each texel is carried to the pixel's depth along
+// Samples the lit smoke at a pixel of the view. Under UPSAMPLE_GUIDED, each texel is carried to the pixel's depth along
 // its slope. The filter does not depend on depth where no slope is near, which is most of a picture.
+// `texel_size`: filter_texel_size().
 fn sample_lit(pixel: vec2f, texel_size: vec2f) -> vec4f {
     if UPSAMPLE != UPSAMPLE_GUIDED || system.scale == 1u {
         return sample_target(accumulation, pixel);
@@ -58,7 +59,7 @@ fn sample_lit(pixel: vec2f, texel_size: vec2f) -> vec4f {
     return mix(mean_of_sixteen(base, fraction, depth), four, share);
 }
 
-// Coordinate at which the hardware filters the texels around a place; all of them are in the part in use.
+// Coordinate at which the hardware filters the texels around a place, without reading beyond the part in use.
 fn filtered_place(texel: vec2f, texel_size: vec2f) -> vec2f {
     return clamp(texel, vec2f(0.5), system.target_size - 0.5) * texel_size;
 }

@@ -40,7 +40,8 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
 }
 
 /// True for the full path of a field that [`set_field`] sets, if `path` was given and `name` returned.
-pub(crate) fn is_field_named(field: &str, path: &str, name: &str) -> bool {
+#[doc(hidden)]
+pub fn is_field_named(field: &str, path: &str, name: &str) -> bool {
     let steps = (parse_path(field), parse_path(path));
     matches!(steps, (Ok(field), Ok(path)) if is_wanted(&field, &path) && names_without_indices(&field) == name)
 }

@@ -24,7 +24,8 @@ pub use accumulate::{
     Accumulate, AccumulationFormat, BlendOrder, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
     NormalEncoding, ScaleMode, Upsample,
 };
-pub(crate) use assign::is_field_named;
+#[doc(hidden)]
+pub use assign::is_field_named;
 pub use assign::set_field;
 #[doc(hidden)]
 pub use choice::choice;

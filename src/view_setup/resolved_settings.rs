@@ -1,6 +1,7 @@
 //! Settings of a system for one frame, without open choices.
 
-use std::{iter, ops::Deref};
+use std::iter;
+use std::ops::Deref;
 
 use glam::UVec2;
 

@@ -71,7 +71,7 @@ pub struct ShotArguments {
     assets: AssetsArguments,
     #[command(flatten)]
     backdrop: BackdropArguments,
-    /// Compress more: takes about a second longer, for a file that is a tenth smaller.
+    /// Compress more: takes one or two seconds longer, for a file that is a tenth smaller.
     #[arg(long)]
     small: bool,
 }

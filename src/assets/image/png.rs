@@ -124,7 +124,7 @@ pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum CompressionEffort {
-    /// Fifteen times as fast as [`CompressionEffort::Small`], for files 1.5 times as large.
+    /// At least fifteen times as fast as [`CompressionEffort::Small`], for files 1.5 times as large.
     #[default]
     Quick,
     /// Small files, for images that are kept or shipped.

@@ -8,7 +8,7 @@ use glam::UVec2;
 
 use haze::frame::{Light, LightKind};
 use haze::preset::{Environment, Preset, SceneName};
-use haze::settings::field_values;
+use haze::settings::{field_values, is_field_named};
 use rule::{NoEffectRule, find_reason, rule};
 use system_rules::SYSTEM_RULES;
 
@@ -89,14 +89,10 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
 /// Returns the reason why none of the fields that [`set_field`](haze::settings::set_field) has set has an effect; `None` if
 /// one has. `path`: as it was given; `name`: as it was returned.
 pub fn no_effect_reason_of_set(preset: &Preset, path: &str, name: &str, size: UVec2) -> Option<&'static str> {
-    let is_set = |field: &str| without_indices(field) == name && (!path.contains('[') || field.ends_with(path));
-    let fields = field_values(preset).into_iter().map(|(field, _)| field).filter(|field| is_set(field));
+    let fields = field_values(preset).into_iter().map(|(field, _)| field);
+    let fields = fields.filter(|field| is_field_named(field, path, name));
     let reasons: Option<Vec<_>> = fields.map(|field| no_effect_reason(preset, &field, size)).collect();
     reasons?.first().copied()
-}
-
-fn without_indices(path: &str) -> String {
-    path.split('.').map(|step| step.split_once('[').map_or(step, |(name, _)| name)).collect::<Vec<_>>().join(".")
 }
 
 /// Conditions under which a field has an effect, for a dotted path without list indices.
