@@ -47,28 +47,30 @@ fn rows(report: &Value) -> &Vec<Value> {
     report["rows"].as_array().unwrap()
 }
 
-// Three tests, so that they run side by side.
 #[test]
-fn suites_of_the_target_have_figures_and_say_what_they_left_out() {
+fn the_suite_scale_has_figures_and_says_what_it_left_out() {
     assert_has_figures("scale", &ScaleRun::get().report());
-    assert_suites_have_figures(&["overdraw", "upsample"]);
 }
 
-#[test]
-fn suites_of_the_look_have_figures_and_say_what_they_left_out() {
-    assert_suites_have_figures(&["lights", "soft", "presets"]);
+/// A test for each suite, so that they run side by side.
+macro_rules! test_suites {
+    ($($name:ident: $suite:literal,)+) => { $(
+        #[test]
+        fn $name() {
+            assert_has_figures($suite, &run(folder().path(), $suite, &[]));
+        }
+    )+ };
 }
 
-#[test]
-fn suites_of_the_device_have_figures_and_say_what_they_left_out() {
-    assert_suites_have_figures(&["particles", "auto", "limits"]);
-}
-
-fn assert_suites_have_figures(suites: &[&str]) {
-    let folder = folder();
-    for &suite in suites {
-        assert_has_figures(suite, &run(folder.path(), suite, &[]));
-    }
+test_suites! {
+    the_suite_auto_has_figures_and_says_what_it_left_out: "auto",
+    the_suite_lights_has_figures_and_says_what_it_left_out: "lights",
+    the_suite_limits_has_figures_and_says_what_it_left_out: "limits",
+    the_suite_overdraw_has_figures_and_says_what_it_left_out: "overdraw",
+    the_suite_particles_has_figures_and_says_what_it_left_out: "particles",
+    the_suite_presets_has_figures_and_says_what_it_left_out: "presets",
+    the_suite_soft_has_figures_and_says_what_it_left_out: "soft",
+    the_suite_upsample_has_figures_and_says_what_it_left_out: "upsample",
 }
 
 fn assert_has_figures(suite: &str, report: &Value) {
