@@ -68,16 +68,14 @@ fn screenshots_follow_settings_and_a_lost_device_changes_nothing() {
     let _lock = window_lock();
     let display = Display::start();
     let (plain, _) = picture(&display, &[], &[]);
-    let (bright, mut opened) = picture(&display, &[], &BRIGHT);
     assert_eq!(plain.dimensions(), (700, 420));
-    assert!(brightness(&bright) > brightness(&plain) + 5.0);
     // Both compile the same pipelines, so neither time depends on the machine alone. It may be busy: the best of some tries.
     let is_rebuilt_as_fast_as_opened = (0..4).any(|_| {
+        let (bright, opened) = picture(&display, &[], &BRIGHT);
+        assert!(brightness(&bright) > brightness(&plain) + 5.0);
         let (again, opened_twice) = picture(&display, &[("HAZE_TEST_LOSE_DEVICE", "3")], &BRIGHT);
         assert!(again == bright, "a lost device changed settings, time, undo or panels");
-        let is_as_fast = opened_twice < 2 * opened;
-        opened = picture(&display, &[], &BRIGHT).1;
-        is_as_fast
+        opened_twice < 2 * opened
     });
     assert!(is_rebuilt_as_fast_as_opened, "a lost device took longer than opening the window");
 }
