@@ -6,22 +6,14 @@
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", option 1: lighting at the target's resolution; "Specular scattering".
 
-#import "lib/lit_target.wgsl"
+#import "lib/lit_pixel.wgsl"
 #import "lib/bounding_box.wgsl"
-#import "lib/smoke_tiles.wgsl"
 #import "lib/sprite.wgsl"
-#import "lib/coverage.wgsl"
-#import "lib/glow.wgsl"
 
 // True: an instance is a tile of the target; light_target has computed smoke_cells.
 override TILES: bool = false;
-// True: tiles without slopes are filtered by the hardware; depth_slopes has computed slope_cells.
-override SLOPE_CELLS: bool = false;
-// True: adds the glow of lights, which light_target has computed.
-override GLOWS: bool = false;
-
-// A column per light: the rows of a Glow.
-@group(3) @binding(4) var glows: texture_2d<f32>;
+// True: upsample_lit has computed the pixels, which take the place of the lit smoke.
+override COMPUTED: bool = false;
 
 struct BoxVertex {
     @builtin(position) position: vec4f,
@@ -63,52 +55,17 @@ fn tile_vertex(side: vec2f, first_texel: vec2u) -> BoxVertex {
     return BoxVertex(position, glowing, u32(has_slopes), filter_texel_size());
 }
 
-// Range of the lights whose glow reaches a rectangle of pixels.
-fn lights_that_reach(low: vec2f, high: vec2f) -> vec2u {
-    var range = vec2u(0u);
-    for (var i = 0u; i < system.light_count; i++) {
-        let centre = textureLoad(glows, vec2u(i, 0u), 0).xy;
-        let color = textureLoad(glows, vec2u(i, 1u), 0).rgb;
-        let offset = centre - clamp(centre, low, high);
-        let reaches = dot(offset, offset) < system.specular_scatter_size * system.specular_scatter_size;
-        if reaches && any(color > vec3f(0.0)) {
-            range = vec2u(select(range.x, i, range.y == 0u), i + 1u);
-        }
-    }
-    return range;
-}
-
 @fragment
 fn fragment(in: BoxVertex) -> @location(0) vec4f {
     let pixel = in.position.xy - view.origin;
-    var lit: vec4f;
-    if SLOPE_CELLS && in.has_slopes == 0u {
-        let place = filtered_place(pixel / f32(system.scale) - system.target_origin, in.texel_size);
-        lit = textureSampleLevel(accumulation, linear_sampler, place, 0.0);
+    var color: vec4f;
+    if COMPUTED {
+        color = textureLoad(accumulation, vec2i(pixel - system.target_origin * f32(system.scale)), 0);
     } else {
-        lit = sample_lit(pixel, in.texel_size);
+        color = lit_pixel(pixel, in.has_slopes != 0u, in.texel_size, in.glowing);
     }
-    let amount = lit.a;
-    if amount <= 0.0 {
+    if all(color == vec4f(0.0)) {
         discard;
     }
-    // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
-    let smoke = vec4f(bounded_light(lit.rgb / max(amount, 1.0e-6)), 1.0) * smoke_coverage(amount);
-    if GLOWS {
-        return smoke + vec4f(glow_of_lights(in.glowing, amount, pixel), 0.0);
-    }
-    return smoke;
-}
-
-fn glow_of_lights(glowing: vec2u, amount: f32, pixel: vec2f) -> vec3f {
-    var sum = vec3f(0.0);
-    for (var i = glowing.x; i < glowing.y; i++) {
-        let offset = (pixel - textureLoad(glows, vec2u(i, 0u), 0).xy) / system.specular_scatter_size;
-        let color = textureLoad(glows, vec2u(i, 1u), 0).rgb;
-        let distance_squared = dot(offset, offset);
-        if distance_squared < 1.0 && any(color > vec3f(0.0)) {
-            sum += glow_in_smoke(color, lights[i], distance_squared, amount, pixel);
-        }
-    }
-    return sum;
+    return color;
 }

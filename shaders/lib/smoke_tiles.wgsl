@@ -2,8 +2,10 @@
 
 #import "lib/bindings.wgsl"
 
-// Side of a cell, texels: one workgroup of light_target. No upsampler reads further.
+// Side of a cell, texels: one workgroup of light_target.
 const CELL_SIDE: u32 = 8u;
+// Distance of the farthest texel that an upsampler reads for a pixel, texels.
+const UPSAMPLE_REACH: i32 = 2;
 // Smallest side of a tile, pixels.
 const MIN_TILE_PIXELS: u32 = 32u;
 
@@ -29,12 +31,12 @@ fn tile_origin(tile: u32, target_size: vec2u, side: u32) -> vec2u {
     return vec2u(tile % across, tile / across) * side;
 }
 
-// True if a cell of the tile is marked, or one that an upsampler reads for its pixels.
-fn tile_has(cells: texture_2d<f32>, first_texel: vec2u) -> bool {
-    let border = select(1, 0, system.scale == 1u);
-    let last_cell = (vec2i(system.target_size) - 1) / i32(CELL_SIDE);
-    let low = max(vec2i(first_texel / CELL_SIDE) - border, vec2i(0));
-    let high = min(vec2i((first_texel + tile_side(system.scale) - 1u) / CELL_SIDE) + border, last_cell);
+// True if a cell is marked that holds one of the texels in a rectangle, or one that an upsampler reads for their pixels.
+fn cells_have(cells: texture_2d<f32>, first_texel: vec2u, last_texel: vec2u) -> bool {
+    let reach = select(UPSAMPLE_REACH, 0, system.scale == 1u);
+    let end = vec2i(system.target_size) - 1;
+    let low = clamp(vec2i(first_texel) - reach, vec2i(0), end) / i32(CELL_SIDE);
+    let high = clamp(vec2i(last_texel) + reach, vec2i(0), end) / i32(CELL_SIDE);
     for (var y = low.y; y <= high.y; y++) {
         for (var x = low.x; x <= high.x; x++) {
             if textureLoad(cells, vec2i(x, y), 0).r > 0.0 {
@@ -43,6 +45,11 @@ fn tile_has(cells: texture_2d<f32>, first_texel: vec2u) -> bool {
         }
     }
     return false;
+}
+
+// True if a cell of a tile is marked.
+fn tile_has(cells: texture_2d<f32>, first_texel: vec2u) -> bool {
+    return cells_have(cells, first_texel, first_texel + tile_side(system.scale) - 1u);
 }
 
 // Pixel of the view at a corner of a tile; 0 or 1 along each side.

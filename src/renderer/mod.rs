@@ -220,6 +220,8 @@ impl Renderer {
             passes.light_target.iter().for_each(|pass| pass.record(encoder, timing));
             // Fits how the lit smoke changes with depth, for its upsampling.
             passes.depth_slopes.iter().for_each(|pass| pass.record(encoder, timing));
+            // Computes the pixels that transfer draws, where drawing is slow.
+            passes.upsample_lit.iter().for_each(|pass| pass.record(encoder, timing));
         }
         // Far to near; systems at equal distance keep the host's order.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -453,6 +455,7 @@ impl Renderer {
             exact_filtering: self.exact_filtering,
             read_only_depth: self.context.shared().read_only_depth,
             tiles: self.context.shared().tiles(),
+            computes_pixels: self.context.shared().path_model().computes_pixels(),
             scene_depth,
             reversed: view.depth.reversed,
             mirrored: view.mirrored,

@@ -133,6 +133,9 @@ impl Pipelines {
                         plan.depth_slopes.map_or(Ok(()), |key| self.depth_slopes.check(key))?;
                     }
                 }
+                if let Some((tiled, key)) = self.tiled.as_ref().zip(plan.upsample_lit) {
+                    tiled.upsample_lit.check(key)?;
+                }
                 plan.transfers().try_for_each(|key| self.transfer.check(key))?;
                 plan.lit_transfers().try_for_each(|(_, key)| self.transfer_lit.check(key))?;
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(key))

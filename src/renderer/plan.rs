@@ -15,6 +15,7 @@ use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::{BoundingBoxKey, TransferKey};
 use super::pass::transfer_lit::TransferLitKey;
+use super::pass::upsample_lit::LitPixelKey;
 use super::sprite_instances::SpriteKey;
 use super::tiled::TiledKeys;
 use crate::assets::ramp_steps::RampSteps;
@@ -61,6 +62,8 @@ pub(crate) struct PipelineInputs<'a> {
     pub read_only_depth: bool,
     /// True if the traversal of tiles is cooperative, false if it is per invocation; `None` without the path `tiled`.
     pub tiles: Option<bool>,
+    /// As [`PathModel::computes_pixels`](super::auto::PathModel).
+    pub computes_pixels: bool,
     pub scene_depth: SceneDepthKind,
     /// True if the depth buffer stores the near plane as 1.
     pub reversed: bool,
@@ -107,6 +110,8 @@ pub(crate) struct DeferredPlan<'a> {
     pub light_target: Option<LightingKey>,
     /// Present if lit smoke is upsampled by `guided`.
     pub depth_slopes: Option<DepthSlopesKey>,
+    /// Present if the pixels that transfer_lit draws are computed.
+    pub upsample_lit: Option<LitPixelKey>,
     /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
     pub transfer: TransferKey,
     /// Key of the debug view `Final`, if smoke is lit at the target's resolution; see `lit_transfers`.
@@ -147,6 +152,7 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
         exact_filtering: false,
         read_only_depth,
         tiles,
+        computes_pixels: false,
         scene_depth: SceneDepthKind::Buffer(depth_format),
         reversed: false,
         mirrored: false,
@@ -161,9 +167,9 @@ pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<boo
     lit.shadow.strength = 1.0;
     let forward = Settings { path: RenderPath::Forward, ..Settings::default() };
     let tiled = Settings { path: RenderPath::Tiled, ..Settings::default() };
-    [deferred, lit, forward, tiled].map(|settings| {
+    [(deferred, false), (lit, false), (forward, false), (tiled, true)].map(|(settings, computes_pixels)| {
         plan(
-            &inputs,
+            &PipelineInputs { computes_pixels, ..inputs },
             &ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 2.0, &RampSteps::default(), Support::ALL),
             false,
         )
@@ -222,6 +228,19 @@ fn deferred<'a>(
         overdraw: false,
     };
     let depth_slopes = (lights_target && upsample == Upsample::Guided && settings.scale > 1).then_some(DepthSlopesKey);
+    let pixel = LitPixelKey {
+        glows: computes_texels && glows,
+        slope_cells: computes_texels && depth_slopes.is_some() && !exact_filtering,
+        upsample,
+        coverage,
+        ramp_filter,
+        exact_filtering,
+    };
+    // At scale 1 without glow, a pixel is hardly more than its lit texel.
+    let is_worth_storing = settings.scale > 1 || glows;
+    // One picture for all debug views that show it.
+    let same_pixels = !glows || debug_views.iter().all(|view| view.shows_glow() || !view.shows_lit_smoke());
+    let computes_pixels = inputs.computes_pixels && computes_texels && lights_target && is_worth_storing && same_pixels;
     DeferredPlan {
         reads_linear,
         depth_downsample: (!host_depth).then(|| downsample(false)),
@@ -242,15 +261,12 @@ fn deferred<'a>(
         light_target: lights_target.then_some(lighting),
         depth_slopes,
         transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
+        upsample_lit: computes_pixels.then_some(pixel),
         transfer_lit: lights_target.then_some(TransferLitKey {
             drawn,
             tiles: computes_texels,
-            glows: computes_texels && glows,
-            slope_cells: computes_texels && depth_slopes.is_some() && !exact_filtering,
-            upsample,
-            coverage,
-            ramp_filter,
-            exact_filtering,
+            computed: computes_pixels,
+            pixel,
         }),
         debug_views,
         specular_scatter: glows.then_some(SpecularScatterKey {
@@ -327,13 +343,14 @@ impl DeferredPlan<'_> {
     pub fn lit_transfers(&self) -> impl Iterator<Item = (DebugView, TransferLitKey)> {
         let drawn = self.debug_views.iter().filter(|debug_view| self.draws_lit(**debug_view));
         drawn.zip(self.transfer_lit.into_iter().cycle()).map(|(&debug_view, key)| {
-            (debug_view, TransferLitKey { glows: key.glows && debug_view.shows_glow(), ..key })
+            let pixel = LitPixelKey { glows: key.pixel.glows && debug_view.shows_glow(), ..key.pixel };
+            (debug_view, TransferLitKey { pixel, ..key })
         })
     }
 
     /// Returns true if transfer_lit adds the glow of lights.
     pub fn glows_in_transfer(&self) -> bool {
-        self.transfer_lit.is_some_and(|key| key.glows)
+        self.transfer_lit.is_some_and(|key| key.pixel.glows)
     }
 
     /// Returns true if transfer_lit draws a debug view. Those that show a part of the light need transfer.

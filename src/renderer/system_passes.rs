@@ -64,6 +64,7 @@ pub(crate) struct DeferredPasses {
     pub overdraw: Option<Accumulate>,
     pub light_target: Option<TexelPass>,
     pub depth_slopes: Option<TexelPass>,
+    pub upsample_lit: Option<TexelPass>,
     pub transfer: Transfer,
     pub specular_scatter: Option<SpecularScatter>,
     pub sprites: Sprites,
@@ -195,6 +196,10 @@ impl PassBuilder<'_> {
                 };
                 Some(texel_pass("depth_slopes", pipeline, &inputs.depth_slopes))
             }),
+            upsample_lit: plan.upsample_lit.zip(computed).map(|(key, tiled)| TexelPass {
+                size: accumulation.pixels_in_use(size),
+                ..texel_pass("upsample_lit", TexelPipeline::Compute(tiled.upsample_lit.get(key)), &inputs.upsample_lit)
+            }),
             transfer: transfer_pass(pipelines, plan, &groups, inputs, setup),
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
                 pipeline: pipelines.specular_scatter.get(key),
@@ -228,7 +233,7 @@ fn transfer_pass(
         inputs: inputs.transfer.clone(),
         overdraw_inputs: inputs.overdraw.clone(),
         lit: plan.transfer_lit.map(|key| LitInputs {
-            group: inputs.upsampled.clone(),
+            group: inputs.pixels.as_ref().unwrap_or(&inputs.upsampled).clone(),
             tiles: key.tiles.then(|| tile_counts(setup.rect.size, tile_side(setup.rect.scale)).element_product()),
         }),
     }

@@ -6,8 +6,7 @@ use super::context::Shared;
 use super::layouts::{TRANSFER_TEXTURES, bind_textures};
 use super::plan::DeferredPlan;
 use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse};
-use crate::settings::Settings;
-use crate::view_setup::AttachmentSet;
+use crate::view_setup::{AttachmentSet, ResolvedSettings};
 
 /// Textures of one system, and their bind groups, which are recreated with the textures.
 #[derive(Debug, Default)]
@@ -34,6 +33,10 @@ pub(crate) struct TargetInputs {
     pub depth_slopes: Option<wgpu::BindGroup>,
     /// Group 3 of transfer_lit and specular_scatter: lit smoke and its slopes, or the first attachment.
     pub upsampled: wgpu::BindGroup,
+    /// Group 3 of upsample_lit, if pixels are computed.
+    pub upsample_lit: Option<wgpu::BindGroup>,
+    /// Group 3 of transfer_lit, if pixels are computed: they take the place of the lit smoke.
+    pub pixels: Option<wgpu::BindGroup>,
 }
 
 /// Textures that fit the current frame, and their bind groups.
@@ -49,7 +52,7 @@ impl SystemTargets {
     pub fn ensure(
         &mut self,
         shared: &Shared,
-        settings: &Settings,
+        settings: &ResolvedSettings,
         plan: &DeferredPlan<'_>,
         size: UVec2,
         limit: UVec2,
@@ -66,6 +69,7 @@ impl SystemTargets {
             tiled: plan.tiled.is_some(),
             computes_depth: plan.computes_depth(),
             computes_texels: plan.computes_texels,
+            pixels_scale: plan.upsample_lit.map(|_| settings.scale),
         };
         let (accumulation, is_new) = AccumulationTarget::ensure(&mut self.accumulation, device, key, size, limit);
         let (baked_diffuse, is_newly_baked) =
@@ -90,15 +94,17 @@ impl SystemTargets {
             let lit = accumulation.lit.as_ref().unwrap_or(amount);
             let (cells, glows) = (accumulation.smoke_cells.as_ref(), accumulation.glows.as_ref());
             let slope_cells = accumulation.slope_cells.as_ref().unwrap_or(lit);
-            let lit_inputs = |slopes| {
+            let lit_textures = |lit, slopes| {
                 let (cells, glows) = (cells.unwrap_or(lit), glows.unwrap_or(lit));
-                let textures = [lit, depth.unwrap_or(lit), slopes, cells, glows, slope_cells];
-                bind_textures(device, "haze lit inputs", &layouts.lit, textures)
+                [lit, depth.unwrap_or(lit), slopes, cells, glows, slope_cells]
             };
+            let lit_inputs =
+                |lit, slopes| bind_textures(device, "haze lit inputs", &layouts.lit, lit_textures(lit, slopes));
             // Passes that compute texels write the last of their textures.
             let computed = shared.pipelines.tiled.as_ref().map(|tiled| &tiled.layouts);
             let computed_texels = computed.filter(|_| plan.computes_texels);
             let depth_slopes = accumulation.depth_slopes.as_ref();
+            let pixels = accumulation.pixels.as_ref();
             TargetInputs {
                 depth_downsample: computed.filter(|_| key.computes_depth).zip(depth).map(|(computed, depth)| {
                     bind_textures(device, "haze depth_downsample target", &computed.depth_downsample, [depth])
@@ -119,9 +125,14 @@ impl SystemTargets {
                         let textures = [lit, depth.unwrap_or(lit), slopes, slope_cells];
                         bind_textures(device, "haze depth_slopes inputs", &computed.depth_slopes, textures)
                     }
-                    None => lit_inputs(lit),
+                    None => lit_inputs(lit, lit),
                 }),
-                upsampled: lit_inputs(depth_slopes.unwrap_or(lit)),
+                upsampled: lit_inputs(lit, depth_slopes.unwrap_or(lit)),
+                upsample_lit: computed_texels.zip(pixels).map(|(computed, pixels)| {
+                    let textures = lit_textures(lit, depth_slopes.unwrap_or(lit)).into_iter().chain([pixels]);
+                    bind_textures(device, "haze upsample_lit inputs", &computed.upsample_lit, textures)
+                }),
+                pixels: pixels.map(|pixels| lit_inputs(pixels, pixels)),
                 transfer,
             }
         });

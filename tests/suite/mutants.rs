@@ -39,16 +39,33 @@ const MUTANTS: &[Mutant] = &[
 
 /// Mistakes in frames that transfer_lit draws by tiles.
 const TILE_MUTANTS: &[Mutant] = &[
-    ("no border of tiles", "lib/smoke_tiles.wgsl", "select(1, 0, system.scale == 1u)", "0"),
-    ("cells of other tiles", "lib/smoke_tiles.wgsl", "vec2i(first_texel / CELL_SIDE)", "vec2i(first_texel)"),
+    ("no border of tiles", "lib/smoke_tiles.wgsl", "select(UPSAMPLE_REACH, 0, system.scale == 1u)", "0"),
+    (
+        "cells of other tiles",
+        "lib/smoke_tiles.wgsl",
+        "vec2i(0), end) / i32(CELL_SIDE);\n    let high",
+        "vec2i(0), end);\n    let high",
+    ),
     ("no cell with a slope", "depth_slopes.wgsl", "atomicStore(&has_slope, 1u)", "atomicStore(&has_slope, 0u)"),
 ];
 
 /// Mistakes in the glow that transfer_lit adds.
 const GLOW_MUTANTS: &[Mutant] = &[
-    ("glow of the first light only", "transfer_lit.wgsl", "i < glowing.y", "i < min(glowing.y, 1u)"),
-    ("glow of near lights left out", "transfer_lit.wgsl", "if reaches &&", "if !reaches &&"),
+    ("glow of the first light only", "lib/lit_pixel.wgsl", "i < glowing.y", "i < min(glowing.y, 1u)"),
+    ("glow of near lights left out", "lib/lit_pixel.wgsl", "if reaches &&", "if !reaches &&"),
     ("rows of glows swapped", "light_target.wgsl", "vec2u(light, 1u)", "vec2u(light, 0u)"),
+];
+
+/// Mistakes in frames whose pixels are computed.
+const PIXEL_MUTANTS: &[Mutant] = &[
+    ("centres of pixels", "upsample_lit.wgsl", "+ 0.5, has_slopes", ", has_slopes"),
+    ("texels of other workgroups", "upsample_lit.wgsl", "workgroup.xy * SIDE", "workgroup.yx * SIDE"),
+    (
+        "pixels of other places",
+        "transfer_lit.wgsl",
+        "vec2i(pixel - system.target_origin * f32(system.scale))",
+        "vec2i(0.5 * pixel)",
+    ),
 ];
 
 /// Mistakes in the traversal of a list in parts. It is cooperative, which exact filtering selects on every adapter.
@@ -72,7 +89,19 @@ fn context((name, file, from, to): &Mutant) -> OffscreenContext {
 }
 
 fn drawn(context: &OffscreenContext, shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
-    let mut renderer = OffscreenRenderer::new(context, exact_filtering).unwrap();
+    drawn_by(OffscreenRenderer::new(context, exact_filtering).unwrap(), shot)
+}
+
+/// As `drawn`, on a device that computes pixels.
+fn drawn_from_computed_pixels(context: &OffscreenContext, shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
+    let renderer = OffscreenRenderer::new(context, exact_filtering).unwrap();
+    let mut model = renderer.renderer().context().path_model();
+    model.raster.fragment = 100.0 * model.tiled.fragment;
+    renderer.renderer().context().set_path_model(model).unwrap();
+    drawn_by(renderer, shot)
+}
+
+fn drawn_by(mut renderer: OffscreenRenderer, shot: &Shot) -> Image<Vec4> {
     renderer.draw(gpu(), shot).unwrap();
     renderer.read(gpu(), shot).unwrap()
 }
@@ -105,29 +134,62 @@ fn mistakes_in_shaders_fail_golden_images_and_agreement() {
 #[test]
 fn mistakes_in_tiles_their_glow_and_their_lists_change_the_frame() {
     if is_tiled_available() {
-        expect_changes("campfire", false, TILE_MUTANTS);
-        expect_changes("backlit_fog", false, GLOW_MUTANTS);
-        expect_changes("backlit_fog", true, SPLIT_MUTANTS);
+        expect_changes("campfire", false, TILE_MUTANTS, drawn);
+        expect_changes("backlit_fog", false, GLOW_MUTANTS, drawn);
+        expect_changes("backlit_fog", true, SPLIT_MUTANTS, drawn);
+        expect_changes("campfire", false, PIXEL_MUTANTS, drawn_from_computed_pixels);
     }
 }
 
 /// PSNR to the clean frame below which a frame has changed. Two clean frames are equal.
 const CHANGED: f32 = 80.0;
 
-/// Draws a preset with each mutant by tiles, which must change the frame.
-fn expect_changes(preset: &str, exact_filtering: bool, mutants: &[Mutant]) {
+/// Draws a shot, with exact filtering or not.
+type Draw = fn(&OffscreenContext, &Shot, bool) -> Image<Vec4>;
+
+/// A preset by tiles, lit per texel.
+fn tiled_shot(preset: &str, scale: u32) -> Shot {
     let mut shot = shot(preset, glam::UVec2::new(320, 180));
     for system in &mut shot.preset.systems {
         system.settings.path = RenderPath::Tiled;
         system.settings.accumulate.lighting_resolution = LightingResolution::Target;
-        system.settings.accumulate.fix_scale(4);
+        system.settings.accumulate.fix_scale(scale);
     }
+    shot
+}
+
+/// Draws a preset with each mutant by tiles, which must change the frame.
+fn expect_changes(preset: &str, exact_filtering: bool, mutants: &[Mutant], drawn: Draw) {
+    let shot = tiled_shot(preset, 4);
     let gpu = gpu();
     let clean = drawn(&OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue), &shot, exact_filtering);
     for mutant in mutants {
         let psnr = psnr(&drawn(&context(mutant), &shot, exact_filtering), &clean);
         println!("{}: {psnr:.1} dB", mutant.0);
         assert!(psnr < CHANGED, "{} leaves the frame as it is: {psnr:.1} dB", mutant.0);
+    }
+    gpu.check().unwrap();
+}
+
+/// Least agreement of computed pixels with drawn ones, dB: they are rounded to half floats before they are blended.
+const MIN_PSNR_OF_COMPUTED: f32 = 70.0;
+
+#[test]
+fn computed_pixels_agree_with_drawn_ones() {
+    if !is_tiled_available() {
+        return;
+    }
+    let gpu = gpu();
+    let context = || OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+    let contexts = [context(), context()];
+    for (preset, scale) in [("campfire", 2), ("backlit_fog", 1), ("backlit_fog", 3), ("corridor", 4), ("column", 8)] {
+        let shot = tiled_shot(preset, scale);
+        for exact_filtering in [true, false] {
+            let computed = drawn_from_computed_pixels(&contexts[0], &shot, exact_filtering);
+            let psnr = psnr(&computed, &drawn(&contexts[1], &shot, exact_filtering));
+            println!("{preset}, scale {scale}, exact filtering {exact_filtering}: {psnr:.1} dB");
+            assert!(psnr > MIN_PSNR_OF_COMPUTED, "{preset}, scale {scale}: {psnr:.1} dB");
+        }
     }
     gpu.check().unwrap();
 }

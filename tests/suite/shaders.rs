@@ -163,6 +163,7 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
             "depth_sort.wgsl" => "depth_keys",
             "tile_project.wgsl" => "project",
             "tile_gather.wgsl" => "gather",
+            "upsample_lit.wgsl" => "pixels",
             "tile_bin.wgsl" if is_cpu => "allocate_per_invocation",
             "tile_bin.wgsl" => "build_lists_in_one_dispatch",
             // Compiled only where each invocation traverses the lists on its own.
@@ -274,7 +275,7 @@ fn byte_order_marks_and_crlf_line_endings_are_accepted() {
 fn folders_without_readable_shaders_are_rejected_with_a_reason() {
     let expected = "expected accumulate.wgsl, density_splat.wgsl, depth_downsample.wgsl, depth_resolve.wgsl, depth_slopes.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \
                     forward.wgsl, light_target.wgsl, measure.wgsl, screen_shadow.wgsl, shadow_march.wgsl, shadow_march_slice.wgsl, shadow_visibility.wgsl, shadow_visibility_slice.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
-                    tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl, transfer_lit.wgsl or a file of lib/ in it";
+                    tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl, transfer_lit.wgsl, upsample_lit.wgsl or a file of lib/ in it";
     let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
     let folder = ShaderFolder::new();
     let path = folder.0.path();

@@ -26,6 +26,7 @@ pub(crate) mod tile_project;
 pub(crate) mod tile_refine;
 pub(crate) mod transfer;
 pub(crate) mod transfer_lit;
+pub(crate) mod upsample_lit;
 
 use std::ops::Range;
 
@@ -73,7 +74,8 @@ impl Groups {
     }
 }
 
-/// A pass that writes every texel of a system's target: depth_downsample, light_target, depth_slopes.
+/// A pass that writes every texel of a system's target, or every pixel: depth_downsample, light_target, depth_slopes,
+/// upsample_lit.
 #[derive(Debug)]
 pub(crate) struct TexelPass {
     /// Name in times and captures.
@@ -95,7 +97,7 @@ pub(crate) enum TexelPipeline {
     Compute(wgpu::ComputePipeline),
 }
 
-/// Texels of a workgroup along each axis, in the entry point `texels`.
+/// Texels or pixels of a workgroup along each axis.
 const TEXELS_SIDE: u32 = 8;
 
 impl TexelPass {

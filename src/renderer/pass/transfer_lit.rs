@@ -1,4 +1,4 @@
-//! transfer_lit: draws the output of light_target over the system's bounding box, or over the tiles that hold smoke, then
+//! transfer_lit: draws the output of light_target, or of upsample_lit, over the system's bounding box, or over the tiles that hold smoke, then
 //! with the glow of lights behind it. `Transfer` records it.
 //!
 //! Reads: lit smoke and its depth slopes, reduced depth, scene depth, coverage ramp; cells with smoke and with slopes, glows,
@@ -8,8 +8,8 @@
 //! Source: OTEE "Transfer & lighting".
 
 use super::transfer::BoundingBoxKey;
-use crate::renderer::gpu::pipeline::{QUAD_STRIP, RenderPipelineDescription, bool_constant, enum_constant};
-use crate::settings::{CoverageMode, RampFilter, Upsample};
+use super::upsample_lit::LitPixelKey;
+use crate::renderer::gpu::pipeline::{QUAD_STRIP, RenderPipelineDescription, bool_constant};
 
 /// Key of a transfer_lit pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -17,27 +17,15 @@ pub(crate) struct TransferLitKey {
     pub drawn: BoundingBoxKey,
     /// True to draw the tiles that hold smoke: light_target has computed which.
     pub tiles: bool,
-    /// True to add the glow of lights, which light_target has computed.
-    pub glows: bool,
-    /// True to filter tiles without slopes by the hardware: depth_slopes has computed which.
-    pub slope_cells: bool,
-    pub upsample: Upsample,
-    pub coverage: CoverageMode,
-    pub ramp_filter: RampFilter,
-    pub exact_filtering: bool,
+    /// True to draw the pixels that upsample_lit has computed.
+    pub computed: bool,
+    pub pixel: LitPixelKey,
 }
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TransferLitKey) -> RenderPipelineDescription {
-    let description = key.drawn.describe(vec![
-        bool_constant("TILES", key.tiles),
-        bool_constant("GLOWS", key.glows),
-        bool_constant("SLOPE_CELLS", key.slope_cells),
-        enum_constant!("UPSAMPLE", key.upsample),
-        enum_constant!("COVERAGE_MODE", key.coverage),
-        enum_constant!("RAMP_FILTER", key.ramp_filter),
-        bool_constant("EXACT_FILTERING", key.exact_filtering),
-    ]);
+    let of_pass = [bool_constant("TILES", key.tiles), bool_constant("COMPUTED", key.computed)];
+    let description = key.drawn.describe(key.pixel.constants(&of_pass));
     let primitive = if key.tiles { QUAD_STRIP } else { description.primitive };
     RenderPipelineDescription { primitive, ..description }
 }

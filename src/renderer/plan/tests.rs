@@ -10,6 +10,7 @@ fn inputs() -> PipelineInputs<'static> {
         exact_filtering: false,
         read_only_depth: true,
         tiles: Some(true),
+        computes_pixels: false,
         scene_depth: SceneDepthKind::Both(Depth24Plus),
         reversed: false,
         mirrored: false,
@@ -132,7 +133,35 @@ fn light_target_is_planned_only_for_final_images_at_reduced_resolution_or_if_com
     assert_eq!(deferred(&drawn, &settings).light_target, None);
     settings.accumulate.max_side = 1279;
     let drawn = deferred(&drawn, &settings);
-    assert!(drawn.light_target.is_some() && drawn.transfer_lit.is_some_and(|key| !key.tiles && !key.glows));
+    assert!(drawn.light_target.is_some() && drawn.transfer_lit.is_some_and(|key| !key.tiles && !key.pixel.glows));
+}
+
+#[test]
+fn pixels_are_computed_where_that_saves_time_and_all_debug_views_show_the_same() {
+    let mut settings = Settings::default();
+    settings.path = RenderPath::Tiled;
+    settings.accumulate.fix_scale(2);
+    let is_computed = |inputs: &PipelineInputs<'_>, settings: &Settings| {
+        let plan = deferred(inputs, settings);
+        assert_eq!(plan.upsample_lit.is_some(), plan.transfer_lit.is_some_and(|key| key.computed));
+        plan.upsample_lit.is_some()
+    };
+    assert!(!is_computed(&inputs(), &settings), "a device that draws fast");
+    let slow = PipelineInputs { computes_pixels: true, ..inputs() };
+    assert!(is_computed(&slow, &settings));
+    assert!(!is_computed(&PipelineInputs { tiles: None, ..slow }, &settings), "no compute shaders");
+    let both = PipelineInputs { debug_views: &[DebugView::Final, DebugView::Combined], ..slow };
+    assert!(!is_computed(&both, &settings), "with and without glow");
+    let one = PipelineInputs { debug_views: &[DebugView::Final, DebugView::Normals], ..slow };
+    assert!(is_computed(&one, &settings));
+    settings.accumulate.fix_scale(1);
+    assert!(is_computed(&slow, &settings), "glow at scale 1");
+    settings.specular_scatter.intensity = 0.0;
+    assert!(!is_computed(&slow, &settings), "scale 1");
+    settings.accumulate.fix_scale(2);
+    assert!(is_computed(&both, &settings), "no glow");
+    settings.accumulate.lighting_resolution = LightingResolution::Full;
+    assert!(!is_computed(&slow, &settings), "light per pixel");
 }
 
 #[test]
@@ -147,6 +176,7 @@ fn one_of_each_covers_every_pass() {
         assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
         assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
         assert!(tiled.tiled.is_some() && deferred.tiled.is_none());
+        assert!(tiled.upsample_lit.is_some() && lit.upsample_lit.is_none());
     }
 }
 

@@ -50,6 +50,8 @@ pub(crate) struct AccumulationKey {
     pub computes_depth: bool,
     /// True if compute shaders light the target and fit its slopes.
     pub computes_texels: bool,
+    /// Pixels per texel, if compute shaders write lit smoke at full resolution as well.
+    pub pixels_scale: Option<u32>,
 }
 
 /// Textures of one system. The part in use starts at (0, 0) and has the size of the system's screen rectangle.
@@ -71,6 +73,8 @@ pub(crate) struct AccumulationTarget {
     pub depth_slopes: Option<wgpu::TextureView>,
     /// Cells with such a change, if compute shaders fit it.
     pub slope_cells: Option<wgpu::TextureView>,
+    /// Lit smoke at full resolution, if compute shaders upsample it.
+    pub pixels: Option<wgpu::TextureView>,
     /// `None` if sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// Coarser copy of the reduced depth, if the backend cannot test what it samples.
@@ -105,6 +109,11 @@ impl AccumulationTarget {
     /// Returns the roles of the textures.
     pub fn roles(&self) -> AttachmentSet {
         self.key.attachments
+    }
+
+    /// Returns the number of pixels of `texels` that compute shaders write.
+    pub fn pixels_in_use(&self, texels: UVec2) -> UVec2 {
+        texels * self.key.pixels_scale.unwrap_or(0)
     }
 
     /// Returns true if the textures hold `size` texels and have not been much too large for more than 120 frames.
@@ -142,6 +151,10 @@ impl AccumulationTarget {
         let depth_slopes = key.depth_slopes.then(|| textures.create_whole("haze depth slopes", LIT_FORMAT, size));
         let slope_cells = (key.depth_slopes && key.computes_texels)
             .then(|| textures.create_whole("haze slope cells", CELLS_FORMAT, cells));
+        let pixels = key.pixels_scale.map(|scale| {
+            let side = device.limits().max_texture_dimension_2d;
+            textures.create_whole("haze lit pixels", LIT_FORMAT, (size * scale).min(UVec2::splat(side)))
+        });
         let is_reduced = key.depth_source == DepthSource::Reduced;
         textures.written = written(key.computes_depth);
         let depth_format = if key.computes_depth { COMPUTED_DEPTH_FORMAT } else { REDUCED_DEPTH_FORMAT };
@@ -161,6 +174,7 @@ impl AccumulationTarget {
             glows,
             depth_slopes,
             slope_cells,
+            pixels,
             reduced_depth,
             depth_copy,
             bytes,

@@ -26,6 +26,7 @@ use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_gather::{self, TileGatherKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
 use crate::renderer::pass::tile_refine::{self, TileRefineKey};
+use crate::renderer::pass::upsample_lit::{self, LitPixelKey};
 use crate::renderer::targets::{CELLS_FORMAT, COMPUTED_DEPTH_FORMAT, GLOWS_FORMAT, LIT_FORMAT};
 
 /// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
@@ -47,6 +48,7 @@ pub(crate) struct TiledPipelines {
     pub depth_downsample: PipelineVariants<DepthDownsampleKey, ComputePipelineDescription>,
     pub light_target: PipelineVariants<LightingKey, ComputePipelineDescription>,
     pub depth_slopes: PipelineVariants<DepthSlopesKey, ComputePipelineDescription>,
+    pub upsample_lit: PipelineVariants<LitPixelKey, ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
     gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
@@ -68,6 +70,7 @@ pub(crate) struct TiledLayouts {
     pub depth_downsample: wgpu::BindGroupLayout,
     pub light_target: wgpu::BindGroupLayout,
     pub depth_slopes: wgpu::BindGroupLayout,
+    pub upsample_lit: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
     pub gather: wgpu::BindGroupLayout,
@@ -146,6 +149,7 @@ impl TiledPipelines {
                 depth_slopes::describe_compute,
                 &texels(&own.depth_slopes),
             ),
+            upsample_lit: pipeline_variants!(store, shader, upsample_lit, &texels(&own.upsample_lit)),
             project: pipeline_variants!(store, shader, tile_project, &with(&own.project)),
             sort: pipeline_variants!(store, shader, sort, &[Some(&own.sort)]),
             gather: pipeline_variants!(store, shader, tile_gather, &[Some(&own.gather)]),
@@ -254,6 +258,7 @@ impl TiledLayouts {
         let volume = target(SHADOW_FORMAT, wgpu::TextureViewDimension::D3);
         let flat = |format| target(format, wgpu::TextureViewDimension::D2);
         let lit = flat(LIT_FORMAT);
+        let upsampled = texture_type(filterable, wgpu::TextureViewDimension::D2);
         let layout = |label, types: &[wgpu::BindingType]| {
             let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
                 binding,
@@ -283,6 +288,7 @@ impl TiledLayouts {
                 &[transfer_types().as_slice(), &[lit, flat(CELLS_FORMAT), flat(GLOWS_FORMAT)]].concat(),
             ),
             depth_slopes: layout("haze depth_slopes inputs", &[depth, depth, lit, flat(CELLS_FORMAT)]),
+            upsample_lit: layout("haze upsample_lit inputs", &[upsampled, depth, upsampled, depth, depth, depth, lit]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
             gather: layout("haze tile_gather inputs", &[uniform, read, read, read, written, written, written]),

@@ -211,6 +211,7 @@ const ALL_PASSES: &[&str] = &[
     "tile_bin",
     "tile_refine",
     "tile_accumulate",
+    "upsample_lit",
     "transfer",
     "specular_scatter",
 ];
