@@ -6,6 +6,7 @@
 // Source  He and Sun, "Fast guided filter", 2015: the coefficients are fitted at low resolution.
 
 #import "lib/accumulated.wgsl"
+#import "lib/cells.wgsl"
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -22,25 +23,26 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
 // As slope_cells in lib/smoke_tiles.wgsl.
 @group(3) @binding(3) var written_cells: texture_storage_2d<r32float, write>;
 
-var<workgroup> has_slope: atomic<u32>;
+var<workgroup> has_slope: array<atomic<u32>, 4>;
 
-// A workgroup is a cell of CELL_SIDE² texels.
+// A workgroup is four cells.
 @compute @workgroup_size(8, 8)
 fn texels(
     @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) cell: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(workgroup_id) workgroup: vec3u,
     @builtin(local_invocation_index) index: u32,
 ) {
     if all(id.xy < vec2u(system.target_size)) {
         let slope = slope_at(vec2i(id.xy));
         textureStore(written, id.xy, slope);
         if any(slope != vec4f(0.0)) {
-            atomicStore(&has_slope, 1u);
+            atomicStore(&has_slope[cell_of_four(local.xy)], 1u);
         }
     }
     workgroupBarrier();
-    if index == 0u {
-        textureStore(written_cells, cell.xy, vec4f(f32(atomicLoad(&has_slope))));
+    if index < 4u {
+        textureStore(written_cells, place_of_four(workgroup.xy, index), vec4f(f32(atomicLoad(&has_slope[index]))));
     }
 }
 

@@ -9,6 +9,7 @@
 
 #import "lib/lit_smoke.wgsl"
 #import "lib/glow.wgsl"
+#import "lib/cells.wgsl"
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -27,27 +28,28 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
 @group(3) @binding(7) var written_cells: texture_storage_2d<r32float, write>;
 @group(3) @binding(8) var written_glows: texture_storage_2d<rgba32float, write>;
 
-var<workgroup> has_smoke: atomic<u32>;
+var<workgroup> has_smoke: array<atomic<u32>, 4>;
 
-// A workgroup is a cell of CELL_SIDE² texels.
+// A workgroup is four cells.
 @compute @workgroup_size(8, 8)
 fn texels(
     @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) cell: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(workgroup_id) workgroup: vec3u,
     @builtin(local_invocation_index) index: u32,
 ) {
     if all(id.xy < vec2u(system.target_size)) {
         let lit = lit_texel(vec2f(id.xy));
         textureStore(written, id.xy, lit);
         if lit.a > 0.0 {
-            atomicStore(&has_smoke, 1u);
+            atomicStore(&has_smoke[cell_of_four(local.xy)], 1u);
         }
     }
     workgroupBarrier();
-    if index == 0u {
-        textureStore(written_cells, cell.xy, vec4f(f32(atomicLoad(&has_smoke))));
+    if index < 4u {
+        textureStore(written_cells, place_of_four(workgroup.xy, index), vec4f(f32(atomicLoad(&has_smoke[index]))));
     }
-    if all(cell.xy == vec2u(0u)) {
+    if all(workgroup.xy == vec2u(0u)) {
         for (var light = index; light < system.light_count; light += 64u) {
             let glow = glow_of_light(lights[light]);
             textureStore(written_glows, vec2u(light, 0u), vec4f(glow.centre, 0.0, 0.0));

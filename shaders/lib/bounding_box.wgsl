@@ -1,4 +1,4 @@
-// Bounding box of a system, drawn by transfer and transfer_lit.
+// Bounding box of a system, drawn by transfer.
 
 #import "lib/bindings.wgsl"
 

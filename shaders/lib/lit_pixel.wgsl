@@ -5,8 +5,6 @@
 #import "lib/coverage.wgsl"
 #import "lib/glow.wgsl"
 
-// True: places without slopes are filtered by the hardware; depth_slopes has computed slope_cells.
-override SLOPE_CELLS: bool = false;
 // True: adds the glow of lights, which light_target has computed.
 override GLOWS: bool = false;
 
@@ -17,7 +15,7 @@ override GLOWS: bool = false;
 // slope. `texel_size`: filter_texel_size(). `glowing`: lights_that_reach() the pixel.
 fn lit_pixel(pixel: vec2f, has_slopes: bool, texel_size: vec2f, glowing: vec2u) -> vec4f {
     var lit: vec4f;
-    if SLOPE_CELLS && !has_slopes {
+    if !has_slopes {
         let place = filtered_place(pixel / f32(system.scale) - system.target_origin, texel_size);
         lit = textureSampleLevel(accumulation, linear_sampler, place, 0.0);
     } else {

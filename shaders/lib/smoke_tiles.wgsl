@@ -1,17 +1,16 @@
 // Tiles of the lit target, by which transfer_lit draws only where there is smoke.
 
 #import "lib/bindings.wgsl"
+#import "lib/cells.wgsl"
 
-// Side of a cell, texels: one workgroup of light_target.
-const CELL_SIDE: u32 = 8u;
 // Distance of the farthest texel that an upsampler reads for a pixel, texels.
 const UPSAMPLE_REACH: i32 = 2;
 // Smallest side of a tile, pixels.
 const MIN_TILE_PIXELS: u32 = 32u;
 
-// Output of light_target: 1 for each cell with smoke, otherwise 0.
+// Output of light_target or mark_cells: 1 for each cell with smoke, otherwise 0.
 @group(3) @binding(3) var smoke_cells: texture_2d<f32>;
-// Output of depth_slopes: 1 for each cell with a slope, otherwise 0.
+// Output of depth_slopes or mark_cells: 1 for each cell with a slope, otherwise 0.
 @group(3) @binding(5) var slope_cells: texture_2d<f32>;
 
 // Side of a tile, texels: a multiple of CELL_SIDE. `scale`: pixels per texel.

@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 /// Side of a cell, texels.
-pub const CELL_SIDE: u32 = 8;
+pub const CELL_SIDE: u32 = 4;
 
 /// Smallest side of a tile, pixels: smaller ones fit the smoke better, and cost more vertices than they save pixels.
 pub const MIN_TILE_PIXELS: u32 = 32;

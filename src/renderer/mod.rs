@@ -220,6 +220,8 @@ impl Renderer {
             passes.light_target.iter().for_each(|pass| pass.record(encoder, timing));
             // Fits how the lit smoke changes with depth, for its upsampling.
             passes.depth_slopes.iter().for_each(|pass| pass.record(encoder, timing));
+            // Marks where there is smoke, and where it has slopes.
+            passes.mark_cells.iter().for_each(|pass| pass.record(encoder, timing));
             // Computes the pixels that transfer draws, where drawing is slow.
             passes.upsample_lit.iter().for_each(|pass| pass.record(encoder, timing));
         }

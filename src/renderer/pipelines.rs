@@ -14,6 +14,7 @@ use super::pass::depth_slopes::{self, DepthSlopesKey};
 use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
 use super::pass::light_target::{self, LightingKey};
+use super::pass::mark_cells::{self, MarkCellsKey};
 use super::pass::screen_shadow;
 use super::pass::shadow_march::MarchTo;
 use super::pass::shadow_march_slice;
@@ -34,6 +35,7 @@ pub(crate) struct Pipelines {
     pub accumulate: PipelineVariants<AccumulateKey>,
     pub light_target: PipelineVariants<LightingKey>,
     pub depth_slopes: PipelineVariants<DepthSlopesKey>,
+    pub mark_cells: PipelineVariants<MarkCellsKey>,
     pub transfer: PipelineVariants<TransferKey>,
     pub transfer_lit: PipelineVariants<TransferLitKey>,
     pub specular_scatter: PipelineVariants<SpecularScatterKey>,
@@ -79,6 +81,7 @@ impl Pipelines {
             accumulate: pipeline_variants!(store, shader, accumulate, &accumulate),
             light_target: pipeline_variants!(store, shader, light_target, &transfer),
             depth_slopes: pipeline_variants!(store, shader, depth_slopes, &lit),
+            mark_cells: pipeline_variants!(store, shader, mark_cells, &lit),
             transfer: pipeline_variants!(store, shader, transfer, &transfer),
             transfer_lit: pipeline_variants!(store, shader, transfer_lit, &lit),
             specular_scatter: pipeline_variants!(store, shader, specular_scatter, &lit),
@@ -137,7 +140,9 @@ impl Pipelines {
                     tiled.upsample_lit.check(key)?;
                 }
                 plan.transfers().try_for_each(|key| self.transfer.check(key))?;
-                plan.lit_transfers().try_for_each(|(_, key)| self.transfer_lit.check(key))?;
+                plan.mark_cells.map_or(Ok(()), |key| self.mark_cells.check(key))?;
+                let mut lit = plan.lit_transfers().flat_map(|(_, keys)| keys).flatten();
+                lit.try_for_each(|key| self.transfer_lit.check(key))?;
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(key))
             }
         }

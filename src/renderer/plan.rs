@@ -10,12 +10,13 @@ use super::pass::depth_slopes::DepthSlopesKey;
 use super::pass::diffuse_bake::DiffuseBakeKey;
 use super::pass::forward::ForwardKey;
 use super::pass::light_target::LightingKey;
+use super::pass::mark_cells::MarkCellsKey;
 use super::pass::specular_scatter::SpecularScatterKey;
 use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::{BoundingBoxKey, TransferKey};
-use super::pass::transfer_lit::TransferLitKey;
-use super::pass::upsample_lit::LitPixelKey;
+use super::pass::transfer_lit::{Tiles, TransferLitKey};
+use super::pass::upsample_lit::{LitPixelKey, UpsampleLitKey};
 use super::sprite_instances::SpriteKey;
 use super::tiled::TiledKeys;
 use crate::assets::ramp_steps::RampSteps;
@@ -110,12 +111,16 @@ pub(crate) struct DeferredPlan<'a> {
     pub light_target: Option<LightingKey>,
     /// Present if lit smoke is upsampled by `guided`.
     pub depth_slopes: Option<DepthSlopesKey>,
+    /// Present if smoke is lit at the target's resolution and that is not computed.
+    pub mark_cells: Option<MarkCellsKey>,
     /// Present if the pixels that transfer_lit draws are computed.
-    pub upsample_lit: Option<LitPixelKey>,
+    pub upsample_lit: Option<UpsampleLitKey>,
     /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
     pub transfer: TransferKey,
-    /// Key of the debug view `Final`, if smoke is lit at the target's resolution; see `lit_transfers`.
+    /// Key of the debug view `Final` and of all tiles, if smoke is lit at the target's resolution; see `lit_transfers`.
     pub transfer_lit: Option<TransferLitKey>,
+    /// True if transfer_lit draws tiles with and without slopes by a pipeline each.
+    pub splits_tiles: bool,
     pub debug_views: &'a [DebugView],
     pub specular_scatter: Option<SpecularScatterKey>,
 }
@@ -228,19 +233,13 @@ fn deferred<'a>(
         overdraw: false,
     };
     let depth_slopes = (lights_target && upsample == Upsample::Guided && settings.scale > 1).then_some(DepthSlopesKey);
-    let pixel = LitPixelKey {
-        glows: computes_texels && glows,
-        slope_cells: computes_texels && depth_slopes.is_some() && !exact_filtering,
-        upsample,
-        coverage,
-        ramp_filter,
-        exact_filtering,
-    };
-    // At scale 1 without glow, a pixel is hardly more than its lit texel.
-    let is_worth_storing = settings.scale > 1 || glows;
+    let pixel = LitPixelKey { glows: computes_texels && glows, upsample, coverage, ramp_filter, exact_filtering };
+    let slope_cells = depth_slopes.is_some() && !exact_filtering;
     // One picture for all debug views that show it.
     let same_pixels = !glows || debug_views.iter().all(|view| view.shows_glow() || !view.shows_lit_smoke());
-    let computes_pixels = inputs.computes_pixels && computes_texels && lights_target && is_worth_storing && same_pixels;
+    // At scale 1, a pixel is hardly more than its lit texel.
+    let computes_pixels =
+        inputs.computes_pixels && computes_texels && lights_target && settings.scale > 1 && same_pixels;
     DeferredPlan {
         reads_linear,
         depth_downsample: (!host_depth).then(|| downsample(false)),
@@ -261,13 +260,15 @@ fn deferred<'a>(
         light_target: lights_target.then_some(lighting),
         depth_slopes,
         transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
-        upsample_lit: computes_pixels.then_some(pixel),
+        mark_cells: (lights_target && !computes_texels).then_some(MarkCellsKey { slopes: depth_slopes.is_some() }),
+        upsample_lit: computes_pixels.then_some(UpsampleLitKey { slope_cells, pixel }),
         transfer_lit: lights_target.then_some(TransferLitKey {
             drawn,
-            tiles: computes_texels,
+            tiles: Tiles::All,
             computed: computes_pixels,
             pixel,
         }),
+        splits_tiles: slope_cells && !computes_pixels,
         debug_views,
         specular_scatter: glows.then_some(SpecularScatterKey {
             host,
@@ -339,12 +340,13 @@ impl DeferredPlan<'_> {
         self.debug_views.iter().filter(drawn).map(|&debug_view| TransferKey { debug_view, ..self.transfer })
     }
 
-    /// Returns the debug views that transfer_lit draws, with their keys.
-    pub fn lit_transfers(&self) -> impl Iterator<Item = (DebugView, TransferLitKey)> {
+    /// Returns the debug views that transfer_lit draws, with the keys of their pipelines.
+    pub fn lit_transfers(&self) -> impl Iterator<Item = (DebugView, [Option<TransferLitKey>; 2])> {
         let drawn = self.debug_views.iter().filter(|debug_view| self.draws_lit(**debug_view));
         drawn.zip(self.transfer_lit.into_iter().cycle()).map(|(&debug_view, key)| {
             let pixel = LitPixelKey { glows: key.pixel.glows && debug_view.shows_glow(), ..key.pixel };
-            (debug_view, TransferLitKey { pixel, ..key })
+            let of_tiles = |tiles: Tiles| TransferLitKey { tiles, pixel, ..key };
+            (debug_view, Tiles::of_frame(self.splits_tiles).map(|tiles| tiles.map(of_tiles)))
         })
     }
 

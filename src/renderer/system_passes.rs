@@ -20,7 +20,7 @@ use super::plan::{DeferredPlan, ForwardPlan};
 use super::sprite_instances::Sprites;
 use super::system_targets::{ReadyTargets, TargetInputs};
 use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
-use crate::formula::smoke_tiles::{tile_counts, tile_side};
+use crate::formula::smoke_tiles::{CELL_SIDE, tile_counts, tile_side};
 use crate::settings::DebugView;
 use crate::view_setup::SystemSetup;
 
@@ -64,6 +64,7 @@ pub(crate) struct DeferredPasses {
     pub overdraw: Option<Accumulate>,
     pub light_target: Option<TexelPass>,
     pub depth_slopes: Option<TexelPass>,
+    pub mark_cells: Option<TexelPass>,
     pub upsample_lit: Option<TexelPass>,
     pub transfer: Transfer,
     pub specular_scatter: Option<SpecularScatter>,
@@ -196,6 +197,12 @@ impl PassBuilder<'_> {
                 };
                 Some(texel_pass("depth_slopes", pipeline, &inputs.depth_slopes))
             }),
+            mark_cells: plan.mark_cells.and_then(|key| {
+                let cells = [accumulation.smoke_cells.clone()?, accumulation.slope_cells.clone()?];
+                let pipeline = TexelPipeline::Colors(pipelines.mark_cells.get(key), cells);
+                let size = size.map(|side| side.div_ceil(CELL_SIDE));
+                Some(TexelPass { size, ..texel_pass("mark_cells", pipeline, &inputs.mark_cells) })
+            }),
             upsample_lit: plan.upsample_lit.zip(computed).map(|(key, tiled)| TexelPass {
                 size: accumulation.pixels_in_use(size),
                 ..texel_pass("upsample_lit", TexelPipeline::Compute(tiled.upsample_lit.get(key)), &inputs.upsample_lit)
@@ -220,21 +227,21 @@ fn transfer_pass(
     inputs: &TargetInputs,
     setup: &SystemSetup,
 ) -> Transfer {
-    let mut by_debug_view = [const { None }; DebugView::ALL.len()];
+    let mut by_debug_view = [const { [const { None }; 2] }; DebugView::ALL.len()];
     for key in plan.transfers() {
-        by_debug_view[key.debug_view as usize] = Some(pipelines.transfer.get(key));
+        by_debug_view[key.debug_view as usize] = [Some(pipelines.transfer.get(key)), None];
     }
-    for (debug_view, key) in plan.lit_transfers() {
-        by_debug_view[debug_view as usize] = Some(pipelines.transfer_lit.get(key));
+    for (debug_view, keys) in plan.lit_transfers() {
+        by_debug_view[debug_view as usize] = keys.map(|key| key.map(|key| pipelines.transfer_lit.get(key)));
     }
     Transfer {
         pipelines: by_debug_view,
         groups: groups.clone(),
         inputs: inputs.transfer.clone(),
         overdraw_inputs: inputs.overdraw.clone(),
-        lit: plan.transfer_lit.map(|key| LitInputs {
+        lit: plan.transfer_lit.map(|_| LitInputs {
             group: inputs.pixels.as_ref().unwrap_or(&inputs.upsampled).clone(),
-            tiles: key.tiles.then(|| tile_counts(setup.rect.size, tile_side(setup.rect.scale)).element_product()),
+            tiles: tile_counts(setup.rect.size, tile_side(setup.rect.scale)).element_product(),
         }),
     }
 }

@@ -33,6 +33,8 @@ pub(crate) struct TargetInputs {
     pub depth_slopes: Option<wgpu::BindGroup>,
     /// Group 3 of transfer_lit and specular_scatter: lit smoke and its slopes, or the first attachment.
     pub upsampled: wgpu::BindGroup,
+    /// Group 3 of mark_cells, if cells are drawn.
+    pub mark_cells: Option<wgpu::BindGroup>,
     /// Group 3 of upsample_lit, if pixels are computed.
     pub upsample_lit: Option<wgpu::BindGroup>,
     /// Group 3 of transfer_lit, if pixels are computed: they take the place of the lit smoke.
@@ -98,6 +100,11 @@ impl SystemTargets {
                 let (cells, glows) = (cells.unwrap_or(lit), glows.unwrap_or(lit));
                 [lit, depth.unwrap_or(lit), slopes, cells, glows, slope_cells]
             };
+            // For passes that write slopes or cells, which cannot be bound in the same pass.
+            let unmarked_inputs = |slopes| {
+                let textures = [lit, depth.unwrap_or(lit), slopes, lit, lit, lit];
+                bind_textures(device, "haze unmarked inputs", &layouts.lit, textures)
+            };
             let lit_inputs =
                 |lit, slopes| bind_textures(device, "haze lit inputs", &layouts.lit, lit_textures(lit, slopes));
             // Passes that compute texels write the last of their textures.
@@ -125,8 +132,9 @@ impl SystemTargets {
                         let textures = [lit, depth.unwrap_or(lit), slopes, slope_cells];
                         bind_textures(device, "haze depth_slopes inputs", &computed.depth_slopes, textures)
                     }
-                    None => lit_inputs(lit, lit),
+                    None => unmarked_inputs(lit),
                 }),
+                mark_cells: plan.mark_cells.map(|_| unmarked_inputs(depth_slopes.unwrap_or(lit))),
                 upsampled: lit_inputs(lit, depth_slopes.unwrap_or(lit)),
                 upsample_lit: computed_texels.zip(pixels).map(|(computed, pixels)| {
                     let textures = lit_textures(lit, depth_slopes.unwrap_or(lit)).into_iter().chain([pixels]);

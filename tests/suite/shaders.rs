@@ -274,7 +274,7 @@ fn byte_order_marks_and_crlf_line_endings_are_accepted() {
 #[test]
 fn folders_without_readable_shaders_are_rejected_with_a_reason() {
     let expected = "expected accumulate.wgsl, density_splat.wgsl, depth_downsample.wgsl, depth_resolve.wgsl, depth_slopes.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \
-                    forward.wgsl, light_target.wgsl, measure.wgsl, screen_shadow.wgsl, shadow_march.wgsl, shadow_march_slice.wgsl, shadow_visibility.wgsl, shadow_visibility_slice.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
+                    forward.wgsl, light_target.wgsl, mark_cells.wgsl, measure.wgsl, screen_shadow.wgsl, shadow_march.wgsl, shadow_march_slice.wgsl, shadow_visibility.wgsl, shadow_visibility_slice.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
                     tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl, transfer_lit.wgsl, upsample_lit.wgsl or a file of lib/ in it";
     let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
     let folder = ShaderFolder::new();

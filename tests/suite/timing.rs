@@ -95,7 +95,7 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
     }
     scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
     let mut lit = DEFERRED_PASSES.to_vec();
-    lit.splice(3..3, ["light_target", "depth_slopes"]);
+    lit.splice(3..3, ["light_target", "depth_slopes", "mark_cells"]);
     assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), lit);
     scene.settings.path = RenderPath::Forward;
     assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), ["host", "forward"]);

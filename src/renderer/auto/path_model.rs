@@ -21,11 +21,13 @@ const NEVER_OPAQUE_SHARE: f64 = 0.5;
 /// times more than `raster`, for seconds.
 const CPU_PROBE_TOLERANCE: f32 = 1.6;
 
-/// Least ratio of the time of a drawn texel to that of a computed one from which pixels are computed. It is 26 on an NVIDIA
-/// H200, 1.4 on llvmpipe. Storing and drawing a computed pixel moves 16 more bytes.
+/// Least ratio of the time of a drawn texel to that of a computed one at which pixels are computed: between llvmpipe's, 1.4,
+/// and an NVIDIA H200's, 26; devices in between were not measured. A computed pixel is written and read once more, 8 bytes
+/// each.
 const COMPUTED_PIXELS_RATIO: f32 = 8.0;
 
-/// Cost model by which the path `auto` chooses. Set it with
+/// Cost model by which the path `auto` chooses. It also decides whether lit smoke is upsampled by a compute shader before it
+/// is drawn: if [`fragment`](PathCosts::fragment) of `raster` is at least 8 times that of `tiled`. Set it with
 /// [`Context::set_path_model`](crate::Context::set_path_model).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathModel {

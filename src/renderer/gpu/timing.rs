@@ -26,7 +26,7 @@ const READ_BACKS: usize = 4;
 /// blocking: the first submission after the GPU has finished delivers them.
 ///
 /// Passes that haze begins itself (`depth_resolve`, `measure`, `emit`, `sort`, `depth_downsample`, `diffuse_bake`,
-/// `accumulate`, `light_target`, `depth_slopes`, `upsample_lit`, and those of the path `tiled`) are always measured. Passes
+/// `accumulate`, `light_target`, `depth_slopes`, `mark_cells`, `upsample_lit`, and those of the path `tiled`) are always measured. Passes
 /// that haze records into the host's pass (`transfer`, `specular_scatter`,
 /// `forward`) are measured if the device has `Features::TIMESTAMP_QUERY_INSIDE_PASSES`. Without it,
 /// [`host_pass`](Self::host_pass) measures the host's whole pass. A device without `Features::TIMESTAMP_QUERY` measures

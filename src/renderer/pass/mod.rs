@@ -11,6 +11,7 @@ pub(crate) mod diffuse_bake;
 pub(crate) mod emit;
 pub(crate) mod forward;
 pub(crate) mod light_target;
+pub(crate) mod mark_cells;
 pub(crate) mod measure;
 pub(crate) mod screen_shadow;
 pub(crate) mod shadow_march;
@@ -74,8 +75,8 @@ impl Groups {
     }
 }
 
-/// A pass that writes every texel of a system's target, or every pixel: depth_downsample, light_target, depth_slopes,
-/// upsample_lit.
+/// A pass that writes every texel of a system's target, every cell or every pixel: depth_downsample, light_target,
+/// depth_slopes, mark_cells, upsample_lit.
 #[derive(Debug)]
 pub(crate) struct TexelPass {
     /// Name in times and captures.
@@ -92,6 +93,7 @@ pub(crate) struct TexelPass {
 #[derive(Debug)]
 pub(crate) enum TexelPipeline {
     Color(wgpu::RenderPipeline, wgpu::TextureView),
+    Colors(wgpu::RenderPipeline, [wgpu::TextureView; 2]),
     Depth(wgpu::RenderPipeline, wgpu::TextureView),
     /// The target is among the inputs.
     Compute(wgpu::ComputePipeline),
@@ -103,11 +105,13 @@ const TEXELS_SIDE: u32 = 8;
 impl TexelPass {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         let (pipeline, colors, depth) = match &self.pipeline {
-            TexelPipeline::Color(pipeline, target) => (pipeline, color_attachment(target), None),
-            TexelPipeline::Depth(pipeline, target) => (pipeline, None, Some(written_depth(target))),
+            TexelPipeline::Color(pipeline, target) => (pipeline, [color_attachment(target), None], None),
+            TexelPipeline::Colors(pipeline, targets) => (pipeline, targets.each_ref().map(color_attachment), None),
+            TexelPipeline::Depth(pipeline, target) => (pipeline, [None, None], Some(written_depth(target))),
             TexelPipeline::Compute(pipeline) => return self.record_compute(pipeline, encoder, timing),
         };
-        let mut pass = begin_pass(encoder, self.name, colors.is_some().then_some(colors).as_slice(), depth, timing);
+        let count = colors.iter().flatten().count();
+        let mut pass = begin_pass(encoder, self.name, &colors[..count], depth, timing);
         set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(pipeline);
         self.groups.bind_for_lighting(&mut pass);

@@ -78,8 +78,8 @@ pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
 /// The pass for one system, in the host's pass; with lit smoke, transfer_lit.
 #[derive(Debug)]
 pub(crate) struct Transfer {
-    /// Pipelines by debug view; `None` for those that are not shown.
-    pub pipelines: [Option<wgpu::RenderPipeline>; DebugView::ALL.len()],
+    /// Pipelines by debug view, drawn one after the other; `None` for those that are not shown.
+    pub pipelines: [[Option<wgpu::RenderPipeline>; 2]; DebugView::ALL.len()],
     pub groups: Groups,
     /// Group 3: the targets.
     pub inputs: wgpu::BindGroup,
@@ -94,27 +94,25 @@ pub(crate) struct Transfer {
 pub(crate) struct LitInputs {
     /// Group 3.
     pub group: wgpu::BindGroup,
-    /// Number of tiles, if it draws tiles in place of the box.
-    pub tiles: Option<u32>,
+    /// Number of tiles, which it draws in place of the box.
+    pub tiles: u32,
 }
 
 impl Transfer {
     /// Draws the box for a debug view. Draws nothing for one that was not planned.
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, debug_view: DebugView) {
-        let Some(pipeline) = &self.pipelines[debug_view as usize] else { return };
         let lit = self.lit.as_ref().filter(|_| debug_view.shows_lit_smoke());
         let inputs = match (debug_view, lit) {
             (DebugView::Overdraw, _) => self.overdraw_inputs.as_ref(),
             (_, Some(lit)) => Some(&lit.group),
             _ => Some(&self.inputs),
         };
-        let (vertices, instances) = match lit.and_then(|lit| lit.tiles) {
-            Some(tiles) => (TILE_VERTICES, tiles),
-            None => (BOX_VERTICES, 1),
-        };
-        pass.set_pipeline(pipeline);
+        let (vertices, instances) = lit.map_or((BOX_VERTICES, 1), |lit| (TILE_VERTICES, lit.tiles));
         self.groups.bind_for_lighting(pass);
         pass.set_bind_group(3, inputs, &[]);
-        pass.draw(0..vertices, 0..instances);
+        for pipeline in self.pipelines[debug_view as usize].iter().flatten() {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..vertices, 0..instances);
+        }
     }
 }

@@ -14,8 +14,6 @@ use crate::settings::{CoverageMode, RampFilter, Upsample};
 pub(crate) struct LitPixelKey {
     /// True to add the glow of lights, which light_target has computed.
     pub glows: bool,
-    /// True to filter places without slopes by the hardware: depth_slopes has computed which.
-    pub slope_cells: bool,
     pub upsample: Upsample,
     pub coverage: CoverageMode,
     pub ramp_filter: RampFilter,
@@ -27,7 +25,6 @@ impl LitPixelKey {
     pub fn constants(self, of_pass: &[Constant]) -> Vec<Constant> {
         let shared = [
             bool_constant("GLOWS", self.glows),
-            bool_constant("SLOPE_CELLS", self.slope_cells),
             enum_constant!("UPSAMPLE", self.upsample),
             enum_constant!("COVERAGE_MODE", self.coverage),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
@@ -37,7 +34,16 @@ impl LitPixelKey {
     }
 }
 
+/// Key of an upsample_lit pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct UpsampleLitKey {
+    /// True to filter places without slopes by the hardware: depth_slopes has computed which.
+    pub slope_cells: bool,
+    pub pixel: LitPixelKey,
+}
+
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: LitPixelKey) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "pixels", constants: key.constants(&[]) }
+pub(crate) fn describe(key: UpsampleLitKey) -> ComputePipelineDescription {
+    let constants = key.pixel.constants(&[bool_constant("SLOPE_CELLS", key.slope_cells)]);
+    ComputePipelineDescription { entry_point: "pixels", constants }
 }

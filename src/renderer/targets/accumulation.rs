@@ -26,7 +26,10 @@ pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::D
 /// Format of lit smoke: light is HDR, whatever the format of the normals.
 pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// Format of the cells with smoke, and of the glow of lights.
+/// Format of the cells with smoke and with slopes, if they are drawn: every backend can render to it.
+pub(crate) const DRAWN_CELLS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// Format of the cells if compute shaders mark them, and of the glow of lights.
 pub(crate) const CELLS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 pub(crate) const GLOWS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
@@ -66,12 +69,13 @@ pub(crate) struct AccumulationTarget {
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
     /// Light times amount in rgb and amount in a, if smoke is lit at this resolution.
     pub lit: Option<wgpu::TextureView>,
-    /// Cells of the lit smoke that hold some, and the glow of lights, if compute shaders light it.
+    /// Cells of the lit smoke that hold some.
     pub smoke_cells: Option<wgpu::TextureView>,
+    /// Glow of lights, if compute shaders light the smoke.
     pub glows: Option<wgpu::TextureView>,
     /// Change of the lit smoke with depth.
     pub depth_slopes: Option<wgpu::TextureView>,
-    /// Cells with such a change, if compute shaders fit it.
+    /// Cells with such a change.
     pub slope_cells: Option<wgpu::TextureView>,
     /// Lit smoke at full resolution, if compute shaders upsample it.
     pub pixels: Option<wgpu::TextureView>,
@@ -143,14 +147,16 @@ impl AccumulationTarget {
         let overdraw = key.overdraw.then(|| create(AttachmentSet::NORMAL_AND_AMOUNT, false));
         textures.written = written(key.computes_texels);
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
-        let computes_light = key.lit && key.computes_texels;
+        let cells_format = if key.computes_texels { CELLS_FORMAT } else { DRAWN_CELLS_FORMAT };
         let cells = size.map(|side| side.div_ceil(CELL_SIDE));
-        let smoke_cells = computes_light.then(|| textures.create_whole("haze smoke cells", CELLS_FORMAT, cells));
+        let smoke_cells = key.lit.then(|| textures.create_whole("haze smoke cells", cells_format, cells));
         let lights = UVec2::new(MAX_LIGHTS as u32, 2);
+        let computes_light = key.lit && key.computes_texels;
         let glows = computes_light.then(|| textures.create_whole("haze glows", GLOWS_FORMAT, lights));
         let depth_slopes = key.depth_slopes.then(|| textures.create_whole("haze depth slopes", LIT_FORMAT, size));
-        let slope_cells = (key.depth_slopes && key.computes_texels)
-            .then(|| textures.create_whole("haze slope cells", CELLS_FORMAT, cells));
+        // mark_cells writes both kinds of cells, even without slopes.
+        let has_slope_cells = key.depth_slopes || (key.lit && !key.computes_texels);
+        let slope_cells = has_slope_cells.then(|| textures.create_whole("haze slope cells", cells_format, cells));
         let pixels = key.pixels_scale.map(|scale| {
             let side = device.limits().max_texture_dimension_2d;
             textures.create_whole("haze lit pixels", LIT_FORMAT, (size * scale).min(UVec2::splat(side)))

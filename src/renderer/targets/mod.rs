@@ -7,8 +7,8 @@ mod target_views;
 mod texture_allocator;
 
 pub(crate) use accumulation::{
-    AccumulationKey, AccumulationTarget, CELLS_FORMAT, COMPUTED_DEPTH_FORMAT, DEPTH_COPY_FORMAT, GLOWS_FORMAT,
-    LIT_FORMAT, REDUCED_DEPTH_FORMAT,
+    AccumulationKey, AccumulationTarget, CELLS_FORMAT, COMPUTED_DEPTH_FORMAT, DEPTH_COPY_FORMAT, DRAWN_CELLS_FORMAT,
+    GLOWS_FORMAT, LIT_FORMAT, REDUCED_DEPTH_FORMAT,
 };
 pub(crate) use attachments::{
     PLACEHOLDER_FORMAT, TiledFormats, attachment_constants, attachments, tiled_formats, validate_attachments,

@@ -26,7 +26,7 @@ use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_gather::{self, TileGatherKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
 use crate::renderer::pass::tile_refine::{self, TileRefineKey};
-use crate::renderer::pass::upsample_lit::{self, LitPixelKey};
+use crate::renderer::pass::upsample_lit::{self, UpsampleLitKey};
 use crate::renderer::targets::{CELLS_FORMAT, COMPUTED_DEPTH_FORMAT, GLOWS_FORMAT, LIT_FORMAT};
 
 /// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
@@ -48,7 +48,7 @@ pub(crate) struct TiledPipelines {
     pub depth_downsample: PipelineVariants<DepthDownsampleKey, ComputePipelineDescription>,
     pub light_target: PipelineVariants<LightingKey, ComputePipelineDescription>,
     pub depth_slopes: PipelineVariants<DepthSlopesKey, ComputePipelineDescription>,
-    pub upsample_lit: PipelineVariants<LitPixelKey, ComputePipelineDescription>,
+    pub upsample_lit: PipelineVariants<UpsampleLitKey, ComputePipelineDescription>,
     project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
     sort: PipelineVariants<SortKey, ComputePipelineDescription>,
     gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,

@@ -14,7 +14,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![smoke_tiles::tile_side(x[0] as u32) as f32],
             cases: (1..=16).map(|scale| vec![scale as f32]).collect(),
             tolerance: 0.0,
-            mutants: &[("MIN_TILE_PIXELS + scale - 1u", "8u"), ("* CELL_SIDE;", "* 4u;")],
+            mutants: &[("MIN_TILE_PIXELS + scale - 1u", "8u"), ("* CELL_SIDE;", "* 8u;")],
         },
         Formula {
             name: "tile_counts",

@@ -21,12 +21,13 @@ fn a_system_at_1080p_half_scale_takes_at_most_8_mb_and_16_bytes_a_texel_more_if_
     println!("{:.2} MB", whole as f64 / 1e6);
     assert!(whole <= 8_000_000, "{whole} bytes");
     assert_eq!(drawn.renderer.targets(0).unwrap().size, UVec2::new(960, 540));
-    // Light and its slopes over depth: four half floats each.
+    // Light and its slopes over depth: four half floats each. Two bytes for each cell of 4x4 texels.
+    let cells = 240 * 135 * 2;
     scene.settings.accumulate.lighting_resolution = LightingResolution::Target;
-    assert_eq!(scene.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 16);
+    assert_eq!(scene.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 16 + cells);
     // Other filters than `guided` need no slopes.
     scene.settings.accumulate.upsample = Upsample::JointBilateral;
-    assert_eq!(scene.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 8);
+    assert_eq!(scene.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 8 + cells);
     scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     // Targets cover only the screen rectangle of the bounds.
     scene.bounds = Some(Bounds { min: vec3(-0.5, -0.5, -6.5), max: vec3(0.5, 0.5, -5.5) });

@@ -206,6 +206,7 @@ const ALL_PASSES: &[&str] = &[
     "accumulate",
     "light_target",
     "depth_slopes",
+    "mark_cells",
     "tile_project",
     "tile_gather",
     "tile_bin",

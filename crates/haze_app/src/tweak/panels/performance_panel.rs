@@ -253,7 +253,15 @@ mod tests {
         let names = timings.names.clone();
         let memory = timings.stats.memory;
         let of_shadow = ["density_splat", "shadow_visibility", "shadow_march"];
-        let of_all = ["depth_downsample", "accumulate", "light_target", "depth_slopes", "transfer", "specular_scatter"];
+        let of_all = [
+            "depth_downsample",
+            "accumulate",
+            "light_target",
+            "depth_slopes",
+            "mark_cells",
+            "transfer",
+            "specular_scatter",
+        ];
         assert_eq!(names, [of_shadow.as_slice(), &of_all].concat());
         for name in names.iter().chain(&[
             "Smoke buffers",
