@@ -2,6 +2,7 @@
 //! renderers. The mutated shaders are loaded at run time, through [`Sources`].
 
 use glam::Vec4;
+use haze::PathModelSource;
 use haze::builtin;
 use haze::image::Image;
 use haze::settings::{LightingResolution, RenderPath};
@@ -105,6 +106,7 @@ fn drawn_from_computed_pixels(context: &OffscreenContext, shot: &Shot, exact_fil
     let renderer = OffscreenRenderer::new(context, exact_filtering).unwrap();
     let mut model = renderer.renderer().context().path_model();
     model.raster.fragment = 100.0 * model.tiled.fragment;
+    model.source = PathModelSource::Host;
     renderer.renderer().context().set_path_model(model).unwrap();
     drawn_by(renderer, shot)
 }

@@ -27,7 +27,8 @@ const CPU_PROBE_TOLERANCE: f32 = 1.6;
 const COMPUTED_PIXELS_RATIO: f32 = 8.0;
 
 /// Cost model by which the path `auto` chooses. It also decides whether lit smoke is upsampled by a compute shader before it
-/// is drawn: if [`fragment`](PathCosts::fragment) of `raster` is at least 8 times that of `tiled`. Set it with
+/// is drawn: if the model is not the default, and [`fragment`](PathCosts::fragment) of `raster` is at least 8 times that of
+/// `tiled`. Measure it with [`Context::measure_paths`](crate::Context::measure_paths), or set it with
 /// [`Context::set_path_model`](crate::Context::set_path_model).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathModel {
@@ -204,8 +205,9 @@ impl PathModel {
 
     /// Returns true if the device computes so much faster than it draws that pixels which are computed, stored and drawn
     /// take less time than pixels which are shaded as they are drawn. Server GPUs draw with a few of their processors only.
+    /// The defaults are a server GPU's, so they tell nothing of others.
     pub(crate) fn computes_pixels(&self) -> bool {
-        self.raster.fragment >= COMPUTED_PIXELS_RATIO * self.tiled.fragment
+        self.source != PathModelSource::Gpu && self.raster.fragment >= COMPUTED_PIXELS_RATIO * self.tiled.fragment
     }
 
     pub(crate) fn validate(&self) -> Result<(), FieldError> {

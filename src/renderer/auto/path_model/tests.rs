@@ -19,6 +19,18 @@ fn workload(layers: f64) -> PathWorkload {
 }
 
 #[test]
+fn pixels_are_computed_on_devices_that_were_found_to_draw_slowly() {
+    // The device of the defaults, before and after its probe.
+    assert!(!PathModel::GPU.computes_pixels());
+    let probed = PathModel::GPU.scaled_by_probe(PathModel::GPU.probe_bias());
+    assert!(probed.computes_pixels());
+    assert!(!PathModel::of_class(wgpu::DeviceType::Cpu).computes_pixels());
+    // One that draws four times as fast.
+    let [raster, tiled] = PathModel::GPU.probe_bias();
+    assert!(!PathModel::GPU.scaled_by_probe([0.25 * raster, tiled]).computes_pixels());
+}
+
+#[test]
 fn early_stop_limits_the_cost_of_tiled_but_not_of_raster() {
     let model = PathModel::of_class(wgpu::DeviceType::Cpu);
     let [raster, tiled] = model.milliseconds(&workload(4.0));
