@@ -38,7 +38,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     let corner = tile_corner(first_texel, sprite_corner(index) * 0.5 + 0.5);
     let position = vec4f(ndc_from_pixel(corner, view.size), depth, 1.0);
     var glowing = vec2u(0u);
-    if GLOWS {
+    if GLOWS && !COMPUTED {
         glowing = lights_that_reach(tile_corner(first_texel, vec2f(0.0)), tile_corner(first_texel, vec2f(1.0)));
     }
     return TileVertex(position, glowing, filter_texel_size());
