@@ -42,7 +42,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slice: u32
 fn fragment(in: SliceVertex) -> @location(0) vec4f {
     let cell = vec3u(vec2u(in.position.xy), in.slice % march.resolution);
     if TO_SKY {
-        return vec4f(openness_of_cell(cell), 0.0, 0.0);
+        return vec4f(openness_along(cell, 0u, 1u) / f32(SKY_DIRECTIONS), 0.0, 0.0);
     }
     let block = in.slice / march.resolution;
     return vec4f(

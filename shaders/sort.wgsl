@@ -1,11 +1,12 @@
 // sort
 // Stable radix sort, 8 bits at a time: counts the digits block by block, sums up the counts, and moves every key to its
-// place. The result is the same on every device and in every run: nothing depends on subgroups or on the order of
-// atomics.
+// place. Few keys are sorted in one dispatch, which counts the smaller ones for every key. The result is the same on
+// every device and in every run: nothing depends on subgroups or on the order of atomics.
 //
 // Reads   keys, and the particle indices that belong to them.
-// Writes  the same, sorted by one digit.
-// Source  Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
+// Writes  the same, sorted by one digit, or whole.
+// Source  Merrill and Grimshaw, "High performance and scalable radix sorting", 2011; rank sort: Knuth, "The art of
+//         computer programming" 3, 5.2 (comparison counting).
 
 #import "lib/tiles.wgsl"
 #import "lib/scan.wgsl"
@@ -23,8 +24,6 @@
 
 // Lowest bit of the digit.
 override SHIFT: u32 = 0u;
-// Few keys: every workgroup counts all keys itself, without `counts`.
-override SCATTER_ONLY: bool = false;
 // Few blocks: every workgroup sums up the counts of all blocks itself.
 override WITHOUT_SCAN: bool = false;
 
@@ -33,7 +32,6 @@ const DIGITS: u32 = 256u;
 const ROUNDS: u32 = 4u;
 
 var<workgroup> digit_counts: array<atomic<u32>, DIGITS>;
-var<workgroup> counts_before: array<atomic<u32>, DIGITS>;
 // One bit for every invocation whose key has the digit, 32 per word.
 var<workgroup> digit_bits: array<atomic<u32>, 2048>;
 var<workgroup> next_places: array<u32, DIGITS>;
@@ -76,11 +74,6 @@ fn sum_counts(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id
     }
 }
 
-// Returns the keys of a block per invocation.
-fn rounds() -> u32 {
-    return select(ROUNDS, 1u, SCATTER_ONLY);
-}
-
 // Returns the number of keys that have a digit, and how many of these keys are in earlier blocks.
 fn total_and_before(digit: u32, block: u32) -> vec2u {
     if WITHOUT_SCAN {
@@ -91,20 +84,7 @@ fn total_and_before(digit: u32, block: u32) -> vec2u {
         }
         return sums;
     }
-    if !SCATTER_ONLY {
-        return vec2u(totals[digit], counts[digit * tiles.blocks + block]);
-    }
-    for (var at = digit; at < tiles.count; at += DIGITS) {
-        let other = digit_of(keys[at]);
-        if at < block * DIGITS {
-            atomicAdd(&counts_before[other], 1u);
-        } else {
-            atomicAdd(&digit_counts[other], 1u);
-        }
-    }
-    workgroupBarrier();
-    let before = atomicLoad(&counts_before[digit]);
-    return vec2u(before + atomicLoad(&digit_counts[digit]), before);
+    return vec2u(totals[digit], counts[digit * tiles.blocks + block]);
 }
 
 @compute @workgroup_size(256)
@@ -113,12 +93,12 @@ fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) b
     next_places[local] = inclusive_sum(local, counted.x) - counted.x + counted.y;
     let word = local / 32u;
     let bit = local % 32u;
-    for (var round = 0u; round < rounds(); round++) {
+    for (var round = 0u; round < ROUNDS; round++) {
         for (var i = local; i < 2048u; i += DIGITS) {
             atomicStore(&digit_bits[i], 0u);
         }
         workgroupBarrier();
-        let at = (block.x * rounds() + round) * DIGITS + local;
+        let at = (block.x * ROUNDS + round) * DIGITS + local;
         let is_inside = at < tiles.count;
         var key = 0u;
         var digit = 0u;
@@ -146,5 +126,33 @@ fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) b
                 next_places[digit] = place + 1u;
             }
         }
+    }
+}
+
+// Keys per workgroup of `rank`; RANKED_KEYS in src/renderer/pass/sort.rs.
+const RANKED_KEYS: u32 = 8u;
+// Invocations that count for the same key.
+const COUNTERS: u32 = 32u;
+
+// Number of keys that come before each key of the workgroup.
+var<workgroup> ranks: array<atomic<u32>, RANKED_KEYS>;
+
+// Moves every key to its place in one dispatch, for few keys: each is compared with all.
+@compute @workgroup_size(256)
+fn rank(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) block: vec3u) {
+    let ranked = local / COUNTERS;
+    let at = block.x * RANKED_KEYS + ranked;
+    let key = keys[min(at, tiles.count - 1u)];
+    var before = 0u;
+    for (var other = local % COUNTERS; other < tiles.count; other += COUNTERS) {
+        let other_key = keys[other];
+        before += u32(other_key < key || (other_key == key && other < at));
+    }
+    atomicAdd(&ranks[ranked], before);
+    workgroupBarrier();
+    if local % COUNTERS == 0u && at < tiles.count {
+        let place = atomicLoad(&ranks[ranked]);
+        sorted_keys[place] = key;
+        sorted_indices[place] = indices[at];
     }
 }

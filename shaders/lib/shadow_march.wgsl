@@ -18,9 +18,10 @@ struct ShadowMarch {
     resolution: u32,
     // Block of the openness.
     openness_block: u32,
+    // Number of blocks of lights.
+    light_blocks: u32,
     padding0: u32,
     padding1: u32,
-    padding2: u32,
 }
 
 @group(0) @binding(0) var<uniform> march: ShadowMarch;
@@ -45,17 +46,17 @@ fn optical_depth_of_light(cell: vec3u, block: u32, light: u32) -> f32 {
     return optical_depth_towards(towards, march.radii[block][light], vec3f(cell) + 0.5, SHADOW_STEPS);
 }
 
-// Mean of 2^(-optical depth) over the directions to the sky, or, with a `side` of -1, to the ground.
-fn openness_towards(side: f32, origin: vec3f) -> f32 {
-    var sum = 0.0;
-    for (var i = 0u; i < SKY_DIRECTIONS; i++) {
-        sum += exp2(-optical_depth_towards(vec4f(march.sky[i].xyz * side, 1.0), 0.0, origin, SKY_STEPS));
-    }
-    return sum / f32(SKY_DIRECTIONS);
-}
+// Rays of a cell: to the sky, and opposite to them to the ground.
+const SKY_RAYS: u32 = 2u * SKY_DIRECTIONS;
 
-// Openness of a cell to sky and ground.
-fn openness_of_cell(cell: vec3u) -> vec2f {
-    let origin = vec3f(cell) + 0.5;
-    return vec2f(openness_towards(1.0, origin), openness_towards(-1.0, origin));
+// Sum of 2^(-optical depth) over every `stride`th ray from the first on: to the sky in x, to the ground in y.
+fn openness_along(cell: vec3u, first: u32, stride: u32) -> vec2f {
+    var sum = vec2f(0.0);
+    for (var ray = first; ray < SKY_RAYS; ray += stride) {
+        let to_ground = ray >= SKY_DIRECTIONS;
+        let direction = march.sky[ray % SKY_DIRECTIONS].xyz * select(1.0, -1.0, to_ground);
+        let depth = optical_depth_towards(vec4f(direction, 1.0), 0.0, vec3f(cell) + 0.5, SKY_STEPS);
+        sum += select(vec2f(1.0, 0.0), vec2f(0.0, 1.0), to_ground) * exp2(-depth);
+    }
+    return sum;
 }

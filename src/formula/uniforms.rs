@@ -149,7 +149,8 @@ uniform! {
         size: Vec3,
         resolution: u32,
         openness_block: u32,
-        padding: [u32; 3],
+        light_blocks: u32,
+        padding: [u32; 2],
     }
 }
 

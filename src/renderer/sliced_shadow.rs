@@ -8,7 +8,7 @@ use super::gpu::idle_counter::IdleCounter;
 use super::gpu::record::uniform_buffer;
 use super::layouts::bind_resources;
 use super::pass::VolumeSlices;
-use super::pass::shadow_march::MarchTo;
+use super::pass::shadow_march_slice::MarchTo;
 use super::shadow_map_bindings::ShadowMapBindings;
 use super::tiled::{FrameShadow, volume};
 use crate::formula::uniforms::{ShadowMarchUniform, SystemUniform};

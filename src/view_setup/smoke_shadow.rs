@@ -146,13 +146,15 @@ impl SmokeShadow {
                 size: grid.size.as_vec3(),
                 resolution,
                 openness_block: 0,
-                padding: [0; 3],
+                light_blocks: 0,
+                padding: [0; 2],
             },
             on_scene,
             has_visibility,
             has_openness,
         };
         shadow.march.openness_block = shadow.openness_block();
+        shadow.march.light_blocks = shadow.used_light_blocks();
         Some(shadow)
     }
 

@@ -84,6 +84,24 @@ const SPLIT_MUTANTS: &[Mutant] = &[
     ("parts that overlap", "tile_accumulate.wgsl", "min(start + length, entries)", "entries"),
 ];
 
+/// Mistakes in the sort of few sprites by GPUs.
+const RANK_MUTANTS: &[Mutant] = &[
+    ("sorted back to front", "sort.wgsl", "other_key < key ||", "other_key > key ||"),
+    ("keys of the first workgroup", "sort.wgsl", "block.x * RANKED_KEYS + ranked", "ranked"),
+];
+
+/// Mistakes in the marches of GPUs through the density grid.
+const MARCH_MUTANTS: &[Mutant] = &[
+    ("no sky", "shadow_march.wgsl", "block < march.light_blocks", "block <= march.light_blocks"),
+    ("some rays to the sky", "shadow_march.wgsl", "openness_along(cell, ray,", "openness_along(cell, 2u,"),
+    (
+        "one light",
+        "shadow_march.wgsl",
+        "optical_depth_of_light(cell, block, ray)",
+        "optical_depth_of_light(cell, block, 0u)",
+    ),
+];
+
 /// A context with one shader replaced.
 fn context((name, file, from, to): &Mutant) -> OffscreenContext {
     let text = shader::source(file).unwrap();
@@ -108,6 +126,13 @@ fn drawn_from_computed_pixels(context: &OffscreenContext, shot: &Shot, exact_fil
     model.raster.fragment = 100.0 * model.tiled.fragment;
     model.source = PathModelSource::Host;
     renderer.renderer().context().set_path_model(model).unwrap();
+    drawn_by(renderer, shot)
+}
+
+/// As `drawn`, with the traversal and the sort of GPUs.
+fn drawn_cooperatively(context: &OffscreenContext, shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
+    let renderer = OffscreenRenderer::new(context, exact_filtering).unwrap();
+    renderer.renderer().context().set_cooperative_traversal(true);
     drawn_by(renderer, shot)
 }
 
@@ -149,12 +174,14 @@ fn mistakes_in_drawn_cells_change_the_frame() {
 }
 
 #[test]
-fn mistakes_in_tiles_their_glow_and_their_lists_change_the_frame() {
+fn mistakes_in_compute_passes_change_the_frame() {
     if is_tiled_available() {
         expect_changes("campfire", false, TILE_MUTANTS, drawn);
         expect_changes("backlit_fog", false, GLOW_MUTANTS, drawn);
         expect_changes("backlit_fog", true, SPLIT_MUTANTS, drawn);
         expect_changes("campfire", false, PIXEL_MUTANTS, drawn_from_computed_pixels);
+        expect_changes("campfire", false, RANK_MUTANTS, drawn_cooperatively);
+        expect_changes("column", false, MARCH_MUTANTS, drawn_cooperatively);
     }
 }
 

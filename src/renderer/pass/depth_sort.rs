@@ -29,22 +29,29 @@ pub(crate) struct DepthSort {
     pub depth_keys: wgpu::ComputePipeline,
     pub sort: Sort,
     pub gather_particles: wgpu::ComputePipeline,
-    /// Group 3 of both pipelines.
-    pub inputs: wgpu::BindGroup,
+    /// Group 3, with the keys before the sort and after it.
+    pub unsorted: wgpu::BindGroup,
+    pub sorted: wgpu::BindGroup,
     pub particles: u32,
 }
 
 impl DepthSort {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, groups: &Groups) {
-        self.dispatch(pass, groups, &self.depth_keys);
+        self.dispatch(pass, groups, &self.depth_keys, &self.unsorted);
         self.sort.record(pass);
-        self.dispatch(pass, groups, &self.gather_particles);
+        self.dispatch(pass, groups, &self.gather_particles, &self.sorted);
     }
 
-    fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, groups: &Groups, pipeline: &wgpu::ComputePipeline) {
+    fn dispatch(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        groups: &Groups,
+        pipeline: &wgpu::ComputePipeline,
+        inputs: &wgpu::BindGroup,
+    ) {
         pass.set_pipeline(pipeline);
         groups.bind_to_compute(pass);
-        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.set_bind_group(3, inputs, &[]);
         pass.dispatch_workgroups(self.particles.div_ceil(64), 1, 1);
     }
 }

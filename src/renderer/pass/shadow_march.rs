@@ -13,30 +13,25 @@ use crate::renderer::gpu::timing::Timing;
 /// Cells of a workgroup along each axis: SIDE in `shaders/shadow_march.wgsl`.
 const SIDE: u32 = 4;
 
-/// Ends of the marches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum MarchTo {
-    Lights,
-    Sky,
-}
-
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum ShadowMarchKey {
     CopyDensity,
-    MarchTo(MarchTo),
+    MarchCells,
+    /// To sky and ground, on CPUs.
+    MarchSky,
 }
 
 impl ShadowMarchKey {
-    pub const ALL: [Self; 3] = [Self::CopyDensity, Self::MarchTo(MarchTo::Lights), Self::MarchTo(MarchTo::Sky)];
+    pub const ALL: [Self; 3] = [Self::CopyDensity, Self::MarchCells, Self::MarchSky];
 }
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: ShadowMarchKey) -> ComputePipelineDescription {
     let entry_point = match key {
         ShadowMarchKey::CopyDensity => "copy_density",
-        ShadowMarchKey::MarchTo(MarchTo::Lights) => "march_cells",
-        ShadowMarchKey::MarchTo(MarchTo::Sky) => "march_sky",
+        ShadowMarchKey::MarchCells => "march_cells",
+        ShadowMarchKey::MarchSky => "march_sky",
     };
     ComputePipelineDescription { entry_point, constants: Vec::new() }
 }
@@ -47,15 +42,15 @@ pub(crate) struct ShadowMarch {
     pub copy_density: wgpu::ComputePipeline,
     /// Group 0 of `copy_density`.
     pub copy_inputs: wgpu::BindGroup,
-    pub to_lights: wgpu::ComputePipeline,
-    /// `None` if no system has ambient light that smoke shades.
-    pub to_sky: Option<wgpu::ComputePipeline>,
+    pub march_cells: wgpu::ComputePipeline,
+    /// Marches to sky and ground, if `march_cells` does not.
+    pub march_sky: Option<wgpu::ComputePipeline>,
     /// Group 0 of the marches.
-    pub inputs: wgpu::BindGroup,
+    pub march_inputs: wgpu::BindGroup,
     /// Number of cells along each axis.
     pub size: UVec3,
-    /// Number of blocks of lights.
-    pub light_blocks: u32,
+    /// Number of blocks that `march_cells` writes.
+    pub blocks: u32,
 }
 
 impl ShadowMarch {
@@ -67,12 +62,13 @@ impl ShadowMarch {
         pass.set_pipeline(&self.copy_density);
         pass.set_bind_group(0, &self.copy_inputs, &[]);
         pass.dispatch_workgroups(x, y, z);
-        pass.set_bind_group(0, &self.inputs, &[]);
-        let marches = [(Some(&self.to_lights), self.light_blocks), (self.to_sky.as_ref(), 1)];
-        for (pipeline, blocks) in marches.into_iter().filter_map(|(pipeline, blocks)| Some((pipeline?, blocks))) {
-            pass.set_pipeline(pipeline);
-            let along_z = workgroups(self.size.z) * blocks;
-            pass.dispatch_workgroups(workgroups(self.size.x), workgroups(self.size.y), along_z);
+        let [x, y, z] = self.size.to_array().map(workgroups);
+        pass.set_pipeline(&self.march_cells);
+        pass.set_bind_group(0, &self.march_inputs, &[]);
+        pass.dispatch_workgroups(x, y, z * self.blocks);
+        if let Some(march_sky) = &self.march_sky {
+            pass.set_pipeline(march_sky);
+            pass.dispatch_workgroups(x, y, z);
         }
     }
 }

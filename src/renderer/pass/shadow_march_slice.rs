@@ -4,9 +4,15 @@
 //! Writes: optical depths towards the lights; openness to sky and ground.
 //! Blend: none.
 
-use super::shadow_march::MarchTo;
 use super::volume_slice;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant};
+
+/// Ends of the marches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MarchTo {
+    Lights,
+    Sky,
+}
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: MarchTo) -> RenderPipelineDescription {

@@ -1,8 +1,9 @@
-//! sort: stable radix sort of keys and of the particle indices that belong to them (`indices`).
+//! sort: stable sort of keys and of the particle indices that belong to them (`indices`): by their ranks if there are few,
+//! else a radix sort.
 //!
-//! Reads and writes: keys and indices, alternating between two pairs of buffers; after four digits the result is in the
-//! first pair.
-//! Source: Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
+//! Reads and writes: keys and indices, alternating between two pairs of buffers. The result is in the first pair.
+//! Source: Merrill and Grimshaw, "High performance and scalable radix sorting", 2011; rank sort: Knuth, "The art of
+//! computer programming" 3, 5.2 (comparison counting).
 
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
 
@@ -12,9 +13,10 @@ pub(crate) const BLOCK: u32 = 1024;
 pub(crate) const DIGITS: u32 = 256;
 /// Number of digits of a key.
 const DIGITS_PER_KEY: u32 = 4;
-/// Up to this many keys, every workgroup on a GPU counts the digits of all keys itself, which takes less time than
-/// dispatches that wait for each other.
-const MAX_KEYS_SCATTER_ONLY: u32 = 8192;
+/// Up to this many keys, a GPU compares each key with all, which takes less time than dispatches that wait for each other.
+const MAX_RANKED_KEYS: u32 = 8192;
+/// Keys per workgroup of `rank` in `shaders/sort.wgsl`.
+const RANKED_KEYS: u32 = 8;
 /// Up to this many keys, every workgroup on a CPU sums up the counts of all blocks itself, because barriers within a
 /// workgroup are slow on CPUs.
 const MAX_KEYS_WITHOUT_SCAN: u32 = 128 * BLOCK;
@@ -24,15 +26,7 @@ const MAX_KEYS_WITHOUT_SCAN: u32 = 128 * BLOCK;
 pub(crate) struct SortKey {
     step: Step,
     digit: u32,
-    variant: SortVariant,
-}
-
-/// Size class of the number of keys.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum SortVariant {
-    ScatterOnly,
-    WithoutScan,
-    WithScan,
+    without_scan: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,6 +34,7 @@ enum Step {
     CountDigits,
     SumCounts,
     Scatter,
+    Rank,
 }
 
 /// Maximum number of pipelines of one sort.
@@ -48,17 +43,29 @@ pub(crate) const MAX_PIPELINES: usize = 3 * DIGITS_PER_KEY as usize;
 /// Returns the keys of the pipelines that sort `count` keys, in order. `cooperative`: true for cooperative workgroups,
 /// as on GPUs.
 pub(crate) fn keys(cooperative: bool, count: u32) -> impl Iterator<Item = SortKey> {
-    let (variant, steps): (_, &[Step]) = match (cooperative, count) {
-        (true, 0..=MAX_KEYS_SCATTER_ONLY) => (SortVariant::ScatterOnly, &[Step::Scatter]),
-        (false, 0..=MAX_KEYS_WITHOUT_SCAN) => (SortVariant::WithoutScan, &[Step::CountDigits, Step::Scatter]),
-        _ => (SortVariant::WithScan, &[Step::CountDigits, Step::SumCounts, Step::Scatter]),
+    let without_scan = !cooperative && count <= MAX_KEYS_WITHOUT_SCAN;
+    let (digits, steps): (_, &[Step]) = if is_ranked(cooperative, count) {
+        (1, &[Step::Rank])
+    } else if without_scan {
+        (DIGITS_PER_KEY, &[Step::CountDigits, Step::Scatter])
+    } else {
+        (DIGITS_PER_KEY, &[Step::CountDigits, Step::SumCounts, Step::Scatter])
     };
-    (0..DIGITS_PER_KEY).flat_map(move |digit| steps.iter().map(move |&step| SortKey { step, digit, variant }))
+    (0..digits).flat_map(move |digit| steps.iter().map(move |&step| SortKey { step, digit, without_scan }))
 }
 
 /// Returns the keys of all pipelines that sort any number of keys.
 pub(crate) fn all_keys(cooperative: bool) -> impl Iterator<Item = SortKey> {
     [0, u32::MAX].into_iter().flat_map(move |count| keys(cooperative, count))
+}
+
+/// Returns the pair of buffers from which `count` keys are sorted into the first: the second if one dispatch does it.
+pub(crate) fn unsorted_pair(cooperative: bool, count: u32) -> usize {
+    usize::from(is_ranked(cooperative, count))
+}
+
+fn is_ranked(cooperative: bool, count: u32) -> bool {
+    cooperative && count <= MAX_RANKED_KEYS
 }
 
 /// Returns the pipeline's parts for a key.
@@ -68,11 +75,11 @@ pub(crate) fn describe(key: SortKey) -> ComputePipelineDescription {
             Step::CountDigits => "count_digits",
             Step::SumCounts => "sum_counts",
             Step::Scatter => "scatter",
+            Step::Rank => "rank",
         },
         constants: vec![
             ("SHIFT", f64::from(key.digit * DIGITS.ilog2())),
-            bool_constant("SCATTER_ONLY", key.variant == SortVariant::ScatterOnly),
-            bool_constant("WITHOUT_SCAN", key.variant == SortVariant::WithoutScan),
+            bool_constant("WITHOUT_SCAN", key.without_scan),
         ],
     }
 }
@@ -90,12 +97,12 @@ pub(crate) struct Sort {
 impl Sort {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
         for (key, pipeline) in self.pipelines.iter().flatten() {
-            let workgroups = match key {
-                SortKey { step: Step::SumCounts, .. } => DIGITS,
-                SortKey { variant: SortVariant::ScatterOnly, .. } => self.keys.div_ceil(DIGITS),
-                _ => self.keys.div_ceil(BLOCK),
+            let (from, workgroups) = match key.step {
+                Step::Rank => (1, self.keys.div_ceil(RANKED_KEYS)),
+                Step::SumCounts => (key.digit % 2, DIGITS),
+                Step::CountDigits | Step::Scatter => (key.digit % 2, self.keys.div_ceil(BLOCK)),
             };
-            pass.set_bind_group(0, &self.ping_pong[key.digit as usize % 2], &[]);
+            pass.set_bind_group(0, &self.ping_pong[from as usize], &[]);
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(workgroups, 1, 1);
         }

@@ -13,7 +13,7 @@ use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::layouts::SHADOW_FORMAT;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::density_splat::DensitySplat;
-use crate::renderer::pass::shadow_march::{MarchTo, ShadowMarch, ShadowMarchKey};
+use crate::renderer::pass::shadow_march::{ShadowMarch, ShadowMarchKey};
 use crate::renderer::pass::shadow_visibility::ShadowVisibility;
 use crate::renderer::shadow_map_bindings::ShadowMapBindings;
 use crate::renderer::sprite_instances::Sprites;
@@ -98,15 +98,16 @@ impl ShadowVolume {
     /// Returns the pass that marches to the lights.
     pub fn march(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowMarch> {
         let buffers = self.buffers.as_ref()?;
-        let march_to = |end| tiled.shadow_march.get(ShadowMarchKey::MarchTo(end));
+        let marches_together = tiled.cooperative() && shadow.has_openness;
+        let marches_apart = !tiled.cooperative() && shadow.has_openness;
         Some(ShadowMarch {
             copy_density: tiled.shadow_march.get(ShadowMarchKey::CopyDensity),
             copy_inputs: buffers.copy_density.clone(),
-            to_lights: march_to(MarchTo::Lights),
-            to_sky: shadow.has_openness.then(|| march_to(MarchTo::Sky)),
-            inputs: buffers.march.clone(),
+            march_cells: tiled.shadow_march.get(ShadowMarchKey::MarchCells),
+            march_sky: marches_apart.then(|| tiled.shadow_march.get(ShadowMarchKey::MarchSky)),
+            march_inputs: buffers.march.clone(),
             size: shadow.grid.size,
-            light_blocks: shadow.used_light_blocks(),
+            blocks: shadow.used_light_blocks() + u32::from(marches_together),
         })
     }
 

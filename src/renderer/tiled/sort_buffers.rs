@@ -7,7 +7,7 @@ use crate::renderer::pass::sort::{BLOCK, DIGITS};
 /// Keys, the particle indices that belong to them, and digit counts.
 #[derive(Debug)]
 pub(super) struct SortBuffers {
-    /// Two pairs, which the sort uses alternately. It begins and ends in the first.
+    /// Two pairs, which the sort uses alternately. It ends in the first.
     keys: [wgpu::Buffer; 2],
     indices: [wgpu::Buffer; 2],
     digit_counts: wgpu::Buffer,
@@ -30,12 +30,9 @@ impl SortBuffers {
         Self { keys, indices, digit_counts, digit_totals, ping_pong }
     }
 
-    pub fn keys(&self) -> &wgpu::Buffer {
-        &self.keys[0]
-    }
-
-    pub fn indices(&self) -> &wgpu::Buffer {
-        &self.indices[0]
+    /// Returns the keys of a pair and their indices.
+    pub fn pair(&self, pair: usize) -> [&wgpu::Buffer; 2] {
+        [&self.keys[pair], &self.indices[pair]]
     }
 
     /// Returns the bytes of keys and indices, and of counts.

@@ -27,8 +27,8 @@ struct DepthSortBuffers {
     uniform: wgpu::Buffer,
     sort: SortBuffers,
     particles: wgpu::Buffer,
-    /// Bind group with the host's own buffer; recreated when that is another.
-    inputs: Option<(ParticleRange, wgpu::BindGroup)>,
+    /// Bind groups with the host's own buffer, by the pair of keys; recreated when that is another.
+    inputs: Option<(ParticleRange, [wgpu::BindGroup; 2])>,
 }
 
 impl SortedParticles {
@@ -48,11 +48,13 @@ impl SortedParticles {
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
         let buffer = buffers.particles.clone();
         let sorted = Sprites { buffer, offset: 0, is_sorted: true, by_view_depth: true, ..*sprites };
+        let [first, second] = buffers.bind(gpu.device, tiled, range);
         let sort = DepthSort {
             depth_keys: tiled.depth_sort.get(DepthSortKey::DepthKeys),
             sort: Sort { pipelines: tiled.sort(count), ping_pong: buffers.sort.ping_pong.clone(), keys: count },
             gather_particles: tiled.depth_sort.get(DepthSortKey::GatherParticles),
-            inputs: buffers.bind(gpu.device, tiled, range),
+            unsorted: if tiled.unsorted_pair(count) == 0 { first.clone() } else { second },
+            sorted: first,
             particles: count,
         };
         (sorted, sort)
@@ -84,17 +86,18 @@ impl DepthSortBuffers {
         Self { capacity, sort: SortBuffers::new(device, tiled, &uniform, capacity), uniform, particles, inputs: None }
     }
 
-    fn bind(&mut self, device: &wgpu::Device, tiled: &TiledPipelines, range: ParticleRange) -> wgpu::BindGroup {
-        match &self.inputs {
-            Some((bound, group)) if *bound == range => group.clone(),
-            _ => {
-                let own = [self.sort.keys(), self.sort.indices(), &self.particles];
+    /// Returns the bind groups by the pair of keys.
+    fn bind(&mut self, device: &wgpu::Device, tiled: &TiledPipelines, range: ParticleRange) -> [wgpu::BindGroup; 2] {
+        let bound = self.inputs.take().filter(|(bound, _)| *bound == range);
+        let (_, groups) = self.inputs.insert(bound.unwrap_or_else(|| {
+            let groups = [0, 1].map(|pair| {
+                let [keys, indices] = self.sort.pair(pair);
+                let own = [keys, indices, &self.particles].map(wgpu::Buffer::as_entire_binding);
                 let resources = [self.uniform.as_entire_binding(), range.binding()];
-                let resources = resources.into_iter().chain(own.map(wgpu::Buffer::as_entire_binding));
-                let group = bind(device, &tiled.layouts.depth_sort, resources);
-                self.inputs = Some((range, group.clone()));
-                group
-            }
-        }
+                bind(device, &tiled.layouts.depth_sort, resources.into_iter().chain(own))
+            });
+            (range, groups)
+        }));
+        groups.clone()
     }
 }

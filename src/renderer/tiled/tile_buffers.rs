@@ -42,8 +42,9 @@ pub(super) struct TileBuffers {
     pub read_back: Arc<wgpu::Buffer>,
     pub gather: wgpu::BindGroup,
     pub bin: wgpu::BindGroup,
-    /// Bind groups that include resources from outside, next to those resources; recreated when the resources change.
-    project: Option<(ParticleRange, wgpu::BindGroup)>,
+    /// Bind groups that include resources from outside, next to those resources; recreated when the resources change. The
+    /// first ones: by the pair of buffers that the keys are written to.
+    project: Option<(ParticleRange, [wgpu::BindGroup; 2])>,
     refine: Option<(wgpu::TextureView, wgpu::BindGroup)>,
     accumulate: Option<(Vec<wgpu::TextureView>, wgpu::BindGroup)>,
 }
@@ -115,9 +116,10 @@ impl TileBuffers {
             mapped_at_creation: false,
         });
         let workgroups = workgroups(device, "haze bin workgroups");
-        let gather = [&uniform, sort.keys(), sort.indices(), &rects, &sorted_rects, &counters, &workgroups];
+        let [sorted_keys, sorted_indices] = sort.pair(0);
+        let gather = [&uniform, sorted_keys, sorted_indices, &rects, &sorted_rects, &counters, &workgroups];
         let gather = bind(device, &tiled.layouts.gather, gather.map(wgpu::Buffer::as_entire_binding));
-        let bin = [&uniform, sort.indices(), &sorted_rects, &bin_counts, &lists, &bins, &counters];
+        let bin = [&uniform, sorted_indices, &sorted_rects, &bin_counts, &lists, &bins, &counters];
         let bin = bind(device, &tiled.layouts.bin, bin.map(wgpu::Buffer::as_entire_binding));
         Self {
             capacity,
@@ -153,19 +155,26 @@ impl TileBuffers {
         }
     }
 
-    pub fn bind_project(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, particles: ParticleRange) -> wgpu::BindGroup {
-        match &self.project {
-            Some((bound, group)) if *bound == particles => group.clone(),
-            _ => {
-                let Self { uniform, sprites, sprite_values, rects, sort, .. } = self;
-                let buffers = [&*sprites, rects, sort.keys(), sort.indices(), sprite_values];
-                let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
+    /// `pair`: pair of buffers that the keys are written to.
+    pub fn bind_project(
+        &mut self,
+        gpu: &Gpu<'_>,
+        tiled: &TiledPipelines,
+        particles: ParticleRange,
+        pair: usize,
+    ) -> wgpu::BindGroup {
+        let bound = self.project.take().filter(|(bound, _)| *bound == particles);
+        let (_, groups) = self.project.insert(bound.unwrap_or_else(|| {
+            let Self { uniform, sprites, sprite_values, rects, sort, .. } = self;
+            let groups = [0, 1].map(|pair| {
+                let [keys, indices] = sort.pair(pair);
+                let buffers = [&*sprites, rects, keys, indices, sprite_values].map(wgpu::Buffer::as_entire_binding);
                 let own = [uniform.as_entire_binding(), particles.binding()];
-                let group = bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers));
-                self.project = Some((particles, group.clone()));
-                group
-            }
-        }
+                bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers))
+            });
+            (particles, groups)
+        }));
+        groups[pair].clone()
     }
 
     pub fn bind_refine(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, depth: &wgpu::TextureView) -> wgpu::BindGroup {
@@ -198,7 +207,8 @@ impl TileBuffers {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {
                 let Self { uniform, sprites, sprite_values, rects, sort, lists, bins, .. } = self;
-                let buffers = [&*uniform, sprites, rects, sort.indices(), lists, bins];
+                let [_, indices] = sort.pair(0);
+                let buffers = [&*uniform, sprites, rects, indices, lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
                 let resources = resources.chain([sprite_values.as_entire_binding()]);

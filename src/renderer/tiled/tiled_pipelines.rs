@@ -215,6 +215,11 @@ impl TiledPipelines {
         std::array::from_fn(|_| keys.next())
     }
 
+    /// Returns the pair of buffers in which that sort expects its keys.
+    pub fn unsorted_pair(&self, count: u32) -> usize {
+        sort::unsorted_pair(self.cooperative(), count)
+    }
+
     /// Returns the pipelines of a system with `count` sprites. `sorts`: true if the sprites are unsorted and their
     /// order matters.
     pub fn pipelines(&self, keys: TiledKeys, sorts: bool, count: u32) -> SystemPipelines {

@@ -124,7 +124,8 @@ impl TiledSystem {
         };
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
         let pipelines = tiled.pipelines(keys, sorts, sprites.count);
-        let project = buffers.bind_project(gpu, tiled, particles);
+        let pair = if sorts { tiled.unsorted_pair(sprites.count) } else { 0 };
+        let project = buffers.bind_project(gpu, tiled, particles, pair);
         let refine = pipelines.refine.map(|pipeline| {
             let inputs = buffers.bind_refine(gpu, tiled, depth);
             TileRefine { pipeline, inputs, bins }
