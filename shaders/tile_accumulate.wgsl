@@ -120,10 +120,12 @@ fn sprite_index(list: vec2u, at: u32) -> u32 {
 // workgroup memory. Each invocation has two texels, one below the other, so that it has other work while it waits for a
 // texture lookup.
 const TILE: vec2u = vec2u(8u, 16u);
-const BATCH: u32 = 64u;
-// Parts of the list that a workgroup of `split` traverses at the same time, where a target has too few texels to keep the
-// adapter busy: most of the time is then spent waiting for lookups.
+// Parts of the list that a workgroup of `split` or `split_finely` traverses at the same time, where a target has too few
+// texels to keep the adapter busy: most of the time is then spent waiting for lookups.
 const SPLIT: u32 = 4u;
+const FINE_SPLIT: u32 = 8u;
+const FINE_TILE: vec2u = vec2u(8u, 8u);
+const BATCH: u32 = 64u;
 const INVOCATIONS: u32 = 64u;
 
 // Sprites of a batch that touch the tile, part by part, front to back.
@@ -134,7 +136,7 @@ var<workgroup> touching: array<atomic<u32>, 2>;
 // 1 if any texel of the tile is not done.
 var<workgroup> unfinished: atomic<u32>;
 // Front of the batch's first sprite in each part, view depth.
-var<workgroup> fronts: array<f32, SPLIT>;
+var<workgroup> fronts: array<f32, FINE_SPLIT>;
 // Bits of the farthest view depth of the scene in the tile. It is positive, so that its bits order as an integer.
 var<workgroup> farthest: atomic<u32>;
 // Texels of one part, as the targets' textures. The amount's place has the transmittance.
@@ -148,15 +150,25 @@ struct TexelPair {
 
 @compute @workgroup_size(8, 8)
 fn cooperative(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
-    write_pair(first_texel(workgroup, local), traverse_part(workgroup.xy * TILE, local, 1u));
+    let low = workgroup.xy * TILE;
+    write_pair(first_texel(low, local), traverse_part(low, TILE, local, 1u));
 }
 
 @compute @workgroup_size(8, 8, SPLIT)
 fn split(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
+    traverse_parts(workgroup.xy * TILE, TILE, local, SPLIT);
+}
+
+@compute @workgroup_size(8, 4, FINE_SPLIT)
+fn split_finely(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
+    traverse_parts(workgroup.xy * FINE_TILE, FINE_TILE, local, FINE_SPLIT);
+}
+
+// Traverses all parts, and adds each behind the one in front of it, from the back. `low`: first texel of the tile.
+fn traverse_parts(low: vec2u, tile: vec2u, local: vec3u, parts: u32) {
     let index = index_in_part(local);
-    var texels = traverse_part(workgroup.xy * TILE, local, SPLIT);
-    // Adds each part behind the one in front of it, from the back.
-    for (var part = SPLIT - 1u; part > 0u; part--) {
+    var texels = traverse_part(low, tile, local, parts);
+    for (var part = parts - 1u; part > 0u; part--) {
         if local.z == part {
             behind[index] = slots_of(texels.a);
         }
@@ -175,12 +187,12 @@ fn split(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) work
         workgroupBarrier();
     }
     if local.z == 0u {
-        write_pair(first_texel(workgroup, local), texels);
+        write_pair(first_texel(low, local), texels);
     }
 }
 
-fn first_texel(tile: vec3u, local: vec3u) -> vec2u {
-    return tile.xy * TILE + local.xy * vec2u(1u, 2u);
+fn first_texel(low: vec2u, local: vec3u) -> vec2u {
+    return low + local.xy * vec2u(1u, 2u);
 }
 
 fn index_in_part(local: vec3u) -> u32 {
@@ -218,11 +230,11 @@ fn write_pair(place: vec2u, texels: TexelPair) {
 
 // Traverses a part of a tile's list: that of the invocation, of so many parts. All invocations of a workgroup call it.
 // `low`: first texel of the tile.
-fn traverse_part(low: vec2u, local_place: vec3u, parts: u32) -> TexelPair {
+fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> TexelPair {
     let size = vec2u(system.target_size);
     let part = local_place.z;
     let local = index_in_part(local_place);
-    let place = low + local_place.xy * vec2u(1u, 2u);
+    let place = first_texel(low, local_place);
     var a = init_texel(min(place, size - 1u));
     var b = init_texel(min(place + vec2u(0u, 1u), size - 1u));
     atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
@@ -234,7 +246,7 @@ fn traverse_part(low: vec2u, local_place: vec3u, parts: u32) -> TexelPair {
     let share = BATCH / parts;
     let start = part * length;
     let stop = min(start + length, entries);
-    let middle = vec2f(low) + 0.5 * vec2f(TILE);
+    let middle = vec2f(low) + 0.5 * vec2f(tile);
     workgroupBarrier();
     let end = bitcast<f32>(atomicLoad(&farthest)) + system.show_through_distance;
     for (var first = 0u; first < length; first += share) {
@@ -259,13 +271,13 @@ fn traverse_part(low: vec2u, local_place: vec3u, parts: u32) -> TexelPair {
                 fronts[part] = sprite_front(sprites[index].centre_radius);
             }
             // Most sprites of a bin do not touch this tile: reads only the rectangle of those.
-            if rects_meet(rects[index], low, low + TILE) {
+            if rects_meet(rects[index], low, low + tile) {
                 sprite = sprites[index];
                 if has_values() {
                     values = sprite_values[index];
                 }
                 // Only texel centres count.
-                let reach = reach_in_square(sprite, 0.5 * vec2f(TILE - 1u));
+                let reach = reach_in_square(sprite, 0.5 * vec2f(tile - 1u));
                 let meets = is_sphere() || square_fills(sprite, uv_in_square(sprite, middle), reach);
                 is_kept = meets && sprite_front(sprite.centre_radius) <= end;
             }

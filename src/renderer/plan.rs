@@ -12,7 +12,7 @@ use super::pass::forward::ForwardKey;
 use super::pass::light_target::LightingKey;
 use super::pass::mark_cells::MarkCellsKey;
 use super::pass::specular_scatter::SpecularScatterKey;
-use super::pass::tile_accumulate::TileAccumulateKey;
+use super::pass::tile_accumulate::{TileAccumulateKey, Traversal};
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::{BoundingBoxKey, TransferKey};
 use super::pass::transfer_lit::{Tiles, TransferLitKey};
@@ -295,8 +295,10 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filt
             // With weighted normals every sprite counts, even behind opaque smoke.
             stops: layers == Layers::Visible && !weighted,
             // Per-invocation traversal loads sprite texels in its own way, which is not the reference's filter.
-            cooperative: cooperative || exact_filtering,
-            split: false,
+            traversal: match cooperative || exact_filtering {
+                true => Traversal::Cooperative,
+                false => Traversal::PerInvocation,
+            },
         },
     }
 }

@@ -196,6 +196,7 @@ const INDIRECT: &[(&str, &str)] = &[
     ("first_texel", "places the texels of an invocation; whole frames of the path tiled cover it"),
     ("index_in_part", "numbers the invocations of a part; whole frames of the path tiled cover it"),
     ("traverse_part", "waits for its workgroup; mutants of the parts of a list cover it"),
+    ("traverse_parts", "waits for its workgroup; mutants of the parts of a list cover it"),
     ("slots_of", "calls slots_from_attachments"),
     ("with_behind", "adds a struct member by member; mutants of the parts of a list cover it"),
     ("write_pair", "calls write_texel"),

@@ -178,7 +178,9 @@ fn mistakes_in_compute_passes_change_the_frame() {
     if is_tiled_available() {
         expect_changes("campfire", false, TILE_MUTANTS, drawn);
         expect_changes("backlit_fog", false, GLOW_MUTANTS, drawn);
+        // In eight parts, and, with more tiles, in four.
         expect_changes("backlit_fog", true, SPLIT_MUTANTS, drawn);
+        expect_changes_in(&tiled_shot("oil_fire", 1), true, SPLIT_MUTANTS, drawn);
         expect_changes("campfire", false, PIXEL_MUTANTS, drawn_from_computed_pixels);
         expect_changes("campfire", false, RANK_MUTANTS, drawn_cooperatively);
         expect_changes("column", false, MARCH_MUTANTS, drawn_cooperatively);

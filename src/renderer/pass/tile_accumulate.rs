@@ -14,10 +14,39 @@ use crate::renderer::targets::{TiledFormats, attachment_constants, tiled_formats
 use crate::settings::{AccumulationFormat, NormalEncoding};
 use crate::view_setup::AttachmentSet;
 
-/// Texels per workgroup of the entry points `cooperative` and `split`, and of `per_invocation`, in `shaders/tile_accumulate.wgsl`.
+/// Texels per workgroup of the entry points `cooperative` and `split`, of `split_finely`, and of `per_invocation`, in
+/// `shaders/tile_accumulate.wgsl`.
 pub(crate) const COOPERATIVE_TILE: UVec2 = UVec2::new(8, 16);
+const FINE_TILE: UVec2 = UVec2::new(8, 8);
 const PER_INVOCATION_TILE: UVec2 =
     UVec2::new(tile_refine::PER_INVOCATION_TILE.x, 8 * tile_refine::PER_INVOCATION_TILE.y);
+
+/// Division of the work on a texel among invocations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Traversal {
+    /// On CPUs: each traverses the list for texels of its own.
+    PerInvocation,
+    /// On GPUs: a workgroup reads the list together.
+    Cooperative,
+    /// As `Cooperative`, four parts of the list at the same time.
+    Split,
+    /// As `Cooperative`, eight parts at the same time.
+    SplitFinely,
+}
+
+impl Traversal {
+    /// The traversals of GPUs.
+    pub const COOPERATIVE: [Self; 3] = [Self::Cooperative, Self::Split, Self::SplitFinely];
+
+    /// Returns the texels per workgroup.
+    fn tile(self) -> UVec2 {
+        match self {
+            Self::PerInvocation => PER_INVOCATION_TILE,
+            Self::Cooperative | Self::Split => COOPERATIVE_TILE,
+            Self::SplitFinely => FINE_TILE,
+        }
+    }
+}
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,10 +60,7 @@ pub(crate) struct TileAccumulateKey {
     pub host_depth: bool,
     /// True if the traversal stops where a texel is opaque.
     pub stops: bool,
-    /// True for cooperative traversal, false for per-invocation traversal.
-    pub cooperative: bool,
-    /// True if a cooperative workgroup traverses parts of its list at the same time.
-    pub split: bool,
+    pub traversal: Traversal,
 }
 
 impl TileAccumulateKey {
@@ -42,22 +68,28 @@ impl TileAccumulateKey {
     pub fn formats(&self) -> TiledFormats {
         tiled_formats(self.attachments, self.format)
     }
+
+    /// True for a traversal of GPUs.
+    pub fn is_cooperative(&self) -> bool {
+        self.traversal != Traversal::PerInvocation
+    }
 }
 
 /// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileAccumulateKey) -> ComputePipelineDescription {
     ComputePipelineDescription {
-        entry_point: match (key.cooperative, key.split) {
-            (true, true) => "split",
-            (true, false) => "cooperative",
-            (false, _) => "per_invocation",
+        entry_point: match key.traversal {
+            Traversal::PerInvocation => "per_invocation",
+            Traversal::Cooperative => "cooperative",
+            Traversal::Split => "split",
+            Traversal::SplitFinely => "split_finely",
         },
         constants: key.sprite.constants(attachment_constants(key.attachments).chain([
             enum_constant!("NORMAL_ENCODING", key.encoding),
             bool_constant("HOST_DEPTH", key.host_depth),
             bool_constant("WEIGHTED", key.weighted),
             bool_constant("STOPS", key.stops),
-            bool_constant("LOADS_SPRITE", !key.cooperative),
+            bool_constant("LOADS_SPRITE", !key.is_cooperative()),
         ])),
     }
 }
@@ -70,7 +102,7 @@ pub(crate) struct TileAccumulate {
     pub inputs: wgpu::BindGroup,
     /// Size of the part in use, texels.
     pub size: UVec2,
-    pub cooperative: bool,
+    pub traversal: Traversal,
 }
 
 impl TileAccumulate {
@@ -78,7 +110,7 @@ impl TileAccumulate {
         pass.set_pipeline(&self.pipeline);
         groups.bind_to_compute(pass);
         pass.set_bind_group(3, &self.inputs, &[]);
-        let side = if self.cooperative { COOPERATIVE_TILE } else { PER_INVOCATION_TILE };
-        pass.dispatch_workgroups(self.size.x.div_ceil(side.x), self.size.y.div_ceil(side.y), 1);
+        let tile = self.traversal.tile();
+        pass.dispatch_workgroups(self.size.x.div_ceil(tile.x), self.size.y.div_ceil(tile.y), 1);
     }
 }

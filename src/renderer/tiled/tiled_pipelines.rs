@@ -21,7 +21,7 @@ use crate::renderer::pass::measure::{self, MeasureKey};
 use crate::renderer::pass::shadow_march::{self, ShadowMarchKey};
 use crate::renderer::pass::shadow_visibility;
 use crate::renderer::pass::sort::{self, SortKey};
-use crate::renderer::pass::tile_accumulate::TileAccumulateKey;
+use crate::renderer::pass::tile_accumulate::{TileAccumulateKey, Traversal};
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_gather::{self, TileGatherKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
@@ -89,8 +89,8 @@ impl TiledKeys {
     /// Returns the key of tile_refine. `None` for cooperative traversal, in which each workgroup filters its bin's list
     /// itself.
     fn refine(&self) -> Option<TileRefineKey> {
-        let TileAccumulateKey { sprite, host_depth, cooperative, stops, .. } = self.accumulate;
-        (!cooperative).then_some(TileRefineKey { sprite, host_depth, stops })
+        let TileAccumulateKey { sprite, host_depth, stops, .. } = self.accumulate;
+        (!self.accumulate.is_cooperative()).then_some(TileRefineKey { sprite, host_depth, stops })
     }
 }
 
@@ -176,12 +176,14 @@ impl TiledPipelines {
         self.compile_sort()?;
         for either in [true, false] {
             self.gather.check(TileGatherKey { sorted: either })?;
-            tile_bin::keys(keys.accumulate.cooperative, either).try_for_each(|key| self.bin.check(key))?;
+            tile_bin::keys(keys.accumulate.is_cooperative(), either).try_for_each(|key| self.bin.check(key))?;
         }
         keys.refine().into_iter().try_for_each(|key| self.refine.check(key))?;
         // The size of the target decides which one is used.
-        for split in [false, keys.accumulate.cooperative] {
-            self.accumulate.check(TileAccumulateKey { split, ..keys.accumulate })?;
+        let of_gpus = Traversal::COOPERATIVE;
+        let traversals = if keys.accumulate.is_cooperative() { &of_gpus[..] } else { &[Traversal::PerInvocation] };
+        for &traversal in traversals {
+            self.accumulate.check(TileAccumulateKey { traversal, ..keys.accumulate })?;
         }
         Ok(())
     }
@@ -223,7 +225,7 @@ impl TiledPipelines {
     /// Returns the pipelines of a system with `count` sprites. `sorts`: true if the sprites are unsorted and their
     /// order matters.
     pub fn pipelines(&self, keys: TiledKeys, sorts: bool, count: u32) -> SystemPipelines {
-        let bin_keys = tile_bin::keys(keys.accumulate.cooperative, count <= tile_bin::MAX_SPRITES_SINGLE_DISPATCH);
+        let bin_keys = tile_bin::keys(keys.accumulate.is_cooperative(), count <= tile_bin::MAX_SPRITES_SINGLE_DISPATCH);
         let mut bin = bin_keys.map(|key| (key, self.bin.get(key)));
         SystemPipelines {
             project: self.project.get(keys.project),

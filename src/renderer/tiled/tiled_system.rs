@@ -17,7 +17,7 @@ use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
-use crate::renderer::pass::tile_accumulate::{COOPERATIVE_TILE, TileAccumulate, TileAccumulateKey};
+use crate::renderer::pass::tile_accumulate::{COOPERATIVE_TILE, TileAccumulate, TileAccumulateKey, Traversal};
 use crate::renderer::pass::tile_bin::TileBin;
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
@@ -37,15 +37,15 @@ const BIN_SIDE_COOPERATIVE: u32 = 32;
 const BIN_SIDE_LARGE: u32 = 64;
 const LARGE_BIN_PARTICLES: u32 = 1 << 16;
 
-/// Most tiles of a target whose texels are shared by several invocations, and the same for deep smoke, whose lists are long.
-/// An H200 gains at 1,800 tiles, and loses with most presets at 7,200; smaller GPUs, which were not measured, have enough work
-/// with fewer tiles.
-const SPLIT_TILES: u32 = 512;
-const SPLIT_TILES_OF_MANY_LAYERS: u32 = 2048;
+/// Most tiles of a target whose texels are shared by four invocations, and by eight; then the same for deep smoke, whose lists
+/// are long. With four, an H200 gains at 1,800 tiles, and loses with most presets at 7,200. With eight, an H100 gains with all
+/// presets at 120 tiles, and with deep smoke at 460. Smaller GPUs, which were not measured, have enough work with fewer tiles.
+const SPLIT_TILES: (u32, u32) = (512, 128);
+const SPLIT_TILES_OF_MANY_LAYERS: (u32, u32) = (2048, 512);
 const MANY_LAYERS: f64 = 10.0;
-/// Fewest sprites for it.
+/// Fewest sprites for either.
 const MIN_SPLIT_SPRITES: f64 = 16.0;
-/// Largest mean optical depth for it: `OPAQUE` in `shaders/tile_accumulate.wgsl`.
+/// Largest mean optical depth for either: `OPAQUE` in `shaders/tile_accumulate.wgsl`.
 const OPAQUE_DEPTH: f64 = 10.0 * std::f64::consts::LN_2;
 
 /// Larger than any view depth, metres. Twice this value is still finite in f32.
@@ -87,9 +87,10 @@ impl TiledSystem {
     ) -> TiledPasses {
         let TiledInputs { sprites, size, attachments, depth, workload } = *inputs;
         let max_words = max_storage_words(&tiled.limits);
-        let cooperative = keys.accumulate.cooperative;
-        let split = cooperative && workload.is_some_and(|workload| splits_traversal(size, workload));
-        let keys = TiledKeys { accumulate: TileAccumulateKey { split, ..keys.accumulate }, ..keys };
+        let cooperative = keys.accumulate.is_cooperative();
+        let shared = workload.filter(|_| cooperative).map(|workload| shared_traversal(size, workload));
+        let traversal = shared.unwrap_or(keys.accumulate.traversal);
+        let keys = TiledKeys { accumulate: TileAccumulateKey { traversal, ..keys.accumulate }, ..keys };
         let BinLayout { side: bin_side, columns, rows, runs } =
             BinLayout::new(size, sprites.count, cooperative, max_words);
         let bins = columns * rows;
@@ -148,7 +149,7 @@ impl TiledSystem {
                 runs,
             },
             refine,
-            accumulate: TileAccumulate { pipeline: pipelines.accumulate, inputs: accumulate, size, cooperative },
+            accumulate: TileAccumulate { pipeline: pipelines.accumulate, inputs: accumulate, size, traversal },
             counters: buffers.counters.clone(),
             read_back: buffers.read_back.clone(),
             entries: self.entries.clone(),
@@ -171,12 +172,20 @@ impl TiledSystem {
     }
 }
 
-/// True if several invocations should share each texel of a target. They keep a GPU busy where there are few texels; elsewhere
-/// they cost time, as they do where the smoke in front hides the parts behind.
-fn splits_traversal(size: UVec2, workload: &PathWorkload) -> bool {
+/// Returns how many invocations of a GPU should share each texel of a target. They keep it busy where there are few texels;
+/// elsewhere they cost time, as they do where the smoke in front hides the parts behind.
+fn shared_traversal(size: UVec2, workload: &PathWorkload) -> Traversal {
     let tiles = size.x.div_ceil(COOPERATIVE_TILE.x) * size.y.div_ceil(COOPERATIVE_TILE.y);
-    let most = if workload.layers() >= MANY_LAYERS { SPLIT_TILES_OF_MANY_LAYERS } else { SPLIT_TILES };
-    tiles <= most && workload.sprites >= MIN_SPLIT_SPRITES && workload.layers() * workload.optical_depth <= OPAQUE_DEPTH
+    let is_deep = workload.layers() >= MANY_LAYERS;
+    let (few, fewest) = if is_deep { SPLIT_TILES_OF_MANY_LAYERS } else { SPLIT_TILES };
+    let is_hidden = workload.layers() * workload.optical_depth > OPAQUE_DEPTH;
+    if tiles > few || workload.sprites < MIN_SPLIT_SPRITES || is_hidden {
+        Traversal::Cooperative
+    } else if tiles > fewest {
+        Traversal::Split
+    } else {
+        Traversal::SplitFinely
+    }
 }
 
 /// Division of a target into bins, and of its sprites into runs.
