@@ -144,9 +144,13 @@ fn rank(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bloc
     let at = block.x * RANKED_KEYS + ranked;
     let key = keys[min(at, tiles.count - 1u)];
     var before = 0u;
-    for (var other = local % COUNTERS; other < tiles.count; other += COUNTERS) {
-        let other_key = keys[other];
-        before += u32(other_key < key || (other_key == key && other < at));
+    var other = local % COUNTERS;
+    // Of equal keys, those with smaller indices come before it. Two loops have one comparison for each key.
+    for (; other < min(at, tiles.count); other += COUNTERS) {
+        before += u32(keys[other] <= key);
+    }
+    for (; other < tiles.count; other += COUNTERS) {
+        before += u32(keys[other] < key);
     }
     atomicAdd(&ranks[ranked], before);
     workgroupBarrier();

@@ -86,7 +86,7 @@ const SPLIT_MUTANTS: &[Mutant] = &[
 
 /// Mistakes in the sort of few sprites by GPUs.
 const RANK_MUTANTS: &[Mutant] = &[
-    ("sorted back to front", "sort.wgsl", "other_key < key ||", "other_key > key ||"),
+    ("sorted back to front", "sort.wgsl", "keys[other] < key", "keys[other] > key"),
     ("keys of the first workgroup", "sort.wgsl", "block.x * RANKED_KEYS + ranked", "ranked"),
 ];
 

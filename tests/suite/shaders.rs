@@ -271,6 +271,48 @@ fn byte_order_marks_and_crlf_line_endings_are_accepted() {
     assert_eq!(folder.refusal(), format!("{place}: no definition in scope for identifier: `saturat`"));
 }
 
+/// Loops without a counter, and why they end.
+const OTHER_LOOPS: &[(&str, &str)] = &[
+    ("loop {", "leaves if no sprite is left"),
+    ("while bits == 0u && next < end {", "`next` grows"),
+    ("while slot < HAZE_SHADOWED_LIGHTS &&", "`slot` grows"),
+];
+
+/// Steps of counters. They change by constants, or by numbers that are never 0.
+const STEPS: &[&str] = &[
+    "++",
+    "--",
+    "/= 2u",
+    "*= 2u",
+    "&= bits - 1u",
+    "+= 64u",
+    "+= BITS_PER_WORD",
+    "+= COUNTERS",
+    "+= DIGITS",
+    "+= SCAN_SIZE",
+    "+= WORKGROUP",
+    "+= measure.workgroups * WORKGROUP",
+    "+= share",
+    "+= stride",
+];
+
+#[test]
+fn every_loop_of_the_shaders_ends() {
+    for (file, text) in shader::sources() {
+        let code: Vec<_> = text.lines().map(|line| line.split("//").next().unwrap().trim()).collect();
+        for (at, line) in code.iter().enumerate() {
+            let is_listed = || OTHER_LOOPS.iter().any(|(start, _)| line.starts_with(start));
+            let is_loop = line.starts_with("loop {") || line.starts_with("while ");
+            assert!(!is_loop || is_listed(), "{file}:{}: {line} is not listed", at + 1);
+            if line.starts_with("for (") {
+                let header = code[at..].join(" ");
+                let header = header.split_once(" {").unwrap().0.trim_end_matches(')').trim();
+                assert!(STEPS.iter().any(|step| header.ends_with(step)), "{file}:{}: {header}", at + 1);
+            }
+        }
+    }
+}
+
 #[test]
 fn folders_without_readable_shaders_are_rejected_with_a_reason() {
     let expected = "expected accumulate.wgsl, density_splat.wgsl, depth_downsample.wgsl, depth_resolve.wgsl, depth_slopes.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \

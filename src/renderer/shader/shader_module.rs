@@ -2,20 +2,20 @@
 
 use std::convert::Infallible;
 
-use super::compose::Composed;
 use super::naga_messages::{marked_location, to_wgsl_terms};
 use super::nesting::check_nesting;
 use super::sources::Sources;
 use crate::error::Error;
 use crate::renderer::gpu::error_scopes::{poll_once, with_error_scopes};
-use crate::renderer::gpu::pipeline::Shader;
+use crate::renderer::gpu::pipeline::{Shader, create_module};
 
 /// Creates the embedded shader of a pass.
 pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Result<Shader, Infallible> {
     // A test composes every embedded shader, so this cannot fail. The device would report an empty module like any
     // other error.
     let composed = Sources::embedded().compose(&file_of(name)).unwrap_or_default();
-    Ok(Shader { module: create(device, name, &composed), path: composed.path, text: composed.text })
+    let module = create_module(device, name, &composed.text, true);
+    Ok(Shader { module, path: composed.path, text: composed.text, loops_end: true })
 }
 
 /// Creates the shader of a pass from sources that may contain errors.
@@ -26,9 +26,10 @@ pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources:
     let composed = sources.compose(&file_of(name))?;
     check_nesting(&composed.text).map_err(|deep| composed.error_at(deep.line, deep.column, &deep.reason))?;
     let mut module = None;
-    let created = with_error_scopes(device, || module.insert(create(device, name, &composed)).clone());
+    let created =
+        with_error_scopes(device, || module.insert(create_module(device, name, &composed.text, false)).clone());
     match created {
-        Ok(module) => Ok(Shader { module, path: composed.path, text: composed.text }),
+        Ok(module) => Ok(Shader { module, path: composed.path, text: composed.text, loops_end: false }),
         Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
             let info = module.and_then(|module| poll_once(module.get_compilation_info()));
             match info.and_then(|info| info.messages.into_iter().next()) {
@@ -48,11 +49,4 @@ pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources:
 
 fn file_of(name: &str) -> String {
     format!("{name}.wgsl")
-}
-
-fn create(device: &wgpu::Device, name: &'static str, composed: &Composed) -> wgpu::ShaderModule {
-    device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(name),
-        source: wgpu::ShaderSource::Wgsl(composed.text.as_str().into()),
-    })
 }
