@@ -121,12 +121,10 @@ fn sprite_index(list: vec2u, at: u32) -> u32 {
 // texture lookup.
 const TILE: vec2u = vec2u(8u, 16u);
 // Parts of the list that a workgroup of `split` or `split_finely` traverses at the same time, where a target has too few
-// texels to keep the adapter busy: most of the time is then spent waiting for lookups.
+// texels to keep the adapter busy: most of the time is then spent waiting for lookups. A tile of `split_finely` is 8x8 texels.
 const SPLIT: u32 = 4u;
 const FINE_SPLIT: u32 = 8u;
-const FINE_TILE: vec2u = vec2u(8u, 8u);
 const BATCH: u32 = 64u;
-const INVOCATIONS: u32 = 64u;
 
 // Sprites of a batch that touch the tile, part by part, front to back.
 var<workgroup> batch: array<TileSprite, BATCH>;
@@ -140,7 +138,7 @@ var<workgroup> fronts: array<f32, FINE_SPLIT>;
 // Bits of the farthest view depth of the scene in the tile. It is positive, so that its bits order as an integer.
 var<workgroup> farthest: atomic<u32>;
 // Texels of one part, as the targets' textures. The amount's place has the transmittance.
-var<workgroup> behind: array<array<vec4f, MAX_TARGET_ATTACHMENTS>, INVOCATIONS>;
+var<workgroup> behind: array<array<vec4f, MAX_TARGET_ATTACHMENTS>, 64>;
 
 // Two texels, one below the other.
 struct TexelPair {
@@ -161,7 +159,8 @@ fn split(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) work
 
 @compute @workgroup_size(8, 4, FINE_SPLIT)
 fn split_finely(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
-    traverse_parts(workgroup.xy * FINE_TILE, FINE_TILE, local, FINE_SPLIT);
+    let tile = vec2u(8u, 8u);
+    traverse_parts(workgroup.xy * tile, tile, local, FINE_SPLIT);
 }
 
 // Traverses all parts, and adds each behind the one in front of it, from the back. `low`: first texel of the tile.
