@@ -55,7 +55,7 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
         scene.settings.path = path;
         let mut host = Host::new(gpu(), &scene).unwrap();
         host.renderer.context().set_cooperative_traversal(cooperative);
-        // Few keys, of which a GPU counts the smaller ones; more than one workgroup of them; more than the 8192 for that.
+        // Few keys, which a GPU compares with each other; more workgroups; more than the 8192 keys for that.
         for (count, offset) in [(200, 0), (3000, 16), (9000, 272)] {
             let particles = repeated_particles(&scene, count);
             let mut drawn = |particles: &[Particle], is_sorted| {
