@@ -239,7 +239,8 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
     atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
     let bin = low / tiles.bin_side;
     let list = bins[bin.y * tiles.columns + bin.x];
-    let entries = list.y * tiles.loops;
+    // Far from where the counter of the loop would wrap.
+    let entries = min(list.y * tiles.loops, 0x7fffffffu);
     // Entries of each part, and of each part of a batch.
     let length = (entries + parts - 1u) / parts;
     let share = BATCH / parts;

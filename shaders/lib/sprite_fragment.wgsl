@@ -243,15 +243,15 @@ fn volumetric_fragment(
         view.view_from_world[1].xyz,
         view.view_from_world[2].xyz,
     ));
-    let step = (interval.leave - interval.enter) / f32(system.march_steps);
+    let step = (interval.leave - interval.enter) / f32(MARCH_STEPS);
     let opacity = system.volume_opacity * in.amount_lod_frame_erosion.x * step;
     var normal = vec3f(0.0);
     var transmittance = 1.0;
-    for (var i = 0u; i < system.march_steps; i++) {
+    for (var i = 0u; i < MARCH_STEPS; i++) {
         let position = origin + along * (interval.enter + (f32(i) + 0.5) * step);
         let place = (position - centre) / in.centre_radius.w;
         let coordinate = noise_coordinate(world_from_view * position, system.noise_size, system.noise_offset);
-        let texel = sample_noise_octaves(noise, repeat_sampler, coordinate, system.noise_octaves);
+        let texel = sample_noise_octaves(noise, repeat_sampler, coordinate, NOISE_OCTAVES);
         var amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
         if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {
             amount *= fade_before(scene, -position.z);

@@ -53,6 +53,9 @@ override TINT: bool = false;
 override STRETCH: bool = false;
 // Octaves of the noise of the grain; 0 for no grain.
 override GRAIN_OCTAVES: u32 = 0u;
+// Steps of a march through a volumetric sprite, and octaves of noise of each.
+override MARCH_STEPS: u32 = 1u;
+override NOISE_OCTAVES: u32 = 1u;
 
 // True for techniques whose sprites are spheres.
 fn is_sphere() -> bool {

@@ -53,14 +53,14 @@ struct System {
     density: f32,
     noise_size: f32,
     volume_opacity: f32,
-    march_steps: u32,
-    noise_octaves: u32,
     depth_weight: f32,
     // Particles from this index on are not drawn. Copied from a host's buffer if only the GPU knows it.
     alive_count: u32,
     // Density of the sprite: see mean_optical_depth().
     mean_alpha: f32,
     peak_alpha: f32,
+    // Share of the sprite's alpha that remains at an erosion of 1.
+    eroded_share: f32,
     // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
     // Metres behind the scene at which sprites still show, under the curve `always`.
@@ -107,6 +107,4 @@ struct System {
     stretch_axis: vec3f,
     // Texels of the noise per pixel, on a sprite whose radius is 1 at a view depth of 1.
     grain_fineness: f32,
-    // Share of the sprite's alpha that remains at an erosion of 1.
-    eroded_share: f32,
 }

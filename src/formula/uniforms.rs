@@ -100,12 +100,12 @@ uniform! {
         density: f32,
         noise_size: f32,
         volume_opacity: f32,
-        march_steps: u32,
-        noise_octaves: u32,
         depth_weight: f32,
         alive_count: u32,
         mean_alpha: f32,
         peak_alpha: f32,
+        eroded_share: f32,
+        padding: f32,
         noise_offset: Vec3,
         show_through_distance: f32,
         six_way_color: Vec3,
@@ -135,8 +135,6 @@ uniform! {
         grain_tiles: f32,
         stretch_axis: Vec3,
         grain_fineness: f32,
-        eroded_share: f32,
-        padding: [f32; 3],
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::frame::{Particle, ParticleBuffer};
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
-use crate::settings::{FadeCurve, RampFilter, Settings, SpriteAnimation, Technique};
+use crate::settings::{FadeCurve, RampFilter, Settings, SpriteAnimation, Technique, Volumetric};
 
 /// Layout of the instance buffer: one [`Particle`] per sprite.
 pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
@@ -29,6 +29,7 @@ pub(crate) struct SpriteKey {
     tint: bool,
     stretch: bool,
     grain_octaves: u32,
+    marched: Marched,
     ramp_filter: RampFilter,
 }
 
@@ -50,6 +51,7 @@ impl SpriteKey {
             tint: settings.is_tinted(),
             stretch: settings.is_stretched(),
             grain_octaves: settings.grain_octaves(),
+            marched: Marched::of(settings),
             ramp_filter: settings.ramp_filter,
         }
     }
@@ -87,9 +89,28 @@ impl SpriteKey {
             bool_constant("TINT", self.tint),
             bool_constant("STRETCH", self.stretch),
             ("GRAIN_OCTAVES", f64::from(self.grain_octaves)),
+            ("MARCH_STEPS", f64::from(self.marched.steps)),
+            ("NOISE_OCTAVES", f64::from(self.marched.octaves)),
             enum_constant!("RAMP_FILTER", self.ramp_filter),
         ];
         shared.into_iter().chain(of_pass).collect()
+    }
+}
+
+/// Lookups of a march through a volumetric sprite; the same for all other sprites.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Marched {
+    steps: u32,
+    octaves: u32,
+}
+
+impl Marched {
+    fn of(settings: &Settings) -> Self {
+        let Volumetric { march_steps, noise_octaves, .. } = settings.volumetric;
+        match settings.technique.is_volumetric() {
+            true => Self { steps: march_steps, octaves: noise_octaves },
+            false => Self { steps: 1, octaves: 1 },
+        }
     }
 }
 

@@ -148,8 +148,6 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         density: settings.density.density,
         noise_size: settings.volumetric.noise_size,
         volume_opacity: settings.volumetric.opacity,
-        march_steps: settings.volumetric.march_steps,
-        noise_octaves: settings.volumetric.noise_octaves,
         noise_offset: noise_offset(view, settings, up, time),
         show_through_distance: settings.show_through_distance(),
         depth_weight: accumulate.depth_weight,

@@ -23,7 +23,7 @@ use haze::formula::technique::{
     spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
 };
 use haze::frame::Particle;
-use haze::settings::{BlendOrder, Technique};
+use haze::settings::{BlendOrder, Technique, Volumetric};
 use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid, density_radius, erosion_of, sprite_optical_depth};
 
 /// Sprite in view space.
@@ -356,16 +356,17 @@ impl VisibleSystem<'_> {
         interval: RayInterval,
     ) -> SpriteFragment {
         let system = &self.system;
+        let Volumetric { march_steps, noise_octaves, .. } = self.settings.volumetric;
         let rotation = Mat3::from_mat4(self.view.view_from_world);
-        let step = (interval.leave - interval.enter) / system.march_steps as f32;
+        let step = (interval.leave - interval.enter) / march_steps as f32;
         let opacity = system.volume_opacity * sprite.amount * step;
         let (mut normal, mut transmittance) = (Vec3::ZERO, 1.0);
-        for i in 0..system.march_steps {
+        for i in 0..march_steps {
             let position = origin + along * (interval.enter + (i as f32 + 0.5) * step);
             let place = (position - sprite.centre) / sprite.radius;
             let from_eye = rotation.transpose() * position;
             let coordinate = noise_coordinate(from_eye, system.noise_size, system.noise_offset);
-            let texel = sample_noise_octaves(&self.material.noise, coordinate, system.noise_octaves);
+            let texel = sample_noise_octaves(&self.material.noise, coordinate, noise_octaves);
             let mut amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
             if self.settings.technique == Technique::VolumetricSoft {
                 amount *= self.fade_before(scene, -position.z);

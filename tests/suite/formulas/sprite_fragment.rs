@@ -57,25 +57,19 @@ fn numbers(fragment: &SpriteFragment) -> Vec<f32> {
 fn settings(x: &[f32]) -> Settings {
     let mut settings = technique(x);
     settings.soft_fade.curve = FadeCurve::Linear;
+    (settings.volumetric.march_steps, settings.volumetric.noise_octaves) = (5, 2);
     settings
 }
 
 /// Changes of the uniforms that make every technique visible.
 fn changed(system: SystemUniform) -> SystemUniform {
-    SystemUniform {
-        billboard_density: 1.5,
-        density: 1.2,
-        volume_opacity: 3.0,
-        march_steps: 5,
-        noise_octaves: 2,
-        ..system
-    }
+    SystemUniform { billboard_density: 1.5, density: 1.2, volume_opacity: 3.0, ..system }
 }
 
 macro_rules! changes {
     () => {
         "FADE_CURVE = FADE_CURVE_LINEAR; system.billboard_density = 1.5; system.density = 1.2; \
-         system.volume_opacity = 3.0; system.march_steps = 5u; system.noise_octaves = 2u; "
+         system.volume_opacity = 3.0; MARCH_STEPS = 5u; NOISE_OCTAVES = 2u; "
     };
 }
 
