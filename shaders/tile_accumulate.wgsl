@@ -57,7 +57,7 @@ fn init_texel(place: vec2u) -> Texel {
     texel.place = vec2f(place) + 0.5;
     texel.ray = ray_through_texel(texel.place);
     texel.transmittance = 1.0;
-    texel.scene = tested_view_depth(textureLoad(tested_depth, vec2i(place), 0).r);
+    texel.scene = tested_view_depth(tested_depth, place);
     texel.end = texel.scene + system.show_through_distance + tiles.occlusion_margin;
     return texel;
 }
@@ -165,7 +165,7 @@ fn split_finely(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_i
 
 // Traverses all parts, and adds each behind the one in front of it, from the back. `low`: first texel of the tile.
 fn traverse_parts(low: vec2u, tile: vec2u, local: vec3u, parts: u32) {
-    let index = index_in_part(local);
+    let index = local.y * 8u + local.x;
     var texels = traverse_part(low, tile, local, parts);
     for (var part = parts - 1u; part > 0u; part--) {
         if local.z == part {
@@ -192,10 +192,6 @@ fn traverse_parts(low: vec2u, tile: vec2u, local: vec3u, parts: u32) {
 
 fn first_texel(low: vec2u, local: vec3u) -> vec2u {
     return low + local.xy * vec2u(1u, 2u);
-}
-
-fn index_in_part(local: vec3u) -> u32 {
-    return local.y * 8u + local.x;
 }
 
 fn slots_of(texel: Texel) -> array<vec4f, MAX_TARGET_ATTACHMENTS> {
@@ -232,7 +228,7 @@ fn write_pair(place: vec2u, texels: TexelPair) {
 fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> TexelPair {
     let size = vec2u(system.target_size);
     let part = local_place.z;
-    let local = index_in_part(local_place);
+    let local = local_place.y * 8u + local_place.x;
     let place = first_texel(low, local_place);
     var a = init_texel(min(place, size - 1u));
     var b = init_texel(min(place + vec2u(0u, 1u), size - 1u));
@@ -309,7 +305,10 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
         ) {
             let is_done = is_opaque(a) && is_opaque(b);
             let sprite = batch[at];
-            let values = values_in_batch(at);
+            var values: SpriteValues;
+            if has_values() {
+                values = batch_values[at];
+            }
             let in_a = uv_in_square(sprite, a.place);
             let in_b = in_a + sprite.uv_from_texels.yw;
             let touches_a = !is_done && touches(sprite, in_a);
@@ -326,13 +325,6 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
 // Number of bits below a bit of 0 to 64.
 fn count_below(bits: vec2u, bit: u32) -> u32 {
     return countOneBits(bits.x & bits_below(min(bit, 32u))) + countOneBits(bits.y & bits_below(max(bit, 32u) - 32u));
-}
-
-fn values_in_batch(at: u32) -> SpriteValues {
-    if has_values() {
-        return batch_values[at];
-    }
-    return SpriteValues();
 }
 
 fn values_of(index: u32) -> SpriteValues {

@@ -39,7 +39,7 @@ fn farthest_visible_depth(low: vec2u, high: vec2u) -> f32 {
     var farthest = 0.0;
     for (var y = low.y; y < high.y; y++) {
         for (var x = low.x; x < high.x; x++) {
-            farthest = max(farthest, tested_view_depth(textureLoad(tested_depth, vec2u(x, y), 0).r));
+            farthest = max(farthest, tested_view_depth(tested_depth, vec2u(x, y)));
         }
     }
     return farthest + system.show_through_distance;

@@ -5,12 +5,14 @@
 // True: sprites are compared with the host's depth, not with the reduced depth.
 override HOST_DEPTH: bool = false;
 
-// Returns the view depth of a texel of the depth that sprites are compared with.
-fn tested_view_depth(texel: f32) -> f32 {
+// Returns the view depth that sprites are compared with at a texel of the target.
+fn tested_view_depth(tested_depth: texture_2d<f32>, texel: vec2u) -> f32 {
     if HOST_DEPTH {
-        return host_view_depth(texel);
+        // At scale 1, the only one that reads the host's depth.
+        let pixel = vec2i(texel) + vec2i(system.target_origin + view.origin);
+        return host_view_depth(textureLoad(tested_depth, pixel, 0).r);
     }
-    return texel * system.depth_limit;
+    return textureLoad(tested_depth, texel, 0).r * system.depth_limit;
 }
 
 struct TileSprite {

@@ -189,11 +189,15 @@ fn deferred<'a>(
 ) -> DeferredPlan<'a> {
     let (accumulate, debug_views) = (&settings.accumulate, inputs.debug_views);
     let (host, ramp_filter, exact_filtering) = (inputs.host, settings.ramp_filter, inputs.exact_filtering);
-    let host_depth = accumulate.depth_source == DepthSource::Host;
     let depth_test = depth_test(inputs, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
     let tiled = inputs.tiles.filter(|_| settings.path == RenderPath::Tiled);
+    let overdraw = debug_views.contains(&DebugView::Overdraw);
+    // At scale 1 a compute shader reads the host's depth in place. The hardware, which counts layers, cannot test it there: all
+    // attachments of a pass must have one size.
+    let in_place = tiled.is_some() && settings.scale == 1 && !overdraw;
+    let host_depth = accumulate.depth_source == DepthSource::Host || in_place;
     // Cooperative: on a GPU.
     let computes_texels = tiled.is_some() || inputs.tiles == Some(true);
     // At scale 1 a texel is a pixel, whose light can be computed too.
@@ -253,9 +257,7 @@ fn deferred<'a>(
         }),
         accumulate: accumulate_key,
         tiled: tiled.map(|cooperative| tiled_keys(&accumulate_key, accumulate.layers, cooperative, exact_filtering)),
-        overdraw: debug_views
-            .contains(&DebugView::Overdraw)
-            .then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
+        overdraw: overdraw.then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         computes_texels,
         light_target: lights_target.then_some(lighting),
         depth_slopes,

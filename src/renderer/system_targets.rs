@@ -6,6 +6,7 @@ use super::context::Shared;
 use super::layouts::{TRANSFER_TEXTURES, bind_textures};
 use super::plan::DeferredPlan;
 use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse};
+use crate::settings::DepthSource;
 use crate::view_setup::{AttachmentSet, ResolvedSettings};
 
 /// Textures of one system, and their bind groups, which are recreated with the textures.
@@ -63,7 +64,8 @@ impl SystemTargets {
         let key = AccumulationKey {
             format: settings.accumulate.format,
             attachments: AttachmentSet::of(settings),
-            depth_source: settings.accumulate.depth_source,
+            is_host_sized: settings.accumulate.depth_source == DepthSource::Host,
+            reduced_depth: plan.depth_downsample.is_some(),
             overdraw: plan.overdraw.is_some(),
             lit: plan.light_target.is_some(),
             depth_slopes: plan.depth_slopes.is_some(),

@@ -194,7 +194,6 @@ const INDIRECT: &[(&str, &str)] = &[
     ("visible_parts", "reads depths that the workgroup has gathered"),
     ("init_texel", "fills a struct from tested functions"),
     ("first_texel", "places the texels of an invocation; whole frames of the path tiled cover it"),
-    ("index_in_part", "numbers the invocations of a part; whole frames of the path tiled cover it"),
     ("traverse_part", "waits for its workgroup; mutants of the parts of a list cover it"),
     ("traverse_parts", "waits for its workgroup; mutants of the parts of a list cover it"),
     ("slots_of", "calls slots_from_attachments"),
@@ -277,7 +276,6 @@ const INDIRECT: &[(&str, &str)] = &[
     ("clean_texel", "sprite_texel covers it"),
     ("blend_and_erosion", "packed_blend covers it"),
     ("load_particle", "reads the particles of the pass"),
-    ("values_in_batch", "reads workgroup memory; tests of the tiled path with shadow cover it"),
     ("values_of", "reads a buffer; tests of the tiled path with shadow cover it"),
 ];
 

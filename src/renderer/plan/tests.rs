@@ -73,6 +73,24 @@ fn planned_depth_reads_and_tests_match_the_table_in_the_docs() {
 }
 
 #[test]
+fn compute_shaders_read_the_hosts_depth_in_place_at_scale_1() {
+    let all = PipelineInputs { debug_views: DebugView::ALL, ..inputs() };
+    for (path, scale, inputs, in_place) in [
+        (RenderPath::Tiled, 1, inputs(), true),
+        (RenderPath::Tiled, 2, inputs(), false),
+        (RenderPath::Raster, 1, inputs(), false),
+        // The hardware counts layers, and tests the reduced depth.
+        (RenderPath::Tiled, 1, all, false),
+    ] {
+        let mut settings = Settings { path, ..Settings::default() };
+        settings.accumulate.scale = scale;
+        let plan = deferred(&inputs, &settings);
+        assert_eq!(plan.depth_downsample.is_none(), in_place, "{path:?} {scale}");
+        assert_eq!(plan.tiled.is_some_and(|keys| keys.accumulate.host_depth), in_place, "{path:?} {scale}");
+    }
+}
+
+#[test]
 fn each_stage_plans_only_the_passes_that_it_shows() {
     for &debug_view in DebugView::ALL {
         let mut settings = Settings::default();

@@ -10,7 +10,7 @@ use super::texture_allocator::TextureAllocator;
 use crate::formula::smoke_tiles::CELL_SIDE;
 use crate::frame::MAX_LIGHTS;
 use crate::renderer::gpu::idle_counter::IdleCounter;
-use crate::settings::{AccumulationFormat, DepthSource};
+use crate::settings::AccumulationFormat;
 use crate::view_setup::AttachmentSet;
 
 /// A depth format, so that it can be attached and the hardware rejects hidden sprites. Every backend can render to it,
@@ -38,7 +38,10 @@ pub(crate) const GLOWS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32
 pub(crate) struct AccumulationKey {
     pub format: AccumulationFormat,
     pub attachments: AttachmentSet,
-    pub depth_source: DepthSource,
+    /// True if the textures must have the size of the host's.
+    pub is_host_sized: bool,
+    /// True if sprites are compared with a reduced depth.
+    pub reduced_depth: bool,
     /// True if layers are counted as well.
     pub overdraw: bool,
     /// True if smoke is lit at this resolution.
@@ -104,8 +107,7 @@ impl AccumulationTarget {
         let is_new = target.is_none();
         let target = target.get_or_insert_with(|| {
             // All attachments of a pass must have one size: with the host's depth, the host's size.
-            let is_host = key.depth_source == DepthSource::Host;
-            Self::new(device, key, if is_host { size } else { grown_size(old, size).min(limit) })
+            Self::new(device, key, if key.is_host_sized { size } else { grown_size(old, size).min(limit) })
         });
         (target, is_new)
     }
@@ -122,7 +124,7 @@ impl AccumulationTarget {
 
     /// Returns true if the textures hold `size` texels and have not been much too large for more than 120 frames.
     fn is_suitable_for(&mut self, size: UVec2) -> bool {
-        if self.key.depth_source == DepthSource::Host {
+        if self.key.is_host_sized {
             return self.size == size;
         }
         let is_idle = self.size.element_product() > 4 * padded(size).element_product();
@@ -161,13 +163,12 @@ impl AccumulationTarget {
             let side = device.limits().max_texture_dimension_2d;
             textures.create_whole("haze lit pixels", LIT_FORMAT, (size * scale).min(UVec2::splat(side)))
         });
-        let is_reduced = key.depth_source == DepthSource::Reduced;
         textures.written = written(key.computes_depth);
         let depth_format = if key.computes_depth { COMPUTED_DEPTH_FORMAT } else { REDUCED_DEPTH_FORMAT };
-        let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", depth_format, size));
+        let reduced_depth = key.reduced_depth.then(|| textures.create_whole("haze reduced depth", depth_format, size));
         textures.written = TextureUsages::RENDER_ATTACHMENT;
-        let depth_copy =
-            (is_reduced && key.depth_copy).then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
+        let depth_copy = (key.reduced_depth && key.depth_copy)
+            .then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
         let bytes = textures.bytes;
         Self {
             key,

@@ -3,13 +3,14 @@
 
 mod cells;
 
-use glam::{Vec2, Vec4};
+use glam::{UVec2, Vec2, Vec4};
+use haze::formula::texture::Texture2d;
 use haze::formula::view::{ndc_from_pixel, pixel_from_ndc};
 use haze::formula::{depth, sprite, tile_sprite};
 
 use super::Formula;
 use super::fixture::{DEFAULTS, DEPTHS, visible_system};
-use super::inputs::{ARITHMETIC, HALF, halves, random, v2, v4, with_choices, word};
+use super::inputs::{ARITHMETIC, HALF, halves, random, test_ramp, v2, v4, with_choices, word};
 
 /// A sprite at a place in the target, rotated.
 fn uv_from_texels(x: &[f32]) -> Vec4 {
@@ -198,19 +199,26 @@ fn sprites() -> Vec<Formula> {
         Formula {
             name: "tested_view_depth",
             file: "lib/tile_sprite.wgsl",
-            wgsl: "HOST_DEPTH = x(1) > 0.5; y(0, tested_view_depth(x(0)));",
+            wgsl: "LINEAR_DEPTH = true; HOST_DEPTH = x(0) > 0.5; system.target_origin = vec2f(2.0, -1.0); view.origin = vec2f(1.0, 2.0); \
+                   y(0, tested_view_depth(test_ramp, vec2u(u32(x(1)), u32(x(2)))));",
             reference: |x| {
                 let visible = visible_system(&DEFAULTS);
-                vec![match x[1] > 0.5 {
-                    true => depth::view_depth_from_ndc_depth(x[0], visible.view.depth_coefficients),
-                    false => x[0] * visible.system.depth_limit,
+                let place = UVec2::new(x[1] as u32, x[2] as u32);
+                vec![match x[0] > 0.5 {
+                    true => {
+                        let texel = test_ramp().load(place + UVec2::new(3, 1)).x;
+                        depth::view_depth_from_linear(texel + visible.view.depth_offset)
+                    }
+                    false => test_ramp().load(place).x * visible.system.depth_limit,
                 }]
             },
-            cases: random(60, &[(0.0, 0.99), (0.0, 1.0)]),
+            cases: with_choices(2, &[(0.0, 4.99), (0.0, 2.99)]),
             tolerance: 1e-4,
             mutants: &[
-                ("return texel * system.depth_limit", "return texel"),
-                ("if HOST_DEPTH {\n        return host_view", "if !HOST_DEPTH {\n        return host_view"),
+                ("texel, 0).r * system.depth_limit", "texel, 0).r"),
+                ("if HOST_DEPTH {\n        // At", "if !HOST_DEPTH {\n        // At"),
+                ("system.target_origin + view.origin", "system.target_origin"),
+                ("system.target_origin + view.origin", "view.origin"),
             ],
         },
         Formula {
