@@ -365,7 +365,8 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
     let list = bins[bin.y * tiles.columns + bin.x];
     let part = low % tiles.bin_side / (tiles.bin_side / PARTS);
     let length = refine_words(list.y);
-    let end = length * tiles.loops;
+    // Far from where the counter of the loop would wrap; the same in traverse_part.
+    let end = min(length * tiles.loops, 0x7fffffffu);
     var is_column_done = false;
     var bits = 0u;
     var batch = 0u;

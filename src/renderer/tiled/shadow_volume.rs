@@ -98,16 +98,17 @@ impl ShadowVolume {
     /// Returns the pass that marches to the lights.
     pub fn march(&self, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Option<ShadowMarch> {
         let buffers = self.buffers.as_ref()?;
-        let marches_together = tiled.cooperative() && shadow.has_openness;
-        let marches_apart = !tiled.cooperative() && shadow.has_openness;
+        // On GPUs the marches to the sky share the dispatch of those to the lights.
+        let shares_dispatch = tiled.cooperative();
+        let marches_sky = shadow.has_openness;
         Some(ShadowMarch {
             copy_density: tiled.shadow_march.get(ShadowMarchKey::CopyDensity),
             copy_inputs: buffers.copy_density.clone(),
             march_cells: tiled.shadow_march.get(ShadowMarchKey::MarchCells),
-            march_sky: marches_apart.then(|| tiled.shadow_march.get(ShadowMarchKey::MarchSky)),
+            march_sky: (marches_sky && !shares_dispatch).then(|| tiled.shadow_march.get(ShadowMarchKey::MarchSky)),
             march_inputs: buffers.march.clone(),
             size: shadow.grid.size,
-            blocks: shadow.used_light_blocks() + u32::from(marches_together),
+            blocks: shadow.used_light_blocks() + u32::from(marches_sky && shares_dispatch),
         })
     }
 
