@@ -15,7 +15,7 @@ pub struct TargetViews<'a> {
     /// Roles of the textures of `accumulation`.
     pub roles: AttachmentSet,
     /// Linear view depth divided by `depth_limit`, `Depth32Float`, or `R32Float` where compute shaders write it; `None` if
-    /// sprites are compared with the host's own depth.
+    /// sprites are compared with the host's own depth, as on the path `tiled` at scale 1.
     pub reduced_depth: Option<&'a wgpu::TextureView>,
     /// Light by normal, `Rgba16Float`: six faces of a cubemap, one motif, or none.
     pub baked_diffuse: &'a [wgpu::TextureView],
