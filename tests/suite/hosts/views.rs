@@ -149,6 +149,10 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
         }),
         ("tiled", |s| s.settings.path = RenderPath::Tiled),
         ("tiled at full scale", |s| (s.settings.path, s.settings.accumulate.scale) = (RenderPath::Tiled, 1)),
+        ("tiled at full scale, a box within the view", |s| {
+            (s.settings.path, s.settings.accumulate.scale) = (RenderPath::Tiled, 1);
+            s.particles.iter_mut().for_each(|p| p.position *= vec3(0.25, 0.25, 1.0));
+        }),
         ("forward", |s| s.settings.path = RenderPath::Forward),
         ("forward sphere", |s| {
             (s.settings.path, s.settings.technique) = (RenderPath::Forward, Technique::SphericalBillboard);
