@@ -26,7 +26,8 @@ impl std::iter::Sum for FrameCounts {
 /// Overdraw of the sprites of a frame.
 ///
 /// Computed from sprite positions, without the scene: a depth test removes hidden fragments if the hardware rejects
-/// them before shading. Systems whose particles are in a buffer are excluded, because the CPU does not know them.
+/// them before shading. Systems whose particles are in a buffer are excluded, because the CPU does not know them. Slices
+/// of more than 4096 particles, and emitters that the GPU evaluates, are estimated from a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Overdraw {

@@ -26,7 +26,6 @@ pub(crate) struct ParticleUse {
 pub(crate) struct Instances {
     buffer: Option<wgpu::Buffer>,
     idle: IdleCounter,
-    sorted: Vec<Particle>,
     /// Particles of an emitter, evaluated on the CPU.
     evaluated: Vec<Particle>,
 }
@@ -44,6 +43,7 @@ impl Instances {
         used: ParticleUse,
     ) -> Option<Sprites> {
         let loops = settings.sprite.debug_loop;
+        self.evaluated.clear();
         let particles = match particles {
             Particles::Buffer(particles) => {
                 self.buffer = None;
@@ -57,8 +57,11 @@ impl Instances {
             }
         };
         let is_sorted = settings.order() == BlendOrder::Sorted && used.sorted_by == SortedBy::Cpu;
-        order.write(particles, is_sorted, &mut self.sorted);
-        let needed = size_of_val(self.sorted.as_slice()) as u64;
+        if is_sorted {
+            order.sort();
+        }
+        let count = order.indices().len();
+        let needed = (count * size_of::<Particle>()) as u64;
         let held = self.bytes();
         let should_release = self.idle.tick(needed.next_power_of_two() * 4 <= held);
         let mut usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
@@ -67,11 +70,8 @@ impl Instances {
         if !fits || should_release {
             self.buffer = None;
             order.shrink();
-            self.sorted.shrink_to_fit();
         }
-        if needed == 0 {
-            return None;
-        }
+        let size = wgpu::BufferSize::new(needed)?;
         let buffer = self.buffer.get_or_insert_with(|| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("haze particles"),
@@ -80,14 +80,20 @@ impl Instances {
                 mapped_at_creation: false,
             })
         });
-        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.sorted));
-        let (buffer, count) = (buffer.clone(), self.sorted.len() as u32);
+        let mut staging = gpu.queue.write_buffer_with(buffer, 0, size)?;
+        if !is_sorted && count == particles.len() {
+            staging.copy_from_slice(bytemuck::cast_slice(particles));
+        } else {
+            let (sprites, _) = staging.slice(..).into_chunks::<{ size_of::<Particle>() }>();
+            sprites.write_iter(order.indices().map(|index| bytemuck::cast(particles[index])));
+        }
+        let (buffer, count) = (buffer.clone(), count as u32);
         Some(Sprites { buffer, offset: 0, count, loops, is_sorted, by_view_depth: is_sorted })
     }
 
-    /// Returns the uploaded particles in drawing order; empty for a host's buffer.
-    pub fn particles(&self) -> &[Particle] {
-        if self.buffer.is_some() { &self.sorted } else { &[] }
+    /// Returns the emitter's particles of the last upload; empty for other particles.
+    pub fn evaluated(&self) -> &[Particle] {
+        &self.evaluated
     }
 
     /// Returns the bytes of GPU memory held.

@@ -342,7 +342,11 @@ impl Renderer {
             }
             // Without compute shaders, the CPU adds the sprites to the grid.
             (Some(shadow), None) => {
-                let cast = self.states.iter().filter_map(SystemState::cast);
+                let states = &self.states;
+                let cast = frame
+                    .systems
+                    .iter()
+                    .filter_map(|system| states.iter().find(|state| state.key == system.key)?.cast(system.particles));
                 cast.for_each(|(system, particles)| self.sliced_shadow.add(shadow, system, particles));
                 self.sliced_shadow.march(shared, shadow).iter().for_each(|pass| pass.record(encoder));
             }

@@ -19,13 +19,18 @@ use crate::view_setup::{ParticleMeasures, ParticleSpace, ViewGeometry};
 /// Number of particles from which the GPU sorts for a path that draws: the CPU needs 0.2 ms to sort them.
 const MIN_GPU_SORTED: u32 = 32_768;
 
+/// Maximum number of particles of a slice that are kept for [`SystemParticles::drawn`].
+const SAMPLE: usize = 4096;
+
 /// Particles of one system, and the buffers that hold them.
 #[derive(Debug, Default)]
 pub(crate) struct SystemParticles {
     /// Measures of a slice, or of an emitter's sample.
     pub measures: ParticleMeasures,
-    /// Sample of an emitter's particles, for measures and estimates.
+    /// Sample of the particles, for estimates; of an emitter, also for measures.
     sample: Vec<Particle>,
+    /// Number of particles that each of the sample represents.
+    particles_per_sample: u32,
     instances: Instances,
     emitted: EmittedParticles,
     depth_sorted: SortedParticles,
@@ -48,9 +53,7 @@ impl SystemParticles {
         system: &ParticleSystem<'_>,
         settings: &Settings,
     ) -> Bounds {
-        if let Particles::Emitter(emission) = system.particles {
-            emission.sample(&mut self.sample);
-        }
+        self.take_sample(system.particles);
         let (known, _) = known_particles(system.particles, &self.sample).unwrap_or((&[], 1));
         self.measures.measure(space, view.depth.near, known, settings);
         match (system.bounds, system.particles) {
@@ -63,21 +66,45 @@ impl SystemParticles {
         }
     }
 
+    /// Takes a sample that outlives the frame's input.
+    fn take_sample(&mut self, particles: Particles<'_>) {
+        match particles {
+            Particles::Emitter(emission) => {
+                emission.sample(&mut self.sample);
+                self.particles_per_sample = emission.step;
+            }
+            Particles::Slice(particles) => {
+                let step = particles.len().div_ceil(SAMPLE).max(1);
+                self.sample.clear();
+                self.sample.extend(particles.iter().step_by(step).filter(|particle| particle.is_visible()));
+                self.particles_per_sample = step as u32;
+            }
+            Particles::Buffer(_) => self.sample.clear(),
+        }
+    }
+
     /// Returns the particles that the CPU knows, and the number of particles that each represents. `None` for a host's
     /// buffer.
     pub fn known<'a>(&'a self, particles: Particles<'a>) -> Option<(&'a [Particle], u32)> {
         known_particles(particles, &self.sample)
     }
 
-    /// Returns the uploaded particles.
-    pub fn uploaded(&self) -> &[Particle] {
-        self.instances.particles()
+    /// Returns the uploaded particles that the CPU knows, in no order; some may be invisible.
+    pub fn uploaded<'a>(&'a self, particles: Particles<'a>) -> &'a [Particle] {
+        match particles {
+            Particles::Slice(particles) => particles,
+            Particles::Emitter(_) => self.instances.evaluated(),
+            Particles::Buffer(_) => &[],
+        }
     }
 
-    /// Returns the drawn particles that the CPU knows, and the number of particles that each represents. `sampled`:
-    /// that number if the GPU evaluates the emitter.
-    pub fn drawn(&self, sampled: Option<u32>) -> (&[Particle], u32) {
-        sampled.map_or_else(|| (self.instances.particles(), 1), |each| (self.sample.as_slice(), each))
+    /// Returns drawn particles, all or a sample, and the number of particles that each represents. Empty for a host's
+    /// buffer.
+    pub fn drawn(&self) -> (&[Particle], u32) {
+        match self.instances.evaluated() {
+            [] => (&self.sample, self.particles_per_sample),
+            evaluated => (evaluated, 1),
+        }
     }
 
     /// Uploads the particles, or prepares the pass that produces them. Returns `None` if there is nothing to draw.

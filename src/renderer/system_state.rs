@@ -24,7 +24,7 @@ use super::tiled::TiledSystem;
 use super::validate_frame::tiled_unavailable_reason;
 use crate::assets::material_assets::MaterialInfo;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use crate::frame::{Bounds, Particle, ParticleSystem};
+use crate::frame::{Bounds, Particle, ParticleSystem, Particles};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
     LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
@@ -87,8 +87,6 @@ struct PreparedSystem {
     lighting_choice: Option<LightingChoice>,
     /// Choice of the scale mode `auto`; `None` for a fixed scale.
     scale_choice: Option<ScaleChoice>,
-    /// Number of particles that each one of `sample` represents, if the GPU evaluates the emitter; otherwise `None`.
-    sampled: Option<u32>,
     caster: CasterPasses,
     passes: SystemPasses,
 }
@@ -166,10 +164,11 @@ impl SystemState {
     }
 
     /// Returns the particles that the CPU adds to the density grid of the frame, with the uniforms of the system.
-    pub fn cast(&self) -> Option<(&SystemUniform, &[Particle])> {
+    /// `particles`: those of the frame.
+    pub fn cast<'a>(&'a self, particles: Particles<'a>) -> Option<(&'a SystemUniform, &'a [Particle])> {
         let in_sight = self.prepared.as_ref().map(|prepared| &prepared.setup.uniform);
         let uniform = in_sight.or(self.hidden.as_ref().map(|hidden| &hidden.uniform))?;
-        Some((uniform, self.particles.uploaded()))
+        Some((uniform, self.particles.uploaded(particles)))
     }
 
     /// Returns this frame's choice of the path `auto`.
@@ -220,10 +219,10 @@ impl SystemState {
 
     /// Computes the overdraw of the system in `view`.
     pub fn overdraw(&self, view: &ViewUniform) -> Overdraw {
-        let Some(PreparedSystem { setup, technique, trim, sampled, passes, .. }) = &self.prepared else {
+        let Some(PreparedSystem { setup, technique, trim, passes, .. }) = &self.prepared else {
             return Overdraw::default();
         };
-        let (particles, each) = self.particles.drawn(*sampled);
+        let (particles, each) = self.particles.drawn();
         if particles.is_empty() {
             return Overdraw::default();
         }
@@ -356,7 +355,6 @@ impl SystemState {
         let (sprites, particle_pass) = self.particles.upload(context, &space, system.particles, &settings, &groups)?;
         let measure = self.particles.measure_pass(context, system, &settings, &groups, &self.uniform);
         let splat = self.particles.splat_pass(context, system.particles, &sprites, &groups);
-        let sampled = matches!(particle_pass, Some(ParticlePass::Emit(_))).then_some(particles_per_sample);
         let builder = PassBuilder { gpu: *gpu, pipelines: &shared.pipelines, groups, sprites };
         let passes = match &plan {
             Plan::Skip => return None,
@@ -375,7 +373,6 @@ impl SystemState {
             choice,
             lighting_choice: settings.lighting_choice.filter(|_| !settings.is_forward()),
             scale_choice,
-            sampled,
             caster: CasterPasses {
                 alive: AliveCopy::new(&system.particles, &self.uniform),
                 measure,

@@ -38,18 +38,9 @@ impl DrawingOrder {
         self.keys.push((u64::from(ordered_bits(z)) << 32) | index);
     }
 
-    /// Writes the visible particles to `out`: farthest first if `is_sorted`, otherwise in the given order. `particles`
-    /// are those whose keys were read. Equal depths keep their order, so that the image is reproducible.
-    pub fn write(&mut self, particles: &[Particle], is_sorted: bool, out: &mut Vec<Particle>) {
-        if is_sorted {
-            self.sort();
-        }
-        out.clear();
-        if !is_sorted && self.keys.len() == particles.len() {
-            out.extend_from_slice(particles);
-            return;
-        }
-        out.extend(self.keys.iter().map(|&key| particles[(key & 0xffff_ffff) as usize]));
+    /// Returns the indices of the visible particles in drawing order.
+    pub fn indices(&self) -> impl ExactSizeIterator<Item = usize> {
+        self.keys.iter().map(|&key| (key & 0xffff_ffff) as usize)
     }
 
     /// Releases memory that the last sort did not need.
@@ -58,8 +49,9 @@ impl DrawingOrder {
         self.sorted.shrink_to_fit();
     }
 
-    /// Sorts by key, and by index for equal keys: a radix sort from the lowest digit up, each round stable.
-    fn sort(&mut self) {
+    /// Sorts farthest first. Equal depths keep their order, so that the image is reproducible. A radix sort from the
+    /// lowest digit up, each round stable.
+    pub fn sort(&mut self) {
         let Self { keys, sorted } = self;
         if keys.len() < MIN_RADIX_KEYS {
             keys.sort_unstable();
@@ -118,10 +110,10 @@ mod tests {
             at(-3.0, 4.0),
             Particle { amount: 0.0, ..at(-1.0, 5.0) },
         ];
-        let (mut order, mut sorted) = (DrawingOrder::default(), Vec::new());
+        let mut order = DrawingOrder::default();
         order.read(&ParticleSpace::new(&view, &Mat4::IDENTITY), &particles);
-        order.write(&particles, true, &mut sorted);
-        let frames: Vec<_> = sorted.iter().map(|particle| particle.frame).collect();
+        order.sort();
+        let frames: Vec<_> = order.indices().map(|index| particles[index].frame).collect();
         assert_eq!(frames, [3.0, 0.0, 4.0, 2.0]);
     }
 

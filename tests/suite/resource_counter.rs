@@ -26,10 +26,12 @@ impl log::Log for Counter {
 }
 
 /// Returns true if a log message reports a creation: "Device::create_buffer -> …", "Texture::create_view(…) -> …".
-/// Command encoders do not count: the host creates one per frame.
+/// Command encoders do not count, because the host creates one per frame, nor does staging memory: wgpu allocates it for
+/// every upload, and logs it for some.
 fn is_creation(message: &str) -> bool {
     let call = message.split(['(', ' ']).next().unwrap_or_default();
-    call.contains("::create_") && !call.ends_with("create_command_encoder")
+    let in_every_frame = ["create_command_encoder", "create_staging_buffer"];
+    call.contains("::create_") && !in_every_frame.iter().any(|name| call.ends_with(name))
 }
 
 /// Returns the number of resources that this thread creates in `run`.

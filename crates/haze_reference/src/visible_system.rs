@@ -85,8 +85,10 @@ impl<'a> VisibleSystem<'a> {
         let trim = SpriteTrim::new(&settings, material);
         let mut settings = settings;
         ScaleChoice::apply(view, &mut settings, &mut setup, &trim, material, Some((system.particles, 1)), None);
-        let mut particles = Vec::new();
-        measures.order.write(system.particles, settings.order() == BlendOrder::Sorted, &mut particles);
+        if settings.order() == BlendOrder::Sorted {
+            measures.order.sort();
+        }
+        let particles = measures.order.indices().map(|index| system.particles[index]).collect();
         Ok(Self {
             view: view.uniform(false),
             world_from_view: view.view_from_world.inverse(),
