@@ -45,25 +45,30 @@ pub(crate) struct SystemParticles {
 }
 
 impl SystemParticles {
-    /// Measures a slice or an emitter's sample. Returns the world-space box that contains every sprite.
+    /// Measures a slice or an emitter's sample. Returns the world-space boxes of every sprite, and of the smoke that casts
+    /// shadow.
     pub fn measure(
         &mut self,
         view: &ViewGeometry,
         space: &ParticleSpace,
         system: &ParticleSystem<'_>,
         settings: &Settings,
-    ) -> Bounds {
+    ) -> (Bounds, Bounds) {
         self.take_sample(system.particles);
         let (known, _) = known_particles(system.particles, &self.sample).unwrap_or((&[], 1));
         self.measures.measure(space, view.depth.near, known, settings);
-        match (system.bounds, system.particles) {
+        // A host's box and an emitter's do not jump when a sprite dies.
+        let of_all = match (system.bounds, system.particles) {
             (Some(bounds), _) => space.world_bounds(&bounds),
             (None, Particles::Emitter(emission)) => {
                 space.world_bounds(&emission.bounds(SpriteExtent::of(system.settings)))
             }
             // `validate` refuses a buffer without bounds.
-            (None, Particles::Slice(_) | Particles::Buffer(_)) => self.measures.bounds,
-        }
+            (None, Particles::Slice(_) | Particles::Buffer(_)) => {
+                return (self.measures.bounds, self.measures.casting_bounds);
+            }
+        };
+        (of_all, of_all)
     }
 
     /// Takes a sample that outlives the frame's input.

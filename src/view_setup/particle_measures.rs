@@ -5,6 +5,7 @@ use glam::{Mat4, Vec3A};
 use super::drawing_order::DrawingOrder;
 use super::particle_space::ParticleSpace;
 use super::smoke_extent::{ExtentSums, SmokeExtent};
+use crate::formula::smoke_extent::NEARLY_TRANSPARENT;
 use crate::frame::{Bounds, Particle, SpriteExtent};
 use crate::settings::Settings;
 
@@ -13,13 +14,50 @@ use crate::settings::Settings;
 pub struct ParticleMeasures {
     /// Box that contains every sprite, world space.
     pub bounds: Bounds,
+    /// Box of the smoke that casts shadow. Nearly transparent sprites extend it less, so that births and deaths do not
+    /// move it.
+    pub casting_bounds: Bounds,
     pub order: DrawingOrder,
     sums: ExtentSums,
+    /// Boxes of the nearly transparent sprites, and their amounts.
+    faint: Vec<(WorldBox, f32)>,
+}
+
+/// Corners of a box in world space.
+#[derive(Clone, Copy, Debug)]
+struct WorldBox {
+    low: Vec3A,
+    high: Vec3A,
+}
+
+impl WorldBox {
+    const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
+
+    fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Extends the box to a share of the way to the sides of another that lie outside.
+    fn extended(self, other: Self, share: f32) -> Self {
+        let Self { low, high } = self;
+        let union = self.union(other);
+        Self { low: low + (union.low - low) * share, high: high + (union.high - high) * share }
+    }
+
+    fn bounds(self) -> Bounds {
+        Bounds { min: self.low.into(), max: self.high.into() }
+    }
 }
 
 impl Default for ParticleMeasures {
     fn default() -> Self {
-        Self { bounds: Bounds::EMPTY, order: DrawingOrder::default(), sums: ExtentSums::default() }
+        Self {
+            bounds: Bounds::EMPTY,
+            casting_bounds: Bounds::EMPTY,
+            order: DrawingOrder::default(),
+            sums: ExtentSums::default(),
+            faint: Vec::new(),
+        }
     }
 }
 
@@ -29,23 +67,70 @@ impl ParticleMeasures {
     pub fn measure(&mut self, space: &ParticleSpace, near: f32, particles: &[Particle], settings: &Settings) {
         let (extent, size) = (SpriteExtent::of(settings), settings.sprite.size);
         let is_in_world = space.world_from_particles == Mat4::IDENTITY;
-        let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+        let mut dense = WorldBox::EMPTY;
         self.order.clear();
         self.sums.clear();
+        self.faint.clear();
         for (index, particle) in (0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()) {
             let position = Vec3A::from(particle.position);
             let world = if is_in_world { position } else { space.world_from_particles.transform_point3a(position) };
             let reach = extent.reach(particle.radius, particle.velocity.length() * space.scale);
-            (low, high) = (low.min(world - reach), high.max(world + reach));
+            let sprite = WorldBox { low: world - reach, high: world + reach };
+            if particle.amount < NEARLY_TRANSPARENT {
+                self.faint.push((sprite, particle.amount));
+            } else {
+                dense = dense.union(sprite);
+            }
             let in_view = space.view_from_particles.transform_point3a(position);
             self.order.push(in_view.z, index);
             self.sums.include(near, in_view, particle, size);
         }
-        self.bounds = Bounds { min: low.into(), max: high.into() };
+        let all = self.faint.iter().fold(dense, |all, (sprite, _)| all.union(*sprite));
+        let base = if dense.low.x > dense.high.x { all } else { dense };
+        let extended = |&(sprite, amount): &(WorldBox, f32)| base.extended(sprite, amount / NEARLY_TRANSPARENT);
+        let casting = self.faint.iter().map(extended).fold(base, WorldBox::union);
+        (self.bounds, self.casting_bounds) = (all.bounds(), casting.bounds());
     }
 
     /// Returns the extent of the smoke; `None` if no particle is in front of the viewer.
     pub fn extent(&self) -> Option<SmokeExtent> {
         self.sums.extent()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::camera::rh::proj::directx::perspective;
+    use glam::{UVec2, Vec3};
+
+    use super::*;
+    use crate::frame::View;
+    use crate::view_setup::view_geometry::ViewGeometry;
+
+    #[test]
+    fn birth_and_death_of_a_sprite_do_not_move_the_box_that_casts_shadow() {
+        let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));
+        let view = ViewGeometry::new(&view).unwrap();
+        let at = |x: f32, amount| Particle { position: Vec3::new(x, 0.0, -5.0), amount, ..Particle::default() };
+        let measure = |particles: &[Particle]| {
+            let mut measures = ParticleMeasures::default();
+            let space = ParticleSpace::new(&view, &Mat4::IDENTITY);
+            measures.measure(&space, 0.1, particles, &Settings::default());
+            (measures.bounds, measures.casting_bounds)
+        };
+        let alone = measure(&[at(0.0, 1.0)]).1;
+        let mut last = alone;
+        for step in 1..=100 {
+            let (all, casting) = measure(&[at(0.0, 1.0), at(10.0, step as f32 * 1.0e-3)]);
+            assert_eq!(all, measure(&[at(0.0, 1.0), at(10.0, 1.0)]).0);
+            assert_eq!(casting.min, alone.min);
+            let moved = (casting.max - last.max).x;
+            assert!((-1.0e-4..=0.21).contains(&moved), "step {step}: {last:?}, {casting:?}");
+            last = casting;
+        }
+        assert_eq!(last, measure(&[at(0.0, 1.0), at(10.0, 1.0)]).1);
+        // All of the smoke counts if all is nearly transparent.
+        let (all, casting) = measure(&[at(0.0, 0.01), at(10.0, 0.02)]);
+        assert_eq!(all, casting);
     }
 }

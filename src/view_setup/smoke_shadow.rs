@@ -14,11 +14,9 @@ use crate::frame::{Bounds, Light, LightKind, ShadowProjection};
 
 /// Smallest extent of a grid, metres.
 const MIN_EXTENT: f64 = 1.0e-3;
-/// Extents of grids between one and its double. A box that grows changes the size of its cells rarely: each change shows.
-const EXTENTS_PER_OCTAVE: f64 = 2.0;
 
-/// Grid of cubic cells along the axes of the world. Corners of cells lie at multiples of the cell size, so that smoke does
-/// not move against the grid while its box grows.
+/// Grid of cubic cells along the axes of the world. It follows the box of the smoke: a grid that keeps its cells until the
+/// box has outgrown them changes all of them at once, which shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmokeGrid {
     /// Corner of the first cell, metres.
@@ -30,15 +28,14 @@ pub struct SmokeGrid {
 }
 
 impl SmokeGrid {
-    /// Grid around a box, with at most `resolution` cells along each axis. `resolution`: at least 2.
+    /// Grid around a box, with `resolution` cells along its longest side.
     fn new(bounds: &Bounds, resolution: u32) -> Self {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let longest = (max - min).max_element().max(MIN_EXTENT);
-        let extent = ((longest.log2() * EXTENTS_PER_OCTAVE).ceil() / EXTENTS_PER_OCTAVE).exp2();
-        let cell = extent / f64::from(resolution.max(2) - 1);
-        let first = (min / cell).floor();
-        let size = ((max / cell).ceil() - first).clamp(DVec3::ONE, DVec3::splat(f64::from(resolution)));
-        Self { origin: first * cell, cell, size: size.as_uvec3() }
+        let cell = longest / f64::from(resolution.max(1));
+        // Rounding may take the longest side a little beyond the last cell.
+        let size = ((max - min) / cell).ceil().clamp(DVec3::ONE, DVec3::splat(f64::from(resolution)));
+        Self { origin: min, cell, size: size.as_uvec3() }
     }
 
     /// Returns the matrix from cells to world space.
@@ -85,7 +82,7 @@ pub struct SmokeShadow {
 
 impl SmokeShadow {
     /// `up`: world space, unit length. `max_volume_depth`: of a 3D texture, texels. `is_mapped`: true for indices of
-    /// lights that have shadow maps. `systems`: box and settings of each system. Returns `None` if no system receives
+    /// lights that have shadow maps. `systems`: box of the smoke that casts shadow, and settings of each system. Returns `None` if no system receives
     /// shadow, or there is no smoke.
     pub fn new(
         (view, up): (&ViewGeometry, Vec3),

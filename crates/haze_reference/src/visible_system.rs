@@ -60,7 +60,7 @@ impl<'a> VisibleSystem<'a> {
         measured: MeasuredSystem,
         shadow: Option<&SmokeShadow>,
     ) -> Result<Self, Box<SystemUniform>> {
-        let MeasuredSystem { material, space, settings, mut measures, bounds } = measured;
+        let MeasuredSystem { material, space, settings, mut measures, bounds, .. } = measured;
         let material = &material;
         let mut lights = Vec::new();
         let on_system = shadow.map(|shadow| (shadow, settings.shadow_blocks()));
@@ -134,8 +134,10 @@ struct MeasuredSystem {
     space: ParticleSpace,
     settings: ResolvedSettings,
     measures: ParticleMeasures,
-    /// World space.
+    /// Box of every sprite, world space.
     bounds: Bounds,
+    /// Box of the smoke that casts shadow.
+    casting_bounds: Bounds,
 }
 
 impl MeasuredSystem {
@@ -146,8 +148,10 @@ impl MeasuredSystem {
             ResolvedSettings::new(system.settings, space.scale, view.size, *frame_count, ramp_steps, Support::ALL);
         let mut measures = ParticleMeasures::default();
         measures.measure(&space, view.depth.near, system.particles, &settings);
-        let bounds = system.bounds.map_or(measures.bounds, |bounds| space.world_bounds(&bounds));
-        Self { material, space, settings, measures, bounds }
+        let of_host = system.bounds.map(|bounds| space.world_bounds(&bounds));
+        let bounds = of_host.unwrap_or(measures.bounds);
+        let casting_bounds = of_host.unwrap_or(measures.casting_bounds);
+        Self { material, space, settings, measures, bounds, casting_bounds }
     }
 }
 
@@ -183,7 +187,7 @@ pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<Place
         info.validate(index, system.settings)?;
         measured.push(MeasuredSystem::new(&view, system, info));
     }
-    let boxes = measured.iter().map(|measured| (measured.bounds, measured.settings));
+    let boxes = measured.iter().map(|measured| (measured.casting_bounds, measured.settings));
     let is_mapped = |light| frame.shadow_maps.iter().any(|map| map.projection.light == light);
     let shadow = SmokeShadow::new((&view, frame.up.normalize_or(Vec3::Y)), u32::MAX, frame.lights, is_mapped, boxes);
     let (mut visible, mut hidden) = (Vec::new(), Vec::new());
