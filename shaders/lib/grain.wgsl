@@ -28,6 +28,7 @@ fn sample_grain(
     octaves: u32,
 ) -> vec3f {
     var sum = vec4f(0.0);
+    var total = 0.0;
     var place = (GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y) * tiles + phase;
     var weight = 1.0;
     var fine = fineness;
@@ -35,13 +36,16 @@ fn sample_grain(
         let share = weight * octave_share(fine);
         // On GPUs this saves the lookups of octaves that do not show.
         if share > 0.0 {
-            sum += (sample_noise_volume(noise, repeat_sampler, place) - vec4f(vec3f(0.0), MIDDLE_DENSITY)) * share;
+            sum += sample_noise_volume(noise, repeat_sampler, place) * share;
+            total += share;
         }
         place *= 3.0;
         fine *= 3.0;
         weight *= 0.5;
     }
-    return vec3f(dot(sum.xyz, GRAIN_RIGHT), -dot(sum.xyz, GRAIN_DOWN), sum.w);
+    // The texels' offset of 1/2 along all axes is perpendicular to the plane.
+    let gradient = 2.0 * sum.xyz;
+    return vec3f(dot(gradient, GRAIN_RIGHT), -dot(gradient, GRAIN_DOWN), sum.w - MIDDLE_DENSITY * total);
 }
 
 // Erosion of a sprite at an age.

@@ -7,15 +7,13 @@ fn load_noise_volume(noise: texture_3d<f32>, texel: vec3i, size: vec3i) -> vec4f
     return textureLoad(noise, ((texel % size) + size) % size, 0);
 }
 
-// Samples inverse density gradient (-1..1) and density. The noise repeats with every unit of `coordinate`.
+// Samples the noise, which repeats with every unit of `coordinate`. Callers scale the gradient, once for all octaves.
 fn sample_noise_volume(noise: texture_3d<f32>, repeat_sampler: sampler, coordinate: vec3f) -> vec4f {
-    let place = fract(coordinate);
     if !EXACT_FILTERING {
-        let texel = textureSampleLevel(noise, repeat_sampler, place, 0.0);
-        return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
+        return textureSampleLevel(noise, repeat_sampler, coordinate, 0.0);
     }
     let size = vec3i(textureDimensions(noise));
-    let at = place * vec3f(size) - 0.5;
+    let at = fract(coordinate) * vec3f(size) - 0.5;
     let base = floor(at);
     let f = at - base;
     let i = vec3i(base);
@@ -29,11 +27,10 @@ fn sample_noise_volume(noise: texture_3d<f32>, repeat_sampler: sampler, coordina
         mix(load_noise_volume(noise, i + vec3i(0, 1, 1), size), load_noise_volume(noise, i + vec3i(1, 1, 1), size), f.x),
         f.y,
     );
-    let texel = mix(near, far, f.z);
-    return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
+    return mix(near, far, f.z);
 }
 
-// Sums octaves of the noise. Each has three times the frequency and half the weight of the one before; weights sum to
+// Sums octaves of the noise: inverse density gradient (-1..1) and density. Each has three times the frequency and half the weight of the one before; weights sum to
 // 1. (MS)
 fn sample_noise_octaves(noise: texture_3d<f32>, repeat_sampler: sampler, coordinate: vec3f, octaves: u32) -> vec4f {
     var sum = vec4f(0.0);
@@ -46,7 +43,8 @@ fn sample_noise_octaves(noise: texture_3d<f32>, repeat_sampler: sampler, coordin
         weight *= 0.5;
         place *= 3.0;
     }
-    return sum / total;
+    let texel = sum / total;
+    return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
 }
 
 // Noise coordinate of a point. `from_eye` is its position relative to the eye, in world axes; `noise_offset` is the

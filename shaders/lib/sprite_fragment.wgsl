@@ -243,22 +243,32 @@ fn volumetric_fragment(
         view.view_from_world[1].xyz,
         view.view_from_world[2].xyz,
     ));
-    let step = (interval.leave - interval.enter) / f32(MARCH_STEPS);
-    let opacity = system.volume_opacity * in.amount_lod_frame_erosion.x * step;
+    // Places along the ray follow from the entry by a multiple each.
+    let span = interval.leave - interval.enter;
+    let entry = origin + along * interval.enter;
+    let place_at_entry = (entry - centre) / in.centre_radius.w;
+    let place_along = along / in.centre_radius.w;
+    let noise_at_entry =
+        fract(noise_coordinate(world_from_view * entry, system.noise_size, system.noise_offset));
+    let noise_along = world_from_view * along / system.noise_size;
+    let opacity = system.volume_opacity * in.amount_lod_frame_erosion.x * span;
     var normal = vec3f(0.0);
     var transmittance = 1.0;
+    var begin = 0.0;
     for (var i = 0u; i < MARCH_STEPS; i++) {
-        let position = origin + along * (interval.enter + (f32(i) + 0.5) * step);
-        let place = (position - centre) / in.centre_radius.w;
-        let coordinate = noise_coordinate(world_from_view * position, system.noise_size, system.noise_offset);
+        let end = march_boundary(f32(i + 1u) / f32(MARCH_STEPS));
+        let distance = 0.5 * (begin + end) * span;
+        let place = place_at_entry + place_along * distance;
+        let coordinate = noise_at_entry + noise_along * distance;
         let texel = sample_noise_octaves(noise, repeat_sampler, coordinate, NOISE_OCTAVES);
-        var amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
+        var amount = density_amount(opacity * (end - begin), volumetric_density(texel.w, volumetric_falloff(place)));
         if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {
-            amount *= fade_before(scene, -position.z);
+            amount *= fade_before(scene, -(entry.z + along.z * distance));
         }
         // Gradient in view space: a row vector times the inverse rotates forward.
         normal += volumetric_normal(place, texel.xyz * world_from_view) * (amount * transmittance);
         transmittance *= 1.0 - amount;
+        begin = end;
     }
     let total = 1.0 - transmittance;
     return SpriteFragment(normal / max(total, 1.0e-6), NO_LIGHT, total, total, false);

@@ -22,17 +22,20 @@ pub fn octave_share(fineness: f32) -> f32 {
 /// of the flipbook's loop that has passed. `tiles`: of the noise, across the sprite. `fineness`: of the first octave, as
 /// above.
 pub fn sample_grain(noise: &impl Texture3d, uv: Vec2, phase: f32, tiles: f32, fineness: f32, octaves: u32) -> Vec3 {
-    let mut sum = Vec4::ZERO;
+    let (mut sum, mut total) = (Vec4::ZERO, 0.0);
     let mut place = (GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y) * tiles + phase;
     let (mut weight, mut fine) = (1.0, fineness);
     for _ in 0..octaves {
-        let texel = sample_noise_volume(noise, place) - Vec4::new(0.0, 0.0, 0.0, MIDDLE_DENSITY);
-        sum += texel * (weight * octave_share(fine));
+        let share = weight * octave_share(fine);
+        sum += sample_noise_volume(noise, place) * share;
+        total += share;
         place *= 3.0;
         fine *= 3.0;
         weight *= 0.5;
     }
-    Vec3::new(sum.xyz().dot(GRAIN_RIGHT), -sum.xyz().dot(GRAIN_DOWN), sum.w)
+    // The texels' offset of 1/2 along all axes is perpendicular to the plane.
+    let gradient = 2.0 * sum.xyz();
+    Vec3::new(gradient.dot(GRAIN_RIGHT), -gradient.dot(GRAIN_DOWN), sum.w - MIDDLE_DENSITY * total)
 }
 
 /// Erosion of a sprite at an age.

@@ -9,7 +9,7 @@ pub fn load_noise_volume(noise: &impl Texture3d, texel: IVec3) -> Vec4 {
     noise.load(texel.rem_euclid(IVec3::splat(noise.dimensions() as i32)).as_uvec3())
 }
 
-/// Samples inverse density gradient (−1..1) and density. The noise repeats with every unit of `coordinate`.
+/// Samples the noise, which repeats with every unit of `coordinate`: rgb = inverse density gradient / 2 + 1/2, a = density.
 pub fn sample_noise_volume(noise: &impl Texture3d, coordinate: Vec3) -> Vec4 {
     let size = noise.dimensions() as i32;
     let at = (coordinate - coordinate.floor()) * size as f32 - 0.5;
@@ -20,11 +20,10 @@ pub fn sample_noise_volume(noise: &impl Texture3d, coordinate: Vec3) -> Vec4 {
         let row = |y| load(0, y, z).lerp(load(1, y, z), f.x);
         row(0).lerp(row(1), f.y)
     };
-    let texel = slice(0).lerp(slice(1), f.z);
-    (texel.xyz() * 2.0 - 1.0).extend(texel.w)
+    slice(0).lerp(slice(1), f.z)
 }
 
-/// Sums octaves of the noise. Each has three times the frequency and half the weight of the one before; weights sum to
+/// Sums octaves of the noise: inverse density gradient (−1..1) and density. Each has three times the frequency and half the weight of the one before; weights sum to
 /// 1. (MS)
 pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u32) -> Vec4 {
     let (mut sum, mut total, mut weight, mut place) = (Vec4::ZERO, 0.0, 1.0, coordinate);
@@ -34,7 +33,8 @@ pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u
         weight *= 0.5;
         place *= 3.0;
     }
-    sum / total
+    let texel = sum / total;
+    (texel.xyz() * 2.0 - 1.0).extend(texel.w)
 }
 
 /// Noise coordinate of a point. `from_eye` is its position relative to the eye, in world axes; `noise_offset` is the

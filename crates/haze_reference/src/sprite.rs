@@ -19,7 +19,7 @@ use haze::formula::sprite::{
 };
 use haze::formula::stretch::{stretched_normal, unstretched};
 use haze::formula::technique::{
-    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere,
+    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, march_boundary, ray_sphere,
     spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
 };
 use haze::frame::Particle;
@@ -358,16 +358,18 @@ impl VisibleSystem<'_> {
         let system = &self.system;
         let Volumetric { march_steps, noise_octaves, .. } = self.settings.volumetric;
         let rotation = Mat3::from_mat4(self.view.view_from_world);
-        let step = (interval.leave - interval.enter) / march_steps as f32;
-        let opacity = system.volume_opacity * sprite.amount * step;
+        let span = interval.leave - interval.enter;
+        let opacity = system.volume_opacity * sprite.amount * span;
         let (mut normal, mut transmittance) = (Vec3::ZERO, 1.0);
         for i in 0..march_steps {
-            let position = origin + along * (interval.enter + (i as f32 + 0.5) * step);
+            let [begin, end] = [i, i + 1].map(|step| march_boundary(step as f32 / march_steps as f32));
+            let position = origin + along * (interval.enter + 0.5 * (begin + end) * span);
             let place = (position - sprite.centre) / sprite.radius;
             let from_eye = rotation.transpose() * position;
             let coordinate = noise_coordinate(from_eye, system.noise_size, system.noise_offset);
             let texel = sample_noise_octaves(&self.material.noise, coordinate, noise_octaves);
-            let mut amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
+            let density = volumetric_density(texel.w, volumetric_falloff(place));
+            let mut amount = density_amount(opacity * (end - begin), density);
             if self.settings.technique == Technique::VolumetricSoft {
                 amount *= self.fade_before(scene, -position.z);
             }

@@ -30,8 +30,9 @@ pub fn formulas() -> Vec<Formula> {
             mutants: &[
                 ("GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y", "GRAIN_RIGHT * uv.y + GRAIN_DOWN * uv.x"),
                 ("* tiles + phase", "* tiles - phase"),
-                ("-dot(sum.xyz, GRAIN_DOWN)", "dot(sum.xyz, GRAIN_DOWN)"),
-                ("vec4f(vec3f(0.0), MIDDLE_DENSITY)", "vec4f(0.0)"),
+                ("-dot(gradient, GRAIN_DOWN)", "dot(gradient, GRAIN_DOWN)"),
+                ("sum.w - MIDDLE_DENSITY * total", "sum.w - MIDDLE_DENSITY"),
+                ("2.0 * sum.xyz", "sum.xyz"),
                 ("fine *= 3.0", "fine *= 1.0"),
                 ("place *= 3.0", "place *= 2.0"),
                 ("weight *= 0.5", "weight *= 1.0"),

@@ -28,8 +28,7 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: 2e-5,
             mutants: &[
                 ("((texel % size) + size) % size", "clamp(texel, vec3i(0), size - 1)"),
-                ("place * vec3f(size) - 0.5", "place * vec3f(size)"),
-                ("texel.rgb * 2.0 - 1.0", "texel.rgb"),
+                ("fract(coordinate) * vec3f(size) - 0.5", "fract(coordinate) * vec3f(size)"),
                 ("mix(near, far, f.z)", "near"),
             ],
         },
@@ -45,7 +44,12 @@ pub fn formulas() -> Vec<Formula> {
             cases: with_choices(4, &[(-1.0, 1.0); 3]),
             // The rounding error of a coordinate is multiplied by 27 in the fourth octave.
             tolerance: 2e-4,
-            mutants: &[("place *= 3.0", "place *= 2.0"), ("weight *= 0.5", "weight *= 1.0"), ("sum / total", "sum")],
+            mutants: &[
+                ("place *= 3.0", "place *= 2.0"),
+                ("weight *= 0.5", "weight *= 1.0"),
+                ("sum / total", "sum"),
+                ("texel.rgb * 2.0 - 1.0", "texel.rgb"),
+            ],
         },
         Formula {
             name: "noise_coordinate",

@@ -304,7 +304,10 @@ fn spheres() -> Vec<Formula> {
                 ("if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {", "if false {"),
                 ("transmittance *= 1.0 - amount;", ""),
                 ("normal / max(total, 1.0e-6)", "normal"),
-                ("(f32(i) + 0.5) * step", "f32(i) * step"),
+                ("0.5 * (begin + end) * span", "end * span"),
+                ("opacity * (end - begin)", "opacity * end"),
+                ("        begin = end;\n", ""),
+                ("entry.z + along.z * distance", "entry.z"),
             ],
         },
     ]

@@ -161,6 +161,15 @@ fn volumes() -> Vec<Formula> {
             mutants: &[("2.0 * noise - 1.0 + falloff", "noise"), ("* falloff;", ";")],
         },
         Formula {
+            name: "march_boundary",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, march_boundary(x(0)));",
+            reference: |x| vec![technique::march_boundary(x[0])],
+            cases: random(100, &[(0.0, 1.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("squared * squared", "squared"), ("2.0 * done - 1.0", "done")],
+        },
+        Formula {
             name: "volumetric_normal",
             file: "lib/technique.wgsl",
             wgsl: "let v = volumetric_normal(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
