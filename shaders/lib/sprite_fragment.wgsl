@@ -243,13 +243,12 @@ fn volumetric_fragment(
         view.view_from_world[1].xyz,
         view.view_from_world[2].xyz,
     ));
-    // Places along the ray follow from the entry by a multiple each.
+    // Along the ray, a coordinate is its value at the entry plus the distance times its slope.
     let span = interval.leave - interval.enter;
     let entry = origin + along * interval.enter;
     let place_at_entry = (entry - centre) / in.centre_radius.w;
     let place_along = along / in.centre_radius.w;
-    let noise_at_entry =
-        fract(noise_coordinate(world_from_view * entry, system.noise_size, system.noise_offset));
+    let noise_at_entry = fract(noise_coordinate(world_from_view * entry, system.noise_size, system.noise_offset));
     let noise_along = world_from_view * along / system.noise_size;
     let opacity = system.volume_opacity * in.amount_lod_frame_erosion.x * span;
     var normal = vec3f(0.0);
