@@ -12,9 +12,9 @@ use super::sprite_instances::Sprites;
 use super::system_passes::ParticlePass;
 use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
 use super::validate_frame::{exceeds_tiled_limits, is_readable_by_compute};
-use crate::frame::{Bounds, Particle, ParticleSystem, Particles, SpriteExtent};
+use crate::frame::{Particle, ParticleSystem, Particles, SpriteExtent};
 use crate::settings::{BlendOrder, RenderPath, Settings};
-use crate::view_setup::{ParticleMeasures, ParticleSpace, ViewGeometry};
+use crate::view_setup::{ParticleMeasures, ParticleSpace, SystemBoxes, ViewGeometry};
 
 /// Number of particles from which the GPU sorts for a path that draws: the CPU needs 0.2 ms to sort them.
 const MIN_GPU_SORTED: u32 = 32_768;
@@ -45,30 +45,23 @@ pub(crate) struct SystemParticles {
 }
 
 impl SystemParticles {
-    /// Measures a slice or an emitter's sample. Returns the world-space boxes of every sprite, and of the smoke that casts
-    /// shadow.
+    /// Measures a slice or an emitter's sample.
     pub fn measure(
         &mut self,
         view: &ViewGeometry,
         space: &ParticleSpace,
         system: &ParticleSystem<'_>,
         settings: &Settings,
-    ) -> (Bounds, Bounds) {
+    ) -> SystemBoxes {
         self.take_sample(system.particles);
         let (known, _) = known_particles(system.particles, &self.sample).unwrap_or((&[], 1));
         self.measures.measure(space, view.depth.near, known, settings);
-        // A host's box and an emitter's do not jump when a sprite dies.
-        let of_all = match (system.bounds, system.particles) {
-            (Some(bounds), _) => space.world_bounds(&bounds),
-            (None, Particles::Emitter(emission)) => {
-                space.world_bounds(&emission.bounds(SpriteExtent::of(system.settings)))
-            }
+        let known = system.bounds.or(match system.particles {
+            Particles::Emitter(emission) => Some(emission.bounds(SpriteExtent::of(system.settings))),
             // `validate` refuses a buffer without bounds.
-            (None, Particles::Slice(_) | Particles::Buffer(_)) => {
-                return (self.measures.bounds, self.measures.casting_bounds);
-            }
-        };
-        (of_all, of_all)
+            Particles::Slice(_) | Particles::Buffer(_) => None,
+        });
+        self.measures.boxes(known.map(|bounds| space.world_bounds(&bounds)))
     }
 
     /// Takes a sample that outlives the frame's input.

@@ -266,7 +266,7 @@ impl SystemState {
         self.frames_absent.tick(is_missing)
     }
 
-    /// Measures the system. Returns the box of what casts shadow, and the settings, for the shadow of the frame.
+    /// Measures the system. Returns the box of the smoke that casts shadow, and the settings, for the shadow of the frame.
     pub fn measure_box(
         &mut self,
         shared: &Shared,
@@ -277,9 +277,9 @@ impl SystemState {
         let MaterialInfo { frame_count, ramp_steps, .. } = &system.material.info;
         let settings =
             ResolvedSettings::new(system.settings, space.scale, view.size, *frame_count, ramp_steps, shared.support);
-        let (bounds, casting_bounds) = self.particles.measure(view, &space, system, &settings);
-        self.measured = Some(MeasuredSystem { space, settings, bounds });
-        (casting_bounds, settings)
+        let boxes = self.particles.measure(view, &space, system, &settings);
+        self.measured = Some(MeasuredSystem { space, settings, bounds: boxes.all });
+        (boxes.casting, settings)
     }
 
     /// Places the system in the view, uploads its data, and prepares targets and pipelines.

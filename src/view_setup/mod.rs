@@ -24,7 +24,7 @@ pub use density_splat::{cell_optical_depths, density_radius, density_splat, eros
 pub use drawing_order::DrawingOrder;
 pub use lighting_choice::LightingChoice;
 pub use optical_depth::optical_depth;
-pub use particle_measures::ParticleMeasures;
+pub use particle_measures::{ParticleMeasures, SystemBoxes};
 pub use particle_space::ParticleSpace;
 pub use resolved_settings::{ResolvedSettings, Support};
 pub use scale_choice::ScaleChoice;

@@ -12,15 +12,21 @@ use crate::settings::Settings;
 /// Measures of a system's visible particles. Keeps its memory between frames.
 #[derive(Debug)]
 pub struct ParticleMeasures {
-    /// Box that contains every sprite, world space.
-    pub bounds: Bounds,
-    /// Box of the smoke that casts shadow. Nearly transparent sprites extend it less, so that births and deaths do not
-    /// move it.
-    pub casting_bounds: Bounds,
     pub order: DrawingOrder,
+    boxes: SystemBoxes,
     sums: ExtentSums,
     /// Boxes of the nearly transparent sprites, and their amounts.
     faint: Vec<(WorldBox, f32)>,
+}
+
+/// Boxes of a system, world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SystemBoxes {
+    /// Box that contains every sprite.
+    pub all: Bounds,
+    /// Box of the smoke that casts shadow. Nearly transparent sprites extend it less, so that births and deaths do not
+    /// move it.
+    pub casting: Bounds,
 }
 
 /// Corners of a box in world space.
@@ -52,9 +58,8 @@ impl WorldBox {
 impl Default for ParticleMeasures {
     fn default() -> Self {
         Self {
-            bounds: Bounds::EMPTY,
-            casting_bounds: Bounds::EMPTY,
             order: DrawingOrder::default(),
+            boxes: SystemBoxes { all: Bounds::EMPTY, casting: Bounds::EMPTY },
             sums: ExtentSums::default(),
             faint: Vec::new(),
         }
@@ -89,7 +94,13 @@ impl ParticleMeasures {
         let base = if dense.low.x > dense.high.x { all } else { dense };
         let extended = |&(sprite, amount): &(WorldBox, f32)| base.extended(sprite, amount / NEARLY_TRANSPARENT);
         let casting = self.faint.iter().map(extended).fold(base, WorldBox::union);
-        (self.bounds, self.casting_bounds) = (all.bounds(), casting.bounds());
+        self.boxes = SystemBoxes { all: all.bounds(), casting: casting.bounds() };
+    }
+
+    /// Returns the boxes of the measured particles. `known`: box of a host or of an emitter, world space, which takes the
+    /// place of both and does not jump when a sprite dies.
+    pub fn boxes(&self, known: Option<Bounds>) -> SystemBoxes {
+        known.map_or(self.boxes, |known| SystemBoxes { all: known, casting: known })
     }
 
     /// Returns the extent of the smoke; `None` if no particle is in front of the viewer.
@@ -116,21 +127,22 @@ mod tests {
             let mut measures = ParticleMeasures::default();
             let space = ParticleSpace::new(&view, &Mat4::IDENTITY);
             measures.measure(&space, 0.1, particles, &Settings::default());
-            (measures.bounds, measures.casting_bounds)
+            measures.boxes(None)
         };
-        let alone = measure(&[at(0.0, 1.0)]).1;
+        let alone = measure(&[at(0.0, 1.0)]).casting;
         let mut last = alone;
         for step in 1..=100 {
-            let (all, casting) = measure(&[at(0.0, 1.0), at(10.0, step as f32 * 1.0e-3)]);
-            assert_eq!(all, measure(&[at(0.0, 1.0), at(10.0, 1.0)]).0);
+            let SystemBoxes { all, casting } = measure(&[at(0.0, 1.0), at(10.0, step as f32 * 1.0e-3)]);
+            assert_eq!(all, measure(&[at(0.0, 1.0), at(10.0, 1.0)]).all);
             assert_eq!(casting.min, alone.min);
+            // 10 m in the 50 steps up to an amount of 0.05.
             let moved = (casting.max - last.max).x;
             assert!((-1.0e-4..=0.21).contains(&moved), "step {step}: {last:?}, {casting:?}");
             last = casting;
         }
-        assert_eq!(last, measure(&[at(0.0, 1.0), at(10.0, 1.0)]).1);
+        assert_eq!(last, measure(&[at(0.0, 1.0), at(10.0, 1.0)]).casting);
         // All of the smoke counts if all is nearly transparent.
-        let (all, casting) = measure(&[at(0.0, 0.01), at(10.0, 0.02)]);
+        let SystemBoxes { all, casting } = measure(&[at(0.0, 0.01), at(10.0, 0.02)]);
         assert_eq!(all, casting);
     }
 }

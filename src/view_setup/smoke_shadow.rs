@@ -82,8 +82,8 @@ pub struct SmokeShadow {
 
 impl SmokeShadow {
     /// `up`: world space, unit length. `max_volume_depth`: of a 3D texture, texels. `is_mapped`: true for indices of
-    /// lights that have shadow maps. `systems`: box of the smoke that casts shadow, and settings of each system. Returns `None` if no system receives
-    /// shadow, or there is no smoke.
+    /// lights that have shadow maps. `systems`: of each system, the box of the smoke that casts shadow, and the settings.
+    /// Returns `None` if no system receives shadow, or there is no smoke.
     pub fn new(
         (view, up): (&ViewGeometry, Vec3),
         max_volume_depth: u32,

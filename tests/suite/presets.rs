@@ -133,7 +133,7 @@ fn worst_step(mut shot: Shot, frames: u32) -> f32 {
 
 #[test]
 fn births_and_deaths_do_not_pop() {
-    // Three births and three deaths per frame. Measured: at most 1.21. Lighting on a plane through the bounding box's
+    // Three births and three deaths per frame. Measured: at most 1.16. Lighting on a plane through the bounding box's
     // centre gave 2.05.
     for (name, frames) in [("column", 60), ("fence", 30), ("crates", 30), ("dust_storm", 30)] {
         let worst = worst_step(shot(name, UVec2::new(128, 72)), frames);

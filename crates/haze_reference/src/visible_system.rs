@@ -19,8 +19,8 @@ use haze::frame::validate_input::{
 use haze::frame::{Bounds, Particle, View};
 use haze::settings::{BlendOrder, DebugView};
 use haze::view_setup::{
-    ParticleMeasures, ParticleSpace, ResolvedSettings, ScaleChoice, SmokeShadow, SpriteTrim, Support, SystemInput,
-    SystemSetup, ViewGeometry, caster_uniform, light_uniforms, system_setup,
+    ParticleMeasures, ParticleSpace, ResolvedSettings, ScaleChoice, SmokeShadow, SpriteTrim, Support, SystemBoxes,
+    SystemInput, SystemSetup, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
 
 /// Visible system, with the input of its passes.
@@ -60,7 +60,8 @@ impl<'a> VisibleSystem<'a> {
         measured: MeasuredSystem,
         shadow: Option<&SmokeShadow>,
     ) -> Result<Self, Box<SystemUniform>> {
-        let MeasuredSystem { material, space, settings, mut measures, bounds, .. } = measured;
+        let MeasuredSystem { material, space, settings, mut measures, boxes } = measured;
+        let bounds = boxes.all;
         let material = &material;
         let mut lights = Vec::new();
         let on_system = shadow.map(|shadow| (shadow, settings.shadow_blocks()));
@@ -134,10 +135,7 @@ struct MeasuredSystem {
     space: ParticleSpace,
     settings: ResolvedSettings,
     measures: ParticleMeasures,
-    /// Box of every sprite, world space.
-    bounds: Bounds,
-    /// Box of the smoke that casts shadow.
-    casting_bounds: Bounds,
+    boxes: SystemBoxes,
 }
 
 impl MeasuredSystem {
@@ -148,10 +146,8 @@ impl MeasuredSystem {
             ResolvedSettings::new(system.settings, space.scale, view.size, *frame_count, ramp_steps, Support::ALL);
         let mut measures = ParticleMeasures::default();
         measures.measure(&space, view.depth.near, system.particles, &settings);
-        let of_host = system.bounds.map(|bounds| space.world_bounds(&bounds));
-        let bounds = of_host.unwrap_or(measures.bounds);
-        let casting_bounds = of_host.unwrap_or(measures.casting_bounds);
-        Self { material, space, settings, measures, bounds, casting_bounds }
+        let boxes = measures.boxes(system.bounds.map(|bounds| space.world_bounds(&bounds)));
+        Self { material, space, settings, measures, boxes }
     }
 }
 
@@ -187,7 +183,7 @@ pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<Place
         info.validate(index, system.settings)?;
         measured.push(MeasuredSystem::new(&view, system, info));
     }
-    let boxes = measured.iter().map(|measured| (measured.casting_bounds, measured.settings));
+    let boxes = measured.iter().map(|measured| (measured.boxes.casting, measured.settings));
     let is_mapped = |light| frame.shadow_maps.iter().any(|map| map.projection.light == light);
     let shadow = SmokeShadow::new((&view, frame.up.normalize_or(Vec3::Y)), u32::MAX, frame.lights, is_mapped, boxes);
     let (mut visible, mut hidden) = (Vec::new(), Vec::new());
