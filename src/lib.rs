@@ -94,8 +94,8 @@ pub use frame::{
 };
 pub use renderer::{
     Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,
-    PathModelSource, PathReason, PathWorkload, Renderer, SceneDepthKind, TargetViews, TiledMemory, Timing, WarmUp,
-    read_only_depth_is_supported, shader,
+    PathModelSource, PathReason, PathWorkload, Renderer, SceneDepthKind, TargetViews, TiledMemory, Timing,
+    TimingDetail, WarmUp, read_only_depth_is_supported, shader,
 };
 pub use settings::{ScaleBudget, Settings};
 pub use view_setup::{AttachmentRole, AttachmentSet, LightingChoice, ScaleChoice};

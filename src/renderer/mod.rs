@@ -46,7 +46,7 @@ pub use counts::{FrameCounts, Overdraw};
 pub use descriptor::Descriptor;
 pub use gpu::capabilities::read_only_depth_is_supported;
 pub use gpu::frame_times::{FrameTimes, PassTime};
-pub use gpu::timing::Timing;
+pub use gpu::timing::{Timing, TimingDetail};
 pub use memory_use::{MemoryUse, TiledMemory};
 pub use plan::SceneDepthKind;
 pub use targets::TargetViews;
@@ -54,6 +54,7 @@ pub use warm_up::WarmUp;
 
 use frame_bindings::FrameBindings;
 use frame_context::FrameContext;
+use gpu::frame_encoder::FrameEncoder;
 use gpu::host_pass::HostPass;
 use gpu::record::set_viewport_and_scissor;
 use gpu::submission::SubmissionTracker;
@@ -195,35 +196,39 @@ impl Renderer {
     /// of the previous call were neither submitted nor dropped. After an error, [`render`](Self::render) draws nothing
     /// until a `prepare` succeeds.
     pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
+        let encoder = &mut FrameEncoder::new(encoder, self.timing.clone());
         if std::mem::take(&mut self.has_cast) && self.submission.is_outstanding() {
-            self.submission.track(encoder);
+            self.submission.track(encoder.commands());
         } else {
             self.prepare_systems(encoder, frame)?;
         }
         let context = self.context.clone();
         let shared = context.shared();
-        let timing = self.timing.as_ref();
         // Keeps the farthest sample of a multisampled scene depth.
         let resolved = self.resolved_depth.iter().zip(&self.view);
-        resolved.for_each(|(resolved, view)| resolved.pass(shared, view).record(encoder, timing));
+        resolved.for_each(|(resolved, view)| resolved.pass(shared, view).record(encoder));
         for visible in &self.order {
             let Some(SystemPasses::Deferred(passes)) = self.states[visible.state].passes() else { continue };
             // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
-            passes.depth_downsample.iter().chain(&passes.depth_copy).for_each(|pass| pass.record(encoder, timing));
+            passes.depth_downsample.iter().chain(&passes.depth_copy).for_each(|pass| pass.record(encoder));
             // Bakes all lights by normal, for the diffuse modes cubemap and motif.
-            passes.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.diffuse_bake.iter().for_each(|pass| pass.record(encoder));
             // Accumulates sprites as premultiplied normal + amount.
-            passes.accumulate.record(encoder, timing);
+            passes.accumulate.record(encoder);
             // Counts layers, for the overdraw view.
-            passes.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.overdraw.iter().for_each(|pass| pass.record(encoder));
             // Lights the target, if the lighting resolution is the target's.
-            passes.light_target.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.light_target.iter().for_each(|pass| pass.record(encoder));
             // Fits how the lit smoke changes with depth, for its upsampling.
-            passes.depth_slopes.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.depth_slopes.iter().for_each(|pass| pass.record(encoder));
             // Marks where there is smoke, and where it has slopes.
-            passes.mark_cells.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.mark_cells.iter().for_each(|pass| pass.record(encoder));
             // Computes the pixels that transfer draws, where drawing is slow.
-            passes.upsample_lit.iter().for_each(|pass| pass.record(encoder, timing));
+            passes.upsample_lit.iter().for_each(|pass| pass.record(encoder));
+        }
+        // Reads back the lengths of the lists of tiles.
+        for tiled in self.order.iter().filter_map(|visible| self.states[visible.state].tiled_passes()) {
+            tiled.read_entries(encoder.commands());
         }
         // Far to near; systems at equal distance keep the host's order.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -237,7 +242,7 @@ impl Renderer {
     /// # Errors
     /// As [`prepare`](Self::prepare).
     pub fn cast_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
-        self.prepare_systems(encoder, frame)?;
+        self.prepare_systems(&mut FrameEncoder::new(encoder, self.timing.clone()), frame)?;
         self.has_cast = true;
         Ok(())
     }
@@ -256,7 +261,7 @@ impl Renderer {
     }
 
     /// Prepares all systems, and records the passes that do not read the scene's depth.
-    fn prepare_systems(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
+    fn prepare_systems(&mut self, encoder: &mut FrameEncoder<'_>, frame: &FrameInput<'_>) -> Result<(), Error> {
         self.order.clear();
         self.view = None;
         self.validate_submitted()?;
@@ -279,7 +284,7 @@ impl Renderer {
         // Bind group 0 of every system: view and scene depth.
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
         self.sync_system_states(frame);
-        self.submission.track(encoder);
+        self.submission.track(encoder.commands());
         let timing = self.timing.as_ref();
         self.timed_frame = timing.map(|timing| timing.register_prepare(self.timed_frame));
 
@@ -305,7 +310,7 @@ impl Renderer {
         }
         let of_frame = |shadow| self.shadow_volume.of_frame(shadow).or_else(|| self.sliced_shadow.of_frame(shadow));
         let grid = shadow.as_ref().and_then(of_frame);
-        grid.iter().for_each(|_| self.shadow_volume.clear(encoder));
+        grid.iter().for_each(|_| self.shadow_volume.clear(encoder.commands()));
         self.scene_shadow.write(shared, frame, grid);
         if self.screen_shadow.write(shared, frame, &view, shadow.as_ref().filter(|_| grid.is_some())) {
             shared.pipelines.screen_shadow.check(self.scene_pass)?;
@@ -326,19 +331,23 @@ impl Renderer {
                 self.order.push(VisibleSystem { state: index, distance: state.distance() });
             }
             // Copies the number of a host's particles, if only the GPU knows it.
-            state.alive().iter().for_each(|copy| copy.record(encoder));
+            state.alive().iter().for_each(|copy| copy.record(encoder.commands()));
+            // Clears the counters of the lists of tiles.
+            state.tiled_passes().iter().for_each(|tiled| tiled.clear_counters(encoder.commands()));
+        }
+        for state in &self.states {
             // Measures a host's particles, which the CPU cannot read.
-            state.measure().iter().for_each(|pass| pass.record(encoder, timing));
+            state.measure().iter().for_each(|pass| pass.record(encoder));
             // Evaluates an emitter's particles, or sorts a host's particles back to front.
-            state.particle_pass().iter().for_each(|pass| pass.record(encoder, timing));
+            state.particle_pass().iter().for_each(|pass| pass.record(encoder));
             // Adds the sprites to the density grid.
-            state.splat().iter().for_each(|pass| pass.record(encoder, timing));
+            state.splat().iter().for_each(|pass| pass.record(encoder));
         }
         // Marches from the cells of the density grid to the lights; looks up the host's shadow maps.
         match (&shadow, &shared.pipelines.tiled) {
             (Some(shadow), Some(tiled)) => {
-                self.shadow_volume.look_up(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
-                self.shadow_volume.march(tiled, shadow).iter().for_each(|pass| pass.record(encoder, timing));
+                self.shadow_volume.look_up(tiled, shadow).iter().for_each(|pass| pass.record(encoder));
+                self.shadow_volume.march(tiled, shadow).iter().for_each(|pass| pass.record(encoder));
             }
             // Without compute shaders, the CPU adds the sprites to the grid.
             (Some(shadow), None) => {

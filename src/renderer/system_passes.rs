@@ -5,8 +5,7 @@ use std::sync::Arc;
 use super::auto::PathWorkload;
 use super::frame_bindings::DepthBindings;
 use super::gpu::Gpu;
-use super::gpu::record::begin_compute;
-use super::gpu::timing::Timing;
+use super::gpu::frame_encoder::FrameEncoder;
 use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_sort::DepthSort;
 use super::pass::diffuse_bake::DiffuseBake;
@@ -35,10 +34,10 @@ pub(crate) enum ParticlePass {
 }
 
 impl ParticlePass {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
         match self {
-            Self::Emit(emit) => emit.record(&mut begin_compute(encoder, "emit", timing)),
-            Self::DepthSort(sort, groups) => sort.record(&mut begin_compute(encoder, "sort", timing), groups),
+            Self::Emit(emit) => emit.record(frame.compute("emit")),
+            Self::DepthSort(sort, groups) => sort.record(frame.compute("sort"), groups),
         }
     }
 }
@@ -84,10 +83,10 @@ impl AccumulatePasses {
         matches!(self, Self::Tiled(_))
     }
 
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
         match self {
-            Self::Raster(accumulate) => accumulate.record(encoder, timing),
-            Self::Tiled(passes) => passes.record(encoder, timing),
+            Self::Raster(accumulate) => accumulate.record(frame),
+            Self::Tiled(passes) => passes.record(frame),
         }
     }
 }

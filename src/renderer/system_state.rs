@@ -17,10 +17,10 @@ use super::pass::density_splat::DensitySplat;
 use super::pass::measure::Measure;
 use super::plan::{Plan, plan};
 use super::system_particles::SystemParticles;
-use super::system_passes::{ParticlePass, PassBuilder, SystemPasses, TiledContext};
+use super::system_passes::{AccumulatePasses, DeferredPasses, ParticlePass, PassBuilder, SystemPasses, TiledContext};
 use super::system_targets::SystemTargets;
 use super::targets::TargetViews;
-use super::tiled::TiledSystem;
+use super::tiled::{TiledPasses, TiledSystem};
 use super::validate_frame::tiled_unavailable_reason;
 use crate::assets::material_assets::MaterialInfo;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
@@ -64,6 +64,8 @@ pub(crate) struct SystemState {
 #[derive(Debug)]
 struct SystemBindings {
     group: wgpu::BindGroup,
+    /// The same without the volume, for passes that run while it is written.
+    without_shadow: wgpu::BindGroup,
     optical_depths: wgpu::TextureView,
 }
 
@@ -141,6 +143,14 @@ impl SystemState {
     fn caster(&self) -> Option<&CasterPasses> {
         let in_sight = self.prepared.as_ref().map(|prepared| &prepared.caster);
         in_sight.or(self.hidden.as_ref().map(|hidden| &hidden.caster))
+    }
+
+    /// Returns this frame's passes of the path `tiled`.
+    pub fn tiled_passes(&self) -> Option<&TiledPasses> {
+        match self.passes()? {
+            SystemPasses::Deferred(DeferredPasses { accumulate: AccumulatePasses::Tiled(tiled), .. }) => Some(tiled),
+            _ => None,
+        }
     }
 
     /// Returns the copy of the number of a host's particles, if only the GPU knows it. It comes before all passes.
@@ -354,7 +364,8 @@ impl SystemState {
         let groups = self.bind(context, system, depth);
         let (sprites, particle_pass) = self.particles.upload(context, &space, system.particles, &settings, &groups)?;
         let measure = self.particles.measure_pass(context, system, &settings, &groups, &self.uniform);
-        let splat = self.particles.splat_pass(context, system.particles, &sprites, &groups);
+        let splat =
+            self.particles.splat_pass(context, system.particles, &sprites, &self.bindings.without_shadow(&groups));
         let builder = PassBuilder { gpu: *gpu, pipelines: &shared.pipelines, groups, sprites };
         let passes = match &plan {
             Plan::Skip => return None,
@@ -397,7 +408,8 @@ impl SystemState {
         let on_gpu = matches!(settings.path, RenderPath::Auto | RenderPath::Tiled);
         let settings = if on_gpu { settings.with_path(RenderPath::Tiled) } else { *settings };
         let (sprites, particle_pass) = self.particles.upload(context, space, system.particles, &settings, &groups)?;
-        let splat = self.particles.splat_pass(context, system.particles, &sprites, &groups);
+        let splat =
+            self.particles.splat_pass(context, system.particles, &sprites, &self.bindings.without_shadow(&groups));
         Some(CasterPasses {
             alive: AliveCopy::new(&system.particles, &self.uniform),
             measure: None,
@@ -424,16 +436,26 @@ impl SystemState {
 
 impl SystemBindings {
     fn new(shared: &Shared, uniform: &wgpu::Buffer, lights: &wgpu::Buffer, optical_depths: &wgpu::TextureView) -> Self {
-        let group = shared.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("haze system"),
-            layout: &shared.layouts.system,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: lights.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(optical_depths) },
-            ],
-        });
-        Self { group, optical_depths: optical_depths.clone() }
+        let group = |volume| {
+            shared.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("haze system"),
+                layout: &shared.layouts.system,
+                entries: &[
+                    wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                    wgpu::BindGroupEntry { binding: 1, resource: lights.as_entire_binding() },
+                    wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(volume) },
+                ],
+            })
+        };
+        Self {
+            group: group(optical_depths),
+            without_shadow: group(&shared.no_shadow),
+            optical_depths: optical_depths.clone(),
+        }
+    }
+
+    fn without_shadow(&self, groups: &Groups) -> Groups {
+        Groups { system: self.without_shadow.clone(), ..groups.clone() }
     }
 }
 

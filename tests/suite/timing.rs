@@ -8,10 +8,12 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use haze::settings::{DiffuseMode, LightingResolution, RenderPath};
-use haze::{Context, Error, FrameInput, FrameTimes, ParticleSystem, Particles, SceneDepth, Settings, Timing, wgpu};
+use haze::{
+    Context, Error, FrameInput, FrameTimes, ParticleSystem, Particles, SceneDepth, Settings, Timing, TimingDetail, wgpu,
+};
 use haze_demo::headless::Headless;
 
-use crate::gpu::{can_test, gpu, has_independent_devices};
+use crate::gpu::{can_test, gpu, has_independent_devices, is_tiled_available};
 use crate::resource_counter;
 use crate::test_host::Host;
 use crate::test_scene::TestScene;
@@ -101,6 +103,32 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
     assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), ["host", "forward"]);
     scene.particles.clear();
     assert_eq!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)), ["host"]);
+}
+
+#[test]
+fn compute_passes_that_follow_each_other_are_one_in_a_frame() {
+    let Some(gpu) = timed_gpu().filter(|_| is_tiled_available()) else { return };
+    let mut scene = scene();
+    scene.settings = Settings { path: RenderPath::Tiled, ..Settings::default() };
+    scene.settings.accumulate.scale = 2;
+    let (mut host, timing) = timed_host(gpu, &scene);
+    let each = draw_and_measure(gpu, &mut host, &timing, &scene);
+    let computed = pass_names(&each).into_iter().take_while(|name| *name != "host").count();
+    assert!(computed >= 5, "{each:?}");
+    let picture = host.picture(gpu).unwrap();
+    timing.set_detail(TimingDetail::Frame);
+    let times = draw_and_measure(gpu, &mut host, &timing, &scene);
+    let names = pass_names(&times);
+    assert_eq!((names[0], &names[1..]), ("compute", &pass_names(&each)[computed..]));
+    assert_eq!((times.discarded, host.picture(gpu).unwrap()), (0, picture));
+    // A drawn pass ends it.
+    scene.settings.path = RenderPath::Raster;
+    scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
+    let times = draw_and_measure(gpu, &mut host, &timing, &scene);
+    assert!(!pass_names(&times).contains(&"compute"), "{times:?}");
+    timing.set_detail(TimingDetail::Passes);
+    scene.settings.path = RenderPath::Tiled;
+    assert!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)).contains(&"tile_project"));
 }
 
 #[test]

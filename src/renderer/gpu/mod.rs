@@ -2,6 +2,7 @@
 
 pub(crate) mod capabilities;
 pub(crate) mod error_scopes;
+pub(crate) mod frame_encoder;
 pub(crate) mod frame_times;
 pub(crate) mod host_pass;
 pub(crate) mod idle_counter;

@@ -42,15 +42,6 @@ pub(crate) fn begin_pass<'a>(
     })
 }
 
-pub(crate) fn begin_compute<'a>(
-    encoder: &'a mut wgpu::CommandEncoder,
-    label: &'static str,
-    timing: Option<&Timing>,
-) -> wgpu::ComputePass<'a> {
-    let timestamp_writes = timing.and_then(|timing| timing.compute_pass(label));
-    encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes })
-}
-
 /// Restricts a pass to a rectangle of its targets.
 pub(crate) fn set_viewport_and_scissor(pass: &mut wgpu::RenderPass<'_>, origin: glam::UVec2, size: glam::UVec2) {
     pass.set_viewport(origin.x as f32, origin.y as f32, size.x as f32, size.y as f32, 0.0, 1.0);

@@ -10,13 +10,13 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::Groups;
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::host_pass::MAX_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{
     ADD_ALL, QUAD_STRIP, RenderPipelineDescription, bool_constant, color_target, depth_compare, enum_constant,
     read_only_depth,
 };
-use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor, tested_depth};
-use crate::renderer::gpu::timing::Timing;
+use crate::renderer::gpu::record::{color_attachment, set_viewport_and_scissor, tested_depth};
 use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, attachment_constants, attachments};
 use crate::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
@@ -96,11 +96,10 @@ pub(crate) struct Accumulate {
 }
 
 impl Accumulate {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
         let attachments: [_; MAX_ATTACHMENTS] = std::array::from_fn(|index| color_attachment(self.targets.get(index)?));
         let attachments = &attachments[..self.targets.len()];
-        let mut pass =
-            begin_pass(encoder, "accumulate", attachments, self.tested_depth.as_ref().map(tested_depth), timing);
+        let mut pass = frame.render("accumulate", attachments, self.tested_depth.as_ref().map(tested_depth));
         set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         self.groups.bind(&mut pass);

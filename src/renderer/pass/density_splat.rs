@@ -6,9 +6,8 @@
 use glam::UVec2;
 
 use super::Groups;
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
-use crate::renderer::gpu::record::begin_compute;
-use crate::renderer::gpu::timing::Timing;
 
 /// Returns the pipeline's parts.
 pub(crate) fn describe((): ()) -> ComputePipelineDescription {
@@ -27,10 +26,10 @@ pub(crate) struct DensitySplat {
 }
 
 impl DensitySplat {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        let mut pass = begin_compute(encoder, "density_splat", timing);
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+        let pass = frame.compute("density_splat");
         pass.set_pipeline(&self.pipeline);
-        self.groups.bind_to_compute(&mut pass);
+        self.groups.bind_to_compute(pass);
         pass.set_bind_group(3, &self.inputs, &[]);
         pass.dispatch_workgroups(self.workgroups.x, self.workgroups.y, 1);
     }

@@ -7,9 +7,9 @@
 
 use glam::UVec2;
 
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, read_only_depth};
-use crate::renderer::gpu::record::{begin_pass, set_viewport_and_scissor, written_depth};
-use crate::renderer::gpu::timing::Timing;
+use crate::renderer::gpu::record::{set_viewport_and_scissor, written_depth};
 
 /// Format of the resolved depth.
 pub(crate) const RESOLVED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -49,8 +49,8 @@ pub(crate) struct DepthResolve<'a> {
 }
 
 impl DepthResolve<'_> {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        let mut pass = begin_pass(encoder, "depth_resolve", &[], Some(written_depth(self.target)), timing);
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+        let mut pass = frame.render("depth_resolve", &[], Some(written_depth(self.target)));
         set_viewport_and_scissor(&mut pass, self.origin, self.size);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, self.samples, &[]);

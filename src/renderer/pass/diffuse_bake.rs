@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 use super::Groups;
 use crate::formula::diffuse_bake::baked_size_and_layers;
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, color_target, enum_constant};
-use crate::renderer::gpu::record::{begin_pass, color_attachment};
-use crate::renderer::gpu::timing::Timing;
+use crate::renderer::gpu::record::color_attachment;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
 use crate::settings::{Backlight, DiffuseMode, RampFilter};
 
@@ -55,9 +55,9 @@ pub(crate) struct DiffuseBake {
 }
 
 impl DiffuseBake {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
         for (face, view) in (0..).zip(self.faces.iter()) {
-            let mut pass = begin_pass(encoder, "diffuse_bake", &[color_attachment(view)], None, timing);
+            let mut pass = frame.render("diffuse_bake", &[color_attachment(view)], None);
             pass.set_pipeline(&self.pipeline);
             self.groups.bind(&mut pass);
             pass.draw(3 * face..3 * face + 3, 0..1);

@@ -7,9 +7,8 @@ use std::mem::offset_of;
 
 use super::Groups;
 use crate::formula::uniforms::SystemUniform;
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
-use crate::renderer::gpu::record::begin_compute;
-use crate::renderer::gpu::timing::Timing;
 
 /// Invocations of a workgroup, and the largest number of workgroups: WORKGROUP in `shaders/measure.wgsl`.
 pub(crate) const WORKGROUP: u32 = 256;
@@ -63,16 +62,15 @@ pub(crate) struct Measure {
 }
 
 impl Measure {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        let mut pass = begin_compute(encoder, "measure", timing);
-        self.groups.bind_to_compute(&mut pass);
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+        let pass = frame.compute("measure");
+        self.groups.bind_to_compute(pass);
         pass.set_bind_group(3, &self.inputs, &[]);
         for (pipeline, workgroups) in self.pipelines.iter().zip([self.workgroups, 1, self.workgroups]) {
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(workgroups, 1, 1);
         }
-        drop(pass);
         let place = offset_of!(SystemUniform, centre) as u64;
-        encoder.copy_buffer_to_buffer(&self.measured, 0, &self.system, place, EXTENT_BYTES);
+        frame.commands().copy_buffer_to_buffer(&self.measured, 0, &self.system, place, EXTENT_BYTES);
     }
 }

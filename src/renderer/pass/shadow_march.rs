@@ -6,9 +6,8 @@
 
 use glam::UVec3;
 
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
-use crate::renderer::gpu::record::begin_compute;
-use crate::renderer::gpu::timing::Timing;
 
 /// Cells of a workgroup along each axis: SIDE in `shaders/shadow_march.wgsl`.
 const SIDE: u32 = 4;
@@ -54,8 +53,8 @@ pub(crate) struct ShadowMarch {
 }
 
 impl ShadowMarch {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        let mut pass = begin_compute(encoder, "shadow_march", timing);
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+        let pass = frame.compute("shadow_march");
         let workgroups = |cells: u32| cells.div_ceil(SIDE);
         // With the empty cells around the grid.
         let [x, y, z] = (self.size + 2).to_array().map(workgroups);

@@ -5,9 +5,8 @@
 
 use glam::UVec3;
 
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
-use crate::renderer::gpu::record::begin_compute;
-use crate::renderer::gpu::timing::Timing;
 
 /// Cells of a workgroup along each axis.
 const SIDE: u32 = 2;
@@ -28,8 +27,8 @@ pub(crate) struct ShadowVisibility {
 }
 
 impl ShadowVisibility {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
-        let mut pass = begin_compute(encoder, "shadow_visibility", timing);
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+        let pass = frame.compute("shadow_visibility");
         pass.set_pipeline(&self.pipeline);
         let workgroups = |cells: u32| cells.div_ceil(SIDE);
         for inputs in &self.inputs {

@@ -4,8 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::storage_buffers::WORD_BYTES;
-use crate::renderer::gpu::record::begin_compute;
-use crate::renderer::gpu::timing::Timing;
+use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::Sort;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
@@ -30,15 +29,17 @@ pub(crate) struct TiledPasses {
 }
 
 impl TiledPasses {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+    /// Clears the counters of list entries.
+    pub fn clear_counters(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.counters, 0, None);
-        self.project.record(&mut begin_compute(encoder, "tile_project", timing), &self.groups);
-        self.sort.iter().for_each(|sort| sort.record(&mut begin_compute(encoder, "sort", timing)));
-        self.record_bin(&mut begin_compute(encoder, "tile_bin", timing));
-        let refine = self.refine.iter();
-        refine.for_each(|refine| refine.record(&mut begin_compute(encoder, "tile_refine", timing), &self.groups));
-        self.accumulate.record(&mut begin_compute(encoder, "tile_accumulate", timing), &self.groups);
-        self.read_entries(encoder);
+    }
+
+    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+        self.project.record(frame.compute("tile_project"), &self.groups);
+        self.sort.iter().for_each(|sort| sort.record(frame.compute("sort")));
+        self.record_bin(frame.compute("tile_bin"));
+        self.refine.iter().for_each(|refine| refine.record(frame.compute("tile_refine"), &self.groups));
+        self.accumulate.record(frame.compute("tile_accumulate"), &self.groups);
     }
 
     fn record_bin(&self, pass: &mut wgpu::ComputePass<'_>) {
@@ -47,7 +48,7 @@ impl TiledPasses {
     }
 
     /// Reads back how many list entries this frame needs, to size the buffer of later frames.
-    fn read_entries(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub fn read_entries(&self, encoder: &mut wgpu::CommandEncoder) {
         // One reference belongs to the system, one to this frame. More mean that a read-back is in flight.
         if Arc::strong_count(&self.read_back) > 2 {
             return;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use haze::preset::PresetSystem;
 use haze::settings::{AccumulationFormat, DebugView, RenderPath};
-use haze::{Error, Timing, wgpu};
+use haze::{Error, FrameTimes, Timing, TimingDetail, wgpu};
 use haze_author::particle_files::{self, ParticleFrames};
 use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
@@ -48,7 +48,7 @@ pub struct CaseBench<'a> {
 }
 
 /// Milliseconds of a frame's smoke, and of each of its passes.
-struct FrameTimes {
+struct SmokeTimes {
     ms: f64,
     passes: Vec<(&'static str, f64)>,
 }
@@ -131,7 +131,7 @@ impl<'a> CaseBench<'a> {
                     continue;
                 }
                 let taken = self.frame(&mut case.offscreen, &case.case.shot)?;
-                let Some(FrameTimes { ms, passes }) = taken else { continue };
+                let Some(SmokeTimes { ms, passes }) = taken else { continue };
                 if round >= WARM_UP_ROUNDS || ms > SLOW_MS {
                     case.times.push(ms);
                     passes.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
@@ -182,7 +182,7 @@ impl<'a> CaseBench<'a> {
         offscreen.set_timing(self.timing.as_ref())?;
         match self.frame(&mut offscreen, &case.shot)? {
             None => return Ok(Err("the GPU returned no valid timestamps for it".into())),
-            Some(FrameTimes { ms, .. }) if ms > longest => {
+            Some(SmokeTimes { ms, .. }) if ms > longest => {
                 self.costs.insert(case.work.0.clone(), ms / case.work.1);
                 return Ok(Err(seconds(ms)));
             }
@@ -193,12 +193,28 @@ impl<'a> CaseBench<'a> {
     }
 
     /// Draws a frame; `None` if the GPU returned no valid timestamps in [`MAX_TRIES`] frames.
-    fn frame(&mut self, offscreen: &mut OffscreenRenderer, shot: &Shot) -> Result<Option<FrameTimes>, Error> {
-        let Some(timing) = &self.timing else {
+    fn frame(&mut self, offscreen: &mut OffscreenRenderer, shot: &Shot) -> Result<Option<SmokeTimes>, Error> {
+        if self.timing.is_none() {
             let _pause = self.keepalive.pause();
             let ms = offscreen.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
-            return Ok(Some(FrameTimes { ms, passes: Vec::new() }));
-        };
+            return Ok(Some(SmokeTimes { ms, passes: Vec::new() }));
+        }
+        // Passes are measured in a frame of their own, because measuring them one by one slows the frame down.
+        let Some(times) = self.timed_frame(offscreen, shot, TimingDetail::Frame)? else { return Ok(None) };
+        let Some(by_pass) = self.timed_frame(offscreen, shot, TimingDetail::Passes)? else { return Ok(None) };
+        let passes = by_pass.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
+        Ok(Some(SmokeTimes { ms: f64::from(times.smoke_ms()), passes }))
+    }
+
+    /// Draws a frame with timestamps; `None` if the GPU returned no valid ones in [`MAX_TRIES`] frames.
+    fn timed_frame(
+        &mut self,
+        offscreen: &mut OffscreenRenderer,
+        shot: &Shot,
+        detail: TimingDetail,
+    ) -> Result<Option<FrameTimes>, Error> {
+        let Some(timing) = &self.timing else { return Ok(None) };
+        timing.set_detail(detail);
         for _ in 0..MAX_TRIES {
             let before = timing.latest().map(|times| times.frame);
             let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -210,8 +226,7 @@ impl<'a> CaseBench<'a> {
             let Some(times) = timing.latest().filter(|times| before != Some(times.frame)) else { continue };
             self.discarded += u64::from(times.discarded);
             if times.discarded == 0 {
-                let passes = times.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
-                return Ok(Some(FrameTimes { ms: f64::from(times.smoke_ms()), passes }));
+                return Ok(Some(times));
             }
         }
         Ok(None)

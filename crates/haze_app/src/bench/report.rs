@@ -121,7 +121,8 @@ pub struct Row {
     pub samples: u32,
     /// Milliseconds per frame of the smoke.
     pub gpu_ms: Milliseconds,
-    /// Median milliseconds per frame, by pass.
+    /// Median milliseconds per frame, by pass. They are measured in frames of their own and may add up to more than `gpu_ms`, because
+    /// passes that are measured one by one cannot overlap.
     pub passes: BTreeMap<String, f64>,
     /// Fragments shaded per frame.
     pub fragments: Option<u64>,
