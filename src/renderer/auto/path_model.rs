@@ -101,8 +101,8 @@ impl PathModelSource {
 
 impl PathModel {
     /// Measured on an NVIDIA H200: `bench/results/h200_auto.json`; the traversal in `h200.json`; further textures and grain
-    /// by the suite `sprites`; pixels by the suite `frame` (`h100_frame.json`): `raster` draws depth_downsample, `tiled` computes
-    /// it.
+    /// by the suite `sprites`; pixels, and the cost per frame of `tiled`, by the suite `frame` (`h100_frame.json`,
+    /// `h200_frame.json`): `raster` draws depth_downsample, `tiled` computes it.
     const GPU: Self = Self {
         raster: PathCosts {
             frame: 10.0e3,
@@ -119,7 +119,7 @@ impl PathModel {
             block: [0; 2],
         },
         tiled: PathCosts {
-            frame: 48.0e3,
+            frame: 28.0e3,
             texel: 0.01,
             pixel: 0.008,
             sprite: 5.0,
