@@ -20,10 +20,8 @@ use super::sprite_shots::mean_alpha;
 use super::suites::{Case, Group, Suite};
 use crate::interrupt;
 
-/// Least number of warm-up rounds, which are not counted.
+/// Warm-up rounds of a GPU, which are not counted. Software adapters need none: the first look at a case has compiled its shaders.
 const WARM_UP_ROUNDS: usize = 2;
-/// Frames slower than this, milliseconds, count in the warm-up rounds too: the first look at a case has warmed it up.
-const SLOW_MS: f64 = 300.0;
 /// Consecutive frames without a valid time after which a case is given up.
 const MAX_TRIES: u32 = 8;
 /// Most rounds of a group; more rounds add no information.
@@ -34,6 +32,8 @@ const MIN_ROUNDS: usize = 3;
 pub struct CaseBench<'a> {
     gpu: &'a Headless,
     keepalive: &'a ClockKeepalive<'a>,
+    /// True if a CPU renders.
+    is_software: bool,
     context: OffscreenContext,
     timing: Option<Timing>,
     /// Floor of the time per fragment, milliseconds, by format.
@@ -69,6 +69,7 @@ impl<'a> CaseBench<'a> {
         let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
         Self {
             timing: context.timing().filter(|_| is_whole),
+            is_software: gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
             gpu,
             keepalive,
             context,
@@ -119,10 +120,11 @@ impl<'a> CaseBench<'a> {
         running.iter_mut().zip(reference.flips(&pictures)).for_each(|(case, flip)| case.quality.flip = Some(flip));
         drop((reference, pictures));
         let mut is_whole = true;
-        for round in 0..WARM_UP_ROUNDS + MAX_ROUNDS {
+        let warm_up_rounds = if self.is_software { 0 } else { WARM_UP_ROUNDS };
+        for round in 0..warm_up_rounds + MAX_ROUNDS {
             is_whole = !interrupt::is_requested();
             let is_late = started.elapsed() > budget;
-            if !is_whole || (is_late && round >= WARM_UP_ROUNDS + MIN_ROUNDS) {
+            if !is_whole || (is_late && round >= warm_up_rounds + MIN_ROUNDS) {
                 break;
             }
             for case in &mut running {
@@ -132,7 +134,7 @@ impl<'a> CaseBench<'a> {
                 }
                 let taken = self.frame(&mut case.offscreen, &case.case.shot)?;
                 let Some(SmokeTimes { ms, passes }) = taken else { continue };
-                if round >= WARM_UP_ROUNDS || ms > SLOW_MS {
+                if round >= warm_up_rounds {
                     case.times.push(ms);
                     passes.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
                 }
@@ -199,11 +201,15 @@ impl<'a> CaseBench<'a> {
             let ms = offscreen.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
             return Ok(Some(SmokeTimes { ms, passes: Vec::new() }));
         }
-        // Passes are measured in a frame of their own, because measuring them one by one slows the frame down.
-        let Some(times) = self.timed_frame(offscreen, shot, TimingDetail::Frame)? else { return Ok(None) };
         let Some(by_pass) = self.timed_frame(offscreen, shot, TimingDetail::Passes)? else { return Ok(None) };
+        let mut ms = by_pass.smoke_ms();
+        if !self.is_software {
+            // Measuring each pass slows a GPU down, so the frame is measured by itself.
+            let Some(times) = self.timed_frame(offscreen, shot, TimingDetail::Frame)? else { return Ok(None) };
+            ms = times.smoke_ms();
+        }
         let passes = by_pass.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
-        Ok(Some(SmokeTimes { ms: f64::from(times.smoke_ms()), passes }))
+        Ok(Some(SmokeTimes { ms: f64::from(ms), passes }))
     }
 
     /// Draws a frame with timestamps; `None` if the GPU returned no valid ones in [`MAX_TRIES`] frames.
