@@ -86,7 +86,7 @@ impl MaterialAssets {
     pub fn info(&self) -> MaterialInfo {
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,
-            alpha_bounds: Arc::new(AlphaBounds::new(&self.sprite, self.six_way.as_ref())),
+            alpha_bounds: Arc::new(self.sprite.alpha_bounds(self.six_way.as_ref())),
             frame_count: self.sprite.frame_count() as f32,
             detail: self.detail.as_ref().map(|detail| DetailInfo {
                 frame_count: detail.frame_count(),

@@ -1,7 +1,9 @@
 //! Volume of a frame's shadow: optical depths from the cells of its density grid to its lights, and the lights' visibility
 //! past the scene.
 
-use glam::{IVec3, UVec3, Vec3};
+use std::ops::{Add, Mul};
+
+use glam::{UVec3, Vec3};
 
 /// Optical depths from the cells of a frame's density grid to its lights with shadow.
 pub struct OpticalDepths {
@@ -33,32 +35,32 @@ impl OpticalDepths {
     }
 
     fn sample_cells(&self, cells: &[Vec3], place: Vec3) -> Vec3 {
-        let inside = place.clamp(Vec3::splat(0.5), self.size.as_vec3() - 0.5);
-        let load = |cell: IVec3, channel: usize| {
-            cell_index(self.size, cell).and_then(|index| cells.get(index)).map_or(0.0, |depths| depths[channel])
-        };
-        Vec3::from([0, 1, 2].map(|channel| trilinear(inside, |cell| load(cell, channel))))
+        trilinear(self.size, cells, place.clamp(Vec3::splat(0.5), self.size.as_vec3() - 0.5))
     }
 }
 
-/// Index of a cell; `None` outside the grid.
-pub fn cell_index(size: UVec3, cell: IVec3) -> Option<usize> {
-    let inside = cell.cmpge(IVec3::ZERO).all() && cell.cmplt(size.as_ivec3()).all();
-    let at = cell.as_uvec3();
-    inside.then(|| ((at.z * size.y + at.y) * size.x + at.x) as usize)
-}
-
-/// Value at a place, in cells, between the centres of eight cells. `sample_density()` in shadow_march.wgsl
-/// and shadow_march_slice.wgsl.
-pub fn trilinear(place: Vec3, load: impl Fn(IVec3) -> f32) -> f32 {
+/// Value at a place, in cells, between the centres of eight cells, x first; 0 outside the grid. `sample_density()` in
+/// shadow_march.wgsl and shadow_march_slice.wgsl.
+pub fn trilinear<T>(size: UVec3, cells: &[T], place: Vec3) -> T
+where
+    T: Copy + Default + Add<Output = T> + Mul<f32, Output = T>,
+{
     let low = (place - 0.5).floor();
     let high_weight = place - 0.5 - low;
     let low_weight = 1.0 - high_weight;
-    let mut sum = 0.0;
-    for corner in 0..8 {
-        let offset = IVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
-        let weight = Vec3::select(offset.cmpeq(IVec3::ONE), high_weight, low_weight);
-        sum += load(low.as_ivec3() + offset) * weight.x * weight.y * weight.z;
+    let (low, size) = (low.as_ivec3(), size.as_ivec3());
+    let mut sum = T::default();
+    for (z, weight_z) in [(low.z, low_weight.z), (low.z + 1, high_weight.z)] {
+        for (y, weight_y) in [(low.y, low_weight.y), (low.y + 1, high_weight.y)] {
+            if !(0..size.y).contains(&y) || !(0..size.z).contains(&z) {
+                continue;
+            }
+            let row = (z * size.y + y) * size.x;
+            for (x, weight_x) in [(low.x, low_weight.x), (low.x + 1, high_weight.x)] {
+                let cell = cells.get((row + x) as usize).filter(|_| (0..size.x).contains(&x));
+                sum = cell.map_or(sum, |cell| sum + *cell * weight_x * weight_y * weight_z);
+            }
+        }
     }
     sum
 }

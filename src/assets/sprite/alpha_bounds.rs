@@ -3,14 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec4};
 
-use super::Sprite;
 use crate::formula::sprite::FlipbookFrames;
 
 /// Alpha bounds of a frame at a mip level, including the footprint of bilinear filtering. Read by
 /// `alpha_bounds_texel()` in `shaders/lib/sprite_vertex.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-struct AlphaBoundsTexel {
+pub(super) struct AlphaBoundsTexel {
     /// Bit mask of 8 by 8 cells: a bit is set if its cell has any amount. Row by row from the top, first cell in the
     /// lowest bit.
     cells: u64,
@@ -28,14 +27,9 @@ pub struct AlphaBounds {
 }
 
 impl AlphaBounds {
-    /// Computes the bounds of `sprite`, followed by those of `after`: its six-way maps.
-    pub fn new(sprite: &Sprite, after: Option<&Sprite>) -> Self {
-        let frames = std::iter::once(sprite).chain(after);
-        let frames = frames.flat_map(|sprite| (0..sprite.frame_count()).map(move |frame| (sprite, frame)));
-        let texels = frames.flat_map(|(sprite, frame)| {
-            (0..sprite.level_count()).map(move |level| alpha_bounds_texel(sprite, level, frame))
-        });
-        Self { level_count: sprite.level_count(), texels: texels.collect() }
+    /// `texels`: frame by frame, each with all mip levels.
+    pub(super) fn new(level_count: u32, texels: Vec<AlphaBoundsTexel>) -> Self {
+        Self { level_count, texels }
     }
 
     /// Returns the number of mip levels (x) and frames (y).
@@ -61,9 +55,9 @@ impl AlphaBounds {
     }
 }
 
-fn alpha_bounds_texel(sprite: &Sprite, level: u32, frame: u32) -> AlphaBoundsTexel {
+/// Computes the bounds of a frame at a mip level. `texels`: row by row from the top, `size` in each.
+pub(super) fn alpha_bounds_texel(texels: &[[u8; 4]], size: u32) -> AlphaBoundsTexel {
     const CELLS: f32 = 8.0;
-    let size = sprite.level_size(level);
     // Bilinear filtering extends a texel by half a texel; 0.05 more allows for the sampler's rounding.
     let found = |texel: u32| [texel as f32 - 0.55, texel as f32 + 1.55].map(|place| place / size as f32);
     let cells = |texel: u32| found(texel).map(|place| (place * CELLS).clamp(0.0, CELLS - 1.0) as u64);
@@ -75,7 +69,7 @@ fn alpha_bounds_texel(sprite: &Sprite, level: u32, frame: u32) -> AlphaBoundsTex
         .collect();
     let mut alpha_bounds = AlphaBoundsTexel::zeroed();
     let mut reach = [0.0_f32; 4];
-    for (y, row) in (0..).zip(sprite.frame_texels(level, frame).chunks_exact(size as usize)) {
+    for (y, row) in (0..).zip(texels.chunks_exact(size as usize)) {
         let is_filled = |texel: &[u8; 4]| texel[3] > 0;
         let (Some(first), Some(last)) = (row.iter().position(is_filled), row.iter().rposition(is_filled)) else {
             continue;
@@ -99,7 +93,7 @@ mod tests {
     use glam::{Vec2, Vec4Swizzles};
     use image::{Rgba, RgbaImage};
 
-    use super::super::SpriteLayout;
+    use super::super::{Sprite, SpriteLayout};
     use super::*;
     use crate::formula::sprite::{sample_sprite, sprite_uv};
 
@@ -111,7 +105,9 @@ mod tests {
 
     #[test]
     fn cells_include_the_footprint_of_bilinear_filtering() {
-        let cells = |sprite: &Sprite, level, frame| alpha_bounds_texel(sprite, level, frame).cells;
+        let cells = |sprite: &Sprite, level, frame| {
+            alpha_bounds_texel(sprite.frame_texels(level, frame), sprite.level_size(level)).cells
+        };
         let one = sprite(64, 2, (32 + 14, 21));
         assert_eq!(cells(&one, 0, 0), 0);
         // The footprint is texels 13.5 to 15.5 across and 20.5 to 22.5 down; a cell has four texels.
@@ -127,7 +123,7 @@ mod tests {
     fn lookups_beyond_a_sprites_extent_are_clear() {
         let layout = SpriteLayout { columns: 4, rows: 2, y_down: false };
         let sprite = Sprite::load(Path::new("sprites/puff.png"), layout).unwrap();
-        let alpha_bounds = AlphaBounds::new(&sprite, None);
+        let alpha_bounds = sprite.alpha_bounds(None);
         let mut beyond = 0;
         for (frame, level) in (0..4).flat_map(|frame| (0..sprite.level_count()).map(move |level| (frame, level))) {
             let frames = FlipbookFrames { first: frame, second: frame + 1, blend: 0.5 };
@@ -144,7 +140,7 @@ mod tests {
 
     #[test]
     fn the_extent_includes_the_footprint_of_bilinear_filtering() {
-        let alpha_bounds = AlphaBounds::new(&sprite(128, 2, (64 + 50, 14)), None);
+        let alpha_bounds = sprite(128, 2, (64 + 50, 14)).alpha_bounds(None);
         let frames = |first, blend| FlipbookFrames { first, second: 1, blend };
         assert_eq!(alpha_bounds.trimmed_extent(frames(0, 0.0), 0.0), Vec4::ZERO);
         // The footprint is texels 49.45 to 51.55 across and 13.45 to 15.55 down of 64, so right of and above the middle

@@ -15,6 +15,7 @@ use crate::assets::image::{Image, decode_png, read_file};
 use crate::assets::measured::Measured;
 use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
+use alpha_bounds::{AlphaBounds, AlphaBoundsTexel, alpha_bounds_texel};
 use sprite_density::SpriteDensity;
 use sprite_detail::SpriteDetail;
 
@@ -43,6 +44,7 @@ pub struct Sprite {
     frame_count: u32,
     /// Mip levels. Each level holds its frames in order, row by row from the top.
     levels: Vec<Arc<[[u8; 4]]>>,
+    alpha_bounds: Measured<Vec<AlphaBoundsTexel>>,
     density: Measured<SpriteDensity>,
     detail: Measured<SpriteDetail>,
 }
@@ -116,8 +118,8 @@ impl Sprite {
 
     /// Builds the mip levels of frames below each other, `size` texels a side each.
     pub fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
-        let (density, detail) = Default::default();
-        let mut sprite = Self { size, frame_count, levels: vec![texels.into()], density, detail };
+        let (alpha_bounds, density, detail) = Default::default();
+        let mut sprite = Self { size, frame_count, levels: vec![texels.into()], alpha_bounds, density, detail };
         for level in 1..=size.ilog2() {
             let coarse = sprite.level_size(level);
             let fine = sprite.level_size(level - 1);
@@ -165,6 +167,21 @@ impl Sprite {
     /// Returns the size of the texels, bytes.
     pub fn memory(&self) -> u64 {
         self.levels.iter().map(|level| size_of_val(&**level) as u64).sum()
+    }
+
+    /// Returns the bounds of its frames and mip levels, followed by those of `after`: its six-way maps.
+    #[doc(hidden)]
+    pub fn alpha_bounds(&self, after: Option<&Self>) -> AlphaBounds {
+        let texels = std::iter::once(self).chain(after).flat_map(|sprite| {
+            sprite.alpha_bounds.get_or_measure(|| {
+                let places = (0..sprite.frame_count)
+                    .flat_map(|frame| (0..sprite.level_count()).map(move |level| (level, frame)));
+                let bounds =
+                    |(level, frame)| alpha_bounds_texel(sprite.frame_texels(level, frame), sprite.level_size(level));
+                places.map(bounds).collect()
+            })
+        });
+        AlphaBounds::new(self.level_count(), texels.copied().collect())
     }
 
     /// Returns its density, for shadow.

@@ -39,7 +39,7 @@ pub fn compute(gpu: &Headless, source: &str, cases: &[Vec<f32>], width: usize) -
     let layouts = layouts(device);
     let pipeline = pipeline(device, source, &layouts);
     let views = [upload_ramp(gpu, &test_ramp()), upload_sprite(gpu, &test_sprite())];
-    let others = [upload_noise(gpu, test_noise()), upload_alpha_bounds(gpu, &AlphaBounds::new(&test_sprite(), None))];
+    let others = [upload_noise(gpu, test_noise()), upload_alpha_bounds(gpu, &test_sprite().alpha_bounds(None))];
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor::default());
     let [ramp, sprite] = views.each_ref().map(wgpu::BindingResource::TextureView);
     let [noise, alpha_bounds] = others.each_ref().map(wgpu::BindingResource::TextureView);

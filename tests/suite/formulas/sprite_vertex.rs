@@ -4,7 +4,6 @@ use glam::{Vec2, Vec3, vec3};
 use haze::Particle;
 use haze::formula::sprite::{animation_frames, flipbook_frames, sprite_uv, trimmed_corner};
 use haze::settings::{Settings, SpriteAnimation, Technique};
-use haze::sprite::alpha_bounds::AlphaBounds;
 use haze::view_setup::ProjectedSprite;
 use haze_reference::visible_system::VisibleSystem;
 
@@ -261,7 +260,7 @@ fn trimming() -> Vec<Formula> {
                 if x[2] > 0.7 || x[3] > 0.7 {
                     return vec![65535.0; 6];
                 }
-                let bounds = AlphaBounds::new(&test_sprite(), None);
+                let bounds = test_sprite().alpha_bounds(None);
                 let words: Vec<u32> = bytemuck::pod_collect_to_vec(bounds.bytes());
                 let level = (x[1] as u32).min(bounds.size().x - 1);
                 let at = 4 * (x[0] as u32 * bounds.size().x + level) as usize;

@@ -1,9 +1,9 @@
 //! CPU version of `shaders/shadow_march.wgsl`.
 
-use glam::{IVec3, UVec3, Vec3, Vec4};
+use glam::{UVec3, Vec3, Vec4};
 use half::f16;
 
-use crate::optical_depths::{cell_index, trilinear};
+use crate::optical_depths::trilinear;
 use haze::formula::ambient::{SKY_DIRECTIONS, SKY_STEPS};
 use haze::formula::shadow::{LIGHTS_PER_BLOCK, MAX_OPTICAL_DEPTH, SHADOW_STEPS, light_disc_offset, shadow_ray};
 use haze::view_setup::SmokeShadow;
@@ -46,17 +46,16 @@ fn optical_depth_towards(
     origin: Vec3,
     steps: u32,
 ) -> f32 {
-    let load =
-        |cell: IVec3| cell_index(shadow.grid.size, cell).and_then(|index| density.get(index).copied()).unwrap_or(0.0);
     let ray = shadow_ray(light, origin, shadow.march.size);
     let step = ray.w / steps as f32;
     // The steps fill the cone between the point and the light's disc.
     let slope = radius / light.truncate().distance(origin).max(1.0e-4);
     let place = |i: u32| {
         let along = (i as f32 + 0.5) * step;
-        origin + ray.truncate() * along + light_disc_offset(i, ray.truncate()) * (along * slope)
+        let on_line = origin + ray.truncate() * along;
+        if slope > 0.0 { on_line + light_disc_offset(i, ray.truncate()) * (along * slope) } else { on_line }
     };
-    let depth: f32 = (0..steps).map(|i| trilinear(place(i), load)).sum();
+    let depth: f32 = (0..steps).map(|i| trilinear(shadow.grid.size, density, place(i))).sum();
     (depth * step).min(MAX_OPTICAL_DEPTH)
 }
 

@@ -2,7 +2,6 @@
 
 use glam::{UVec2, uvec2};
 use haze::formula::{sprite, tile_sprite};
-use haze::sprite::alpha_bounds::AlphaBounds;
 
 use super::super::Formula;
 use super::super::inputs::{HALF, flag, halves, random, test_sprite, v2, word};
@@ -27,7 +26,7 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: "let c = filled_cells(flipbook_frames(x(0), 3.0), x(1)); y_word(0, c.x); y_word(2, c.y);",
             reference: |x| {
                 let frames = sprite::flipbook_frames(x[0], 3.0);
-                let bounds = AlphaBounds::new(&test_sprite(), None);
+                let bounds = test_sprite().alpha_bounds(None);
                 let cells = |frame: i32| {
                     let words: Vec<u32> = bytemuck::pod_collect_to_vec(bounds.bytes());
                     let level = (x[1] as u32).min(bounds.size().x - 1);
