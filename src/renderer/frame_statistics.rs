@@ -1,4 +1,4 @@
-//! Targets, memory and counts of a renderer's last frame.
+//! Targets, memory, counts and choices of a renderer's last frame.
 
 use super::Renderer;
 use super::auto::PathChoice;
@@ -10,6 +10,13 @@ use super::targets::TargetViews;
 use crate::view_setup::{LightingChoice, ScaleChoice};
 
 impl Renderer {
+    /// Returns the view depth of a system's smoke, metres, by which [`render`](Self::render) sorts: `ParticleSystem::depth`, or
+    /// the measured one. `None` if the system with this key is out of sight.
+    pub fn depth_of(&self, key: u64) -> Option<f32> {
+        let visible = self.order.iter().find(|visible| self.states[visible.state].key == key)?;
+        Some(self.states[visible.state].lit_depth())
+    }
+
     /// Returns the targets of the system with this key, as the last [`prepare`](Self::prepare) fills them, for tools
     /// and for a host's own passes. `None` if the system is out of sight or drawn forward.
     pub fn targets(&self, key: u64) -> Option<TargetViews<'_>> {

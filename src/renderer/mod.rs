@@ -407,13 +407,6 @@ impl Renderer {
         self.record_systems(pass, visible, DebugView::Final);
     }
 
-    /// Returns the view depth of a system's smoke, metres, by which [`render`](Self::render) sorts: `ParticleSystem::depth`, or
-    /// the measured one. `None` if the system with this key is out of sight.
-    pub fn depth_of(&self, key: u64) -> Option<f32> {
-        let visible = self.order.iter().find(|visible| self.states[visible.state].key == key)?;
-        Some(self.states[visible.state].lit_depth())
-    }
-
     fn record_systems<'a>(
         &'a self,
         pass: &mut wgpu::RenderPass<'_>,

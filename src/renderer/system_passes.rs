@@ -34,10 +34,10 @@ pub(crate) enum ParticlePass {
 }
 
 impl ParticlePass {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
         match self {
-            Self::Emit(emit) => emit.record(frame.compute("emit")),
-            Self::DepthSort(sort, groups) => sort.record(frame.compute("sort"), groups),
+            Self::Emit(emit) => emit.record(encoder.compute("emit")),
+            Self::DepthSort(sort, groups) => sort.record(encoder.compute("sort"), groups),
         }
     }
 }
@@ -79,14 +79,10 @@ pub(crate) enum AccumulatePasses {
 }
 
 impl AccumulatePasses {
-    pub fn is_tiled(&self) -> bool {
-        matches!(self, Self::Tiled(_))
-    }
-
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
         match self {
-            Self::Raster(accumulate) => accumulate.record(frame),
-            Self::Tiled(passes) => passes.record(frame),
+            Self::Raster(accumulate) => accumulate.record(encoder),
+            Self::Tiled(passes) => passes.record(encoder),
         }
     }
 }

@@ -300,11 +300,7 @@ impl SystemState {
         if self.frames_without_targets.tick(!is_deferred) {
             self.targets = SystemTargets::default();
         }
-        let is_tiled = match self.passes() {
-            Some(SystemPasses::Deferred(passes)) => passes.accumulate.is_tiled(),
-            Some(SystemPasses::Forward(_)) => false,
-            None => self.hidden.is_some(),
-        };
+        let is_tiled = self.tiled_passes().is_some() || self.hidden.is_some();
         let is_released = self.frames_untiled.tick(!is_tiled);
         if is_released {
             self.tiles = TiledSystem::default();

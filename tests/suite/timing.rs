@@ -121,11 +121,12 @@ fn compute_passes_that_follow_each_other_are_one_in_a_frame() {
     let names = pass_names(&times);
     assert_eq!((names[0], &names[1..]), ("compute", &pass_names(&each)[computed..]));
     assert_eq!((times.discarded, host.picture(gpu).unwrap()), (0, picture));
-    // A drawn pass ends it.
+    // Drawn passes are measured by their names.
     scene.settings.path = RenderPath::Raster;
     scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     let times = draw_and_measure(gpu, &mut host, &timing, &scene);
     assert!(!pass_names(&times).contains(&"compute"), "{times:?}");
+    assert!(pass_names(&times).contains(&"accumulate"), "{times:?}");
     timing.set_detail(TimingDetail::Passes);
     scene.settings.path = RenderPath::Tiled;
     assert!(pass_names(&draw_and_measure(gpu, &mut host, &timing, &scene)).contains(&"tile_project"));

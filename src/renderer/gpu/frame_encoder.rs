@@ -6,8 +6,8 @@ use super::timing::Timing;
 /// Label of a compute pass that is recorded in one with others, and of their measured interval.
 const SHARED_PASS: &str = "compute";
 
-/// Records a frame's passes. Compute passes that follow each other are recorded as one, unless each of them is measured:
-/// a GPU is idle for some microseconds between two passes, longer than some of them take.
+/// Records a frame's passes. Compute passes that follow each other are recorded as one, unless each is measured: a
+/// GPU is idle for some microseconds between two passes, longer than some passes take.
 #[derive(Debug)]
 pub(crate) struct FrameEncoder<'a> {
     encoder: &'a mut wgpu::CommandEncoder,

@@ -96,10 +96,10 @@ pub(crate) struct Accumulate {
 }
 
 impl Accumulate {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
         let attachments: [_; MAX_ATTACHMENTS] = std::array::from_fn(|index| color_attachment(self.targets.get(index)?));
         let attachments = &attachments[..self.targets.len()];
-        let mut pass = frame.render("accumulate", attachments, self.tested_depth.as_ref().map(tested_depth));
+        let mut pass = encoder.render("accumulate", attachments, self.tested_depth.as_ref().map(tested_depth));
         set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         self.groups.bind(&mut pass);

@@ -26,8 +26,8 @@ pub(crate) struct DensitySplat {
 }
 
 impl DensitySplat {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
-        let pass = frame.compute("density_splat");
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
+        let pass = encoder.compute("density_splat");
         pass.set_pipeline(&self.pipeline);
         self.groups.bind_to_compute(pass);
         pass.set_bind_group(3, &self.inputs, &[]);

@@ -49,8 +49,8 @@ pub(crate) struct DepthResolve<'a> {
 }
 
 impl DepthResolve<'_> {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
-        let mut pass = frame.render("depth_resolve", &[], Some(written_depth(self.target)));
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
+        let mut pass = encoder.render("depth_resolve", &[], Some(written_depth(self.target)));
         set_viewport_and_scissor(&mut pass, self.origin, self.size);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, self.samples, &[]);

@@ -55,9 +55,9 @@ pub(crate) struct DiffuseBake {
 }
 
 impl DiffuseBake {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
         for (face, view) in (0..).zip(self.faces.iter()) {
-            let mut pass = frame.render("diffuse_bake", &[color_attachment(view)], None);
+            let mut pass = encoder.render("diffuse_bake", &[color_attachment(view)], None);
             pass.set_pipeline(&self.pipeline);
             self.groups.bind(&mut pass);
             pass.draw(3 * face..3 * face + 3, 0..1);

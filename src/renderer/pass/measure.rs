@@ -62,8 +62,8 @@ pub(crate) struct Measure {
 }
 
 impl Measure {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
-        let pass = frame.compute("measure");
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
+        let pass = encoder.compute("measure");
         self.groups.bind_to_compute(pass);
         pass.set_bind_group(3, &self.inputs, &[]);
         for (pipeline, workgroups) in self.pipelines.iter().zip([self.workgroups, 1, self.workgroups]) {
@@ -71,6 +71,6 @@ impl Measure {
             pass.dispatch_workgroups(workgroups, 1, 1);
         }
         let place = offset_of!(SystemUniform, centre) as u64;
-        frame.commands().copy_buffer_to_buffer(&self.measured, 0, &self.system, place, EXTENT_BYTES);
+        encoder.commands().copy_buffer_to_buffer(&self.measured, 0, &self.system, place, EXTENT_BYTES);
     }
 }

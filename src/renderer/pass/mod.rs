@@ -103,15 +103,15 @@ pub(crate) enum TexelPipeline {
 const TEXELS_SIDE: u32 = 8;
 
 impl TexelPass {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
         let (pipeline, colors, depth) = match &self.pipeline {
             TexelPipeline::Color(pipeline, target) => (pipeline, [color_attachment(target), None], None),
             TexelPipeline::Colors(pipeline, targets) => (pipeline, targets.each_ref().map(color_attachment), None),
             TexelPipeline::Depth(pipeline, target) => (pipeline, [None, None], Some(written_depth(target))),
-            TexelPipeline::Compute(pipeline) => return self.record_compute(pipeline, frame),
+            TexelPipeline::Compute(pipeline) => return self.record_compute(pipeline, encoder),
         };
         let count = colors.iter().flatten().count();
-        let mut pass = frame.render(self.name, &colors[..count], depth);
+        let mut pass = encoder.render(self.name, &colors[..count], depth);
         set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(pipeline);
         self.groups.bind_for_lighting(&mut pass);
@@ -119,8 +119,8 @@ impl TexelPass {
         pass.draw(0..3, 0..1);
     }
 
-    fn record_compute(&self, pipeline: &wgpu::ComputePipeline, frame: &mut FrameEncoder<'_>) {
-        let pass = frame.compute(self.name);
+    fn record_compute(&self, pipeline: &wgpu::ComputePipeline, encoder: &mut FrameEncoder<'_>) {
+        let pass = encoder.compute(self.name);
         pass.set_pipeline(pipeline);
         self.groups.bind_to_compute_with(pass, &self.groups.lighting);
         pass.set_bind_group(3, &self.inputs, &[]);
@@ -143,11 +143,11 @@ pub(crate) struct VolumeSlices<'a> {
 }
 
 impl VolumeSlices<'_> {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
         for slice in self.slices.clone() {
             let target = color_attachment(self.volume)
                 .map(|target| wgpu::RenderPassColorAttachment { depth_slice: Some(slice), ..target });
-            let mut pass = begin_pass(frame.commands(), self.name, &[target], None, None);
+            let mut pass = begin_pass(encoder.commands(), self.name, &[target], None, None);
             set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size.truncate());
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &self.inputs, &[]);

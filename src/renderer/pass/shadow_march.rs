@@ -53,8 +53,8 @@ pub(crate) struct ShadowMarch {
 }
 
 impl ShadowMarch {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
-        let pass = frame.compute("shadow_march");
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
+        let pass = encoder.compute("shadow_march");
         let workgroups = |cells: u32| cells.div_ceil(SIDE);
         // With the empty cells around the grid.
         let [x, y, z] = (self.size + 2).to_array().map(workgroups);

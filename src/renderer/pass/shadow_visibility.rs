@@ -27,8 +27,8 @@ pub(crate) struct ShadowVisibility {
 }
 
 impl ShadowVisibility {
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
-        let pass = frame.compute("shadow_visibility");
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
+        let pass = encoder.compute("shadow_visibility");
         pass.set_pipeline(&self.pipeline);
         let workgroups = |cells: u32| cells.div_ceil(SIDE);
         for inputs in &self.inputs {

@@ -34,12 +34,12 @@ impl TiledPasses {
         encoder.clear_buffer(&self.counters, 0, None);
     }
 
-    pub fn record(&self, frame: &mut FrameEncoder<'_>) {
-        self.project.record(frame.compute("tile_project"), &self.groups);
-        self.sort.iter().for_each(|sort| sort.record(frame.compute("sort")));
-        self.record_bin(frame.compute("tile_bin"));
-        self.refine.iter().for_each(|refine| refine.record(frame.compute("tile_refine"), &self.groups));
-        self.accumulate.record(frame.compute("tile_accumulate"), &self.groups);
+    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
+        self.project.record(encoder.compute("tile_project"), &self.groups);
+        self.sort.iter().for_each(|sort| sort.record(encoder.compute("sort")));
+        self.record_bin(encoder.compute("tile_bin"));
+        self.refine.iter().for_each(|refine| refine.record(encoder.compute("tile_refine"), &self.groups));
+        self.accumulate.record(encoder.compute("tile_accumulate"), &self.groups);
     }
 
     fn record_bin(&self, pass: &mut wgpu::ComputePass<'_>) {

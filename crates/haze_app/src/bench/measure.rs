@@ -196,16 +196,16 @@ impl<'a> CaseBench<'a> {
 
     /// Draws a frame; `None` if the GPU returned no valid timestamps in [`MAX_TRIES`] frames.
     fn frame(&mut self, offscreen: &mut OffscreenRenderer, shot: &Shot) -> Result<Option<SmokeTimes>, Error> {
-        if self.timing.is_none() {
+        let Some(timing) = self.timing.clone() else {
             let _pause = self.keepalive.pause();
             let ms = offscreen.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
             return Ok(Some(SmokeTimes { ms, passes: Vec::new() }));
-        }
-        let Some(by_pass) = self.timed_frame(offscreen, shot, TimingDetail::Passes)? else { return Ok(None) };
+        };
+        let Some(by_pass) = self.timed_frame(&timing, offscreen, shot, TimingDetail::Passes)? else { return Ok(None) };
         let mut ms = by_pass.smoke_ms();
         if !self.is_software {
-            // Measuring each pass slows a GPU down, so the frame is measured by itself.
-            let Some(times) = self.timed_frame(offscreen, shot, TimingDetail::Frame)? else { return Ok(None) };
+            // Measuring each pass slows a GPU down, so the whole frame is measured in another one.
+            let Some(times) = self.timed_frame(&timing, offscreen, shot, TimingDetail::Frame)? else { return Ok(None) };
             ms = times.smoke_ms();
         }
         let passes = by_pass.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
@@ -215,11 +215,11 @@ impl<'a> CaseBench<'a> {
     /// Draws a frame with timestamps; `None` if the GPU returned no valid ones in [`MAX_TRIES`] frames.
     fn timed_frame(
         &mut self,
+        timing: &Timing,
         offscreen: &mut OffscreenRenderer,
         shot: &Shot,
         detail: TimingDetail,
     ) -> Result<Option<FrameTimes>, Error> {
-        let Some(timing) = &self.timing else { return Ok(None) };
         timing.set_detail(detail);
         for _ in 0..MAX_TRIES {
             let before = timing.latest().map(|times| times.frame);
