@@ -89,12 +89,13 @@ impl Context {
         Self::assemble(queue, layouts, pipelines, None)
     }
 
-    /// Creates a context of the same device with custom shaders, for shader development. Compiles and validates all
-    /// shader modules and one pipeline of every pass before it creates the context.
+    /// Creates a context of the same device with custom shaders, for shader development. Compiles and validates the
+    /// shader modules that differ from this context's, and one pipeline of each of their passes, before it creates the
+    /// context. Pipelines of other passes are shared.
     /// [`Renderer::warm_up`](crate::Renderer::warm_up) reports errors that occur only with other settings. After an
     /// error, keep using this context and its renderers. Materials belong to one context and have to be created again.
     ///
-    /// wgpu counts the rounds of the loops of custom shaders, so that none runs forever. On an NVIDIA H100,
+    /// wgpu counts the rounds of the loops of changed shaders, so that none runs forever. On an NVIDIA H100,
     /// frames of presets take up to 1.34 times as long as with the embedded ones, whose loops are known to end.
     ///
     /// # Errors
@@ -103,8 +104,11 @@ impl Context {
         let Shared { device, queue, device_number, pipelines, .. } = self.shared();
         let layouts = Layouts::new(device);
         let store = PipelineStore::new(device, pipelines.store.cache.as_ref());
-        let pipelines = Pipelines::new(&store, &layouts, |name| checked_shader(device, name, sources))?;
-        let context = Self::assemble(queue, layouts, pipelines, Some(*device_number));
+        let known = &pipelines.shaders;
+        let mut changed =
+            Pipelines::new(&store, &layouts, |name| checked_shader(device, name, sources, known.get(name)))?;
+        changed.share(pipelines);
+        let context = Self::assemble(queue, layouts, changed, Some(*device_number));
         let shared = context.shared();
         plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()

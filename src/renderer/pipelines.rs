@@ -45,6 +45,8 @@ pub(crate) struct Pipelines {
     pub store: PipelineStore,
     /// `None` if the device does not support the path `tiled`.
     pub tiled: Option<TiledPipelines>,
+    /// Shaders by the names of their passes.
+    pub shaders: HashMap<&'static str, Shader>,
 }
 
 impl Pipelines {
@@ -73,7 +75,7 @@ impl Pipelines {
         let screen_shadow =
             [&layouts.shadow_maps, &layouts.frame, &layouts.screen_shadow, &layouts.scene_shadow].map(Some);
         let (march_slice, visibility_slice) = ([Some(&layouts.shadow_march_slice)], [Some(&layouts.shadow_maps)]);
-        Ok(Self {
+        let mut pipelines = Self {
             depth_downsample: pipeline_variants!(store, shader, depth_downsample, &frame_and_system),
             depth_resolve: pipeline_variants!(store, shader, depth_resolve, &[Some(&layouts.depth_resolve)]),
             diffuse_bake: pipeline_variants!(store, shader, diffuse_bake, &material),
@@ -93,7 +95,31 @@ impl Pipelines {
                 true => Some(TiledPipelines::new(store, layouts, shader)?),
                 false => None,
             },
-        })
+            shaders: HashMap::new(),
+        };
+        pipelines.shaders = created.into_inner();
+        Ok(pipelines)
+    }
+
+    /// Shares the pipelines of another context of the device that have the same module.
+    pub fn share(&mut self, other: &Self) {
+        self.depth_downsample.share(&other.depth_downsample);
+        self.depth_resolve.share(&other.depth_resolve);
+        self.diffuse_bake.share(&other.diffuse_bake);
+        self.accumulate.share(&other.accumulate);
+        self.light_target.share(&other.light_target);
+        self.depth_slopes.share(&other.depth_slopes);
+        self.mark_cells.share(&other.mark_cells);
+        self.transfer.share(&other.transfer);
+        self.transfer_lit.share(&other.transfer_lit);
+        self.specular_scatter.share(&other.specular_scatter);
+        self.forward.share(&other.forward);
+        self.screen_shadow.share(&other.screen_shadow);
+        self.shadow_march_slice.share(&other.shadow_march_slice);
+        self.shadow_visibility_slice.share(&other.shadow_visibility_slice);
+        if let (Some(tiled), Some(other)) = (&mut self.tiled, &other.tiled) {
+            tiled.share(other);
+        }
     }
 
     /// Compiles the pipelines of a plan, or returns the shader error.

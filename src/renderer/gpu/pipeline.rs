@@ -16,7 +16,7 @@ pub(crate) struct Shader {
     /// File of the pass.
     pub path: PathBuf,
     /// WGSL without imports.
-    pub text: String,
+    pub text: Arc<str>,
     /// True for haze's own shaders, whose loops end; false for sources of a host.
     pub loops_end: bool,
 }
@@ -26,7 +26,7 @@ impl Shader {
     pub fn with_text(&self, device: &wgpu::Device, name: &str, change: impl FnOnce(&str) -> String) -> Self {
         let text = change(&self.text);
         let module = create_module(device, name, &text, self.loops_end);
-        Self { module, path: self.path.clone(), text, loops_end: self.loops_end }
+        Self { module, path: self.path.clone(), text: text.into(), loops_end: self.loops_end }
     }
 }
 
@@ -69,7 +69,8 @@ impl PipelineStore {
 pub(crate) struct PipelineVariants<K, P: PipelineDescription = RenderPipelineDescription> {
     common: Common,
     describe: fn(K) -> P,
-    pipelines: Mutex<HashMap<K, P::Pipeline>>,
+    /// Shared by contexts with the same module.
+    pipelines: Arc<Mutex<HashMap<K, P::Pipeline>>>,
 }
 
 /// Properties that all pipelines of a pass share.
@@ -124,7 +125,14 @@ impl<K: Copy + Eq + Hash, P: PipelineDescription> PipelineVariants<K, P> {
         });
         let Shader { module, path, text: _, loops_end: _ } = shader;
         let common = Common { name, module, path, layout, store: store.clone() };
-        Self { common, describe, pipelines: Mutex::default() }
+        Self { common, describe, pipelines: Arc::default() }
+    }
+
+    /// Shares the pipelines of another context if its module is the same.
+    pub fn share(&mut self, other: &Self) {
+        if self.common.module == other.common.module {
+            self.pipelines = other.pipelines.clone();
+        }
     }
 
     /// Returns the pipeline for `key`; compiles it on first use. The lock is not held during compilation, so other

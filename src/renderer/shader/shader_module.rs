@@ -15,21 +15,30 @@ pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Resu
     // other error.
     let composed = Sources::embedded().compose(&file_of(name)).unwrap_or_default();
     let module = create_module(device, name, &composed.text, true);
-    Ok(Shader { module, path: composed.path, text: composed.text, loops_end: true })
+    Ok(Shader { module, path: composed.path, text: composed.text.into(), loops_end: true })
 }
 
-/// Creates the shader of a pass from sources that may contain errors.
+/// Creates the shader of a pass from sources that may contain errors, or returns `known`, the shader of an earlier context, if
+/// its text is the same.
 ///
 /// # Errors
 /// [`Error::Shader`]: the first error.
-pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources: &Sources) -> Result<Shader, Error> {
+pub(crate) fn checked_shader(
+    device: &wgpu::Device,
+    name: &'static str,
+    sources: &Sources,
+    known: Option<&Shader>,
+) -> Result<Shader, Error> {
     let composed = sources.compose(&file_of(name))?;
+    if let Some(known) = known.filter(|known| *known.text == *composed.text) {
+        return Ok(known.clone());
+    }
     check_nesting(&composed.text).map_err(|deep| composed.error_at(deep.line, deep.column, &deep.reason))?;
     let mut module = None;
     let created =
         with_error_scopes(device, || module.insert(create_module(device, name, &composed.text, false)).clone());
     match created {
-        Ok(module) => Ok(Shader { module, path: composed.path, text: composed.text, loops_end: false }),
+        Ok(module) => Ok(Shader { module, path: composed.path, text: composed.text.into(), loops_end: false }),
         Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
             let info = module.and_then(|module| poll_once(module.get_compilation_info()));
             match info.and_then(|info| info.messages.into_iter().next()) {

@@ -25,7 +25,8 @@ pub(crate) struct AccumulateVariants {
     /// Textures of one texel, bound in place of textures that a system does not have. One per slot, because no texture
     /// may be bound for writing twice.
     pub placeholders: [wgpu::TextureView; MAX_TARGET_ATTACHMENTS],
-    variants: Mutex<HashMap<TiledFormats, Arc<AccumulateVariant>>>,
+    /// Shared by contexts with the same shader.
+    variants: Arc<Mutex<HashMap<TiledFormats, Arc<AccumulateVariant>>>>,
 }
 
 /// The variant for one combination of formats.
@@ -45,7 +46,14 @@ impl AccumulateVariants {
             groups: [layouts.frame.clone(), layouts.system.clone(), layouts.material.clone()],
             store: store.clone(),
             placeholders: std::array::from_fn(|_| placeholder()),
-            variants: Mutex::default(),
+            variants: Arc::default(),
+        }
+    }
+
+    /// Shares the variants of another context if its module is the same.
+    pub fn share(&mut self, other: &Self) {
+        if self.shader.module == other.shader.module {
+            self.variants = other.variants.clone();
         }
     }
 

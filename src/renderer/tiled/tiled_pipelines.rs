@@ -160,6 +160,26 @@ impl TiledPipelines {
         })
     }
 
+    /// Shares the pipelines of another context of the device that have the same module.
+    pub fn share(&mut self, other: &Self) {
+        self.emit.share(&other.emit);
+        self.measure.share(&other.measure);
+        self.depth_sort.share(&other.depth_sort);
+        self.density_splat.share(&other.density_splat);
+        self.shadow_march.share(&other.shadow_march);
+        self.shadow_visibility.share(&other.shadow_visibility);
+        self.depth_downsample.share(&other.depth_downsample);
+        self.light_target.share(&other.light_target);
+        self.depth_slopes.share(&other.depth_slopes);
+        self.upsample_lit.share(&other.upsample_lit);
+        self.project.share(&other.project);
+        self.sort.share(&other.sort);
+        self.gather.share(&other.gather);
+        self.bin.share(&other.bin);
+        self.refine.share(&other.refine);
+        self.accumulate.share(&other.accumulate);
+    }
+
     /// Returns true for cooperative traversal, false for per-invocation traversal.
     pub fn cooperative(&self) -> bool {
         self.cooperative.load(Ordering::Relaxed)
