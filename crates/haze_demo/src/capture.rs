@@ -137,7 +137,7 @@ impl ProbeInputs {
     pub fn probe(&self, pixels: &[UVec2]) -> Result<Vec<Probe>, Error> {
         let CapturedFrame { scene_depth, behind, systems: texels } = &self.captured;
         let systems = self.shot.reference_systems(&self.systems);
-        let maps = ShadowLayers::new(&self.shot.scene(), self.shot.shadow_views());
+        let maps = ShadowLayers::of_shot(&self.shot);
         let shadow_maps = maps.maps();
         let lights = self.shot.lights();
         let frame = self.shot.reference_frame(scene_depth, &systems, &shadow_maps, &lights);

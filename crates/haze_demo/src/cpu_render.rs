@@ -1,5 +1,8 @@
 //! Renders a shot, scene and smoke, on the CPU. offscreen_renderer.rs does so on the GPU.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use glam::{Vec3, Vec4};
 
 use super::ray_caster;
@@ -10,7 +13,9 @@ use haze::assets::image::Image;
 use haze::error::Error;
 use haze::formula::shadow::LIGHTS_PER_BLOCK;
 use haze::frame::{Light, Particle};
+use haze::preset::Environment;
 use haze::settings::Settings;
+use haze_author::backdrop::Backdrop;
 use haze_reference::{PreparedFrame, SceneShadow};
 
 impl Shot {
@@ -28,7 +33,7 @@ impl Shot {
         let depth = ray_caster::render_depth(&scene, &view);
         let particles = self.systems();
         let systems = self.reference_systems(&particles);
-        let maps = ShadowLayers::new(&scene, self.shadow_views());
+        let maps = ShadowLayers::of_shot(self);
         let shadow_maps = maps.maps();
         let lights = self.lights();
         let frame = PreparedFrame::new(&self.reference_frame(&depth, &systems, &shadow_maps, &lights), self.size)?;
@@ -76,19 +81,36 @@ impl Shot {
 }
 
 /// Shadow maps of a scene, in memory.
-pub(super) struct ShadowLayers(Vec<(ShadowView, Vec<Image<f32>>)>);
+pub(super) struct ShadowLayers {
+    /// Scene that the maps show.
+    of: (Environment, Backdrop),
+    maps: Vec<(ShadowView, Vec<Image<f32>>)>,
+}
 
 impl ShadowLayers {
-    pub fn new(scene: &Scene, views: Vec<ShadowView>) -> Self {
+    /// Draws the maps of a shot. Frames of a sequence have the same: the last ones of a thread are kept.
+    pub fn of_shot(shot: &Shot) -> Rc<Self> {
+        thread_local! {
+            static LAST: RefCell<Option<Rc<ShadowLayers>>> = const { RefCell::new(None) };
+        }
+        let views = shot.shadow_views();
+        let of = (shot.preset.environment.clone(), shot.backdrop.clone());
+        let is_same = |last: &Rc<Self>| last.of == of && last.maps.iter().map(|(view, _)| view).eq(&views);
+        let layers = LAST.take().filter(is_same).unwrap_or_else(|| Rc::new(Self::new(&shot.scene(), views, of)));
+        LAST.set(Some(layers.clone()));
+        layers
+    }
+
+    fn new(scene: &Scene, views: Vec<ShadowView>, of: (Environment, Backdrop)) -> Self {
         let drawn = |view: ShadowView| {
             let layers = view.clip_from_world.iter().map(|matrix| view.layer(scene, matrix)).collect();
             (view, layers)
         };
-        Self(views.into_iter().map(drawn).collect())
+        Self { of, maps: views.into_iter().map(drawn).collect() }
     }
 
     pub fn maps(&self) -> Vec<haze_reference::ShadowMap<'_>> {
-        self.0
+        self.maps
             .iter()
             .map(|(view, layers)| haze_reference::ShadowMap { layers, projection: view.projection() })
             .collect()

@@ -104,6 +104,15 @@ impl OffscreenRenderer {
         })
     }
 
+    /// Returns a renderer without a history, like a new one, that keeps what was drawn of the scene and uploaded.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn restarted(self, exact_filtering: bool) -> Result<Self, Error> {
+        let Self { renderer, .. } = Self::new(&self.context, exact_filtering)?;
+        Ok(Self { renderer, ..self })
+    }
+
     /// Returns haze's renderer.
     pub fn renderer(&self) -> &Renderer {
         &self.renderer

@@ -3,7 +3,7 @@
 
 use std::ops::{Add, Mul};
 
-use glam::{UVec3, Vec3};
+use glam::{IVec3, UVec3, Vec3};
 
 /// Optical depths from the cells of a frame's density grid to its lights with shadow.
 pub struct OpticalDepths {
@@ -50,6 +50,20 @@ where
     let low_weight = 1.0 - high_weight;
     let (low, size) = (low.as_ivec3(), size.as_ivec3());
     let mut sum = T::default();
+    if low.cmpge(IVec3::ZERO).all() && (low + 1).cmplt(size).all() {
+        // The usual case, in the same order as below.
+        let row = ((low.z * size.y + low.y) * size.x + low.x) as usize;
+        let (next_y, next_z) = (size.x as usize, (size.y * size.x) as usize);
+        for (row, weight_z) in [(row, low_weight.z), (row + next_z, high_weight.z)] {
+            for (row, weight_y) in [(row, low_weight.y), (row + next_y, high_weight.y)] {
+                if let Some([first, second]) = cells.get(row..row + 2) {
+                    sum = sum + *first * low_weight.x * weight_y * weight_z;
+                    sum = sum + *second * high_weight.x * weight_y * weight_z;
+                }
+            }
+        }
+        return sum;
+    }
     for (z, weight_z) in [(low.z, low_weight.z), (low.z + 1, high_weight.z)] {
         for (y, weight_y) in [(low.y, low_weight.y), (low.y + 1, high_weight.y)] {
             if !(0..size.y).contains(&y) || !(0..size.z).contains(&z) {
