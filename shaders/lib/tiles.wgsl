@@ -18,8 +18,7 @@ struct Tiles {
     // Words of the buffer that all lists share.
     capacity: u32,
     // Distance behind a hidden sprite at which all later sprites of a list are hidden too, metres: 0 if lists are
-    // ordered by view depth, else larger than any depth. (Not a bool: lavapipe of Mesa 22.3 crashes if a branch in a
-    // loop depends on a bool in a uniform.)
+    // ordered by view depth, else larger than any depth. (Not a bool: see docs/tiled.md.)
     occlusion_margin: f32,
     padding0: u32,
     padding1: u32,

@@ -2,35 +2,24 @@
 //!
 //! naga, the compiler inside wgpu, visits expressions, blocks and types recursively, on the stack of the thread that
 //! creates a module or a pipeline. A text that is too deep overflows that stack, which ends the process. naga's own limits
-//! (127 nested blocks, 200 nested expressions) do not count chains such as `a + a + …` or `else if`, and are too high for
-//! unoptimised builds.
+//! do not count every kind of nesting, and are too high for unoptimized builds.
 //!
 //! The depth is an upper bound that needs no parser. At each level of brackets, a path through the syntax tree passes at
 //! most every operator and every `else` of one statement or list element, and one pair of brackets.
 
 /// Maximum depth: each operator, `.`, `(` and `[` counts 1, each block and `else` counts [`BLOCK`].
 ///
-/// Measured with naga 30.0.1 from parsing to the SPIR-V, GLSL, HLSL and MSL back ends, on a stack of 2 MiB, the default
-/// of Rust's threads. The table shows the depth that still fits, as this file counts it:
-///
-/// ```text
-///                      opt-level 0   release
-/// nested calls             71        > 197 (naga's limit)
-/// .xyzw.xyzw…, !!!…        82         3250
-/// a + a + …                82         2000
-/// nested blocks           102        > 252 (naga's limit)
-/// else if                 102         3500
-/// ```
-///
-/// 40 leaves a factor of 1.7 for the frames of the host. In release builds it leaves a factor of 25 on stacks of 1 MiB, the
-/// default of wasm32 and of the main thread on Windows. The deepest of haze's own shaders has 27.
+/// Measured with naga 30.0.1 from parsing to the SPIR-V, GLSL, HLSL and MSL back ends, for every kind of nesting. On a stack
+/// of 2 MiB, the default of Rust's threads, an unoptimized build compiles 1.7 times this depth, which leaves room for the
+/// frames of the host. A release build compiles 25 times this depth on 1 MiB, the default of wasm32 and of the main thread
+/// on Windows. The deepest of haze's own shaders has 27.
 ///
 /// A thread with a larger stack was rejected: pipelines are compiled on the host's thread too, and wasm32 has no threads.
 const MAX_DEPTH: usize = 40;
-/// Depth of a block or an `else`: it takes up to 41 KiB of stack, an operator 29 KiB.
+/// Depth of a block or an `else`, which takes 1.4 times the stack of an operator.
 const BLOCK: usize = 2;
-/// Maximum number of declarations outside functions. naga follows their references recursively, and so does a back end
-/// with a struct in a struct: in 2 MiB without optimisation, 1078 fit. haze's own shaders have up to 351.
+/// Maximum number of declarations outside functions, whose references naga and its back ends follow recursively: 1.5 times as
+/// many fit in 2 MiB without optimization. haze's own shaders have up to 351.
 const MAX_DECLARATIONS: usize = 704;
 
 /// Place of the first token that is too deep.
