@@ -28,7 +28,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Open the tweaker, a window to edit lights, ramps and smoke in; also `haze` alone and `haze PRESET`.
+    /// Open the tweaker, a window to edit lights, ramps and smoke in; also `haze` alone, which renders an image where there is
+    /// no display, and `haze PRESET`.
     Tweak(tweak::Arguments),
     /// Render a preset to a PNG, to one PNG per frame, to a flipbook or to a GIF.
     Render(render::Arguments),
@@ -63,7 +64,34 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         false => writeln!(line, "[{} {}] {}", record.level(), record.target(), record.args()),
     })
     .init();
-    let cli = match Cli::try_parse_from(with_subcommand(arguments.into_iter().collect())) {
+    let arguments = with_subcommand(arguments.into_iter().collect());
+    if arguments.len() > 1 {
+        return run_arguments(arguments);
+    }
+    // The first command that a new user types works on every machine.
+    match tweak::run(&tweak::Arguments::default()) {
+        Err(Error::NoDevice(reason)) => {
+            print_error(reason);
+            let output = free_image_name("column", |name| Path::new(name).symlink_metadata().is_err());
+            run_arguments(vec!["haze".into(), "render".into(), "column".into(), "--output".into(), output.into()])
+        }
+        done => report(done.map_err(Failures::from)),
+    }
+}
+
+/// Returns `NAME.png`, or else the first free one of `NAME_2.png` and so on, so that no file of the user is replaced.
+fn free_image_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
+    let mut file = format!("{name}.png");
+    let mut number = 1;
+    while !is_free(&file) {
+        number += 1;
+        file = format!("{name}_{number}.png");
+    }
+    file
+}
+
+fn run_arguments(arguments: Vec<OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(help) if !help.use_stderr() => {
             // `write_text` adds the last line break.

@@ -97,6 +97,21 @@ fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
 }
 
 #[test]
+fn without_a_display_the_first_command_renders_an_image() {
+    let folder = folder();
+    let column = |file: &str| haze::image::read_png(&folder.path().join(file)).unwrap();
+    // Neither run replaces a file.
+    for file in ["column.png", "column_2.png"] {
+        let output = haze(folder.path(), "", &[], &[]).output().unwrap();
+        let (text, reason) = (String::from_utf8_lossy(&output.stdout), stderr(&output));
+        assert!(output.status.success() && text.starts_with(&format!("{file}: Dense column on ")), "{text}{reason}");
+        assert!(reason.lines().count() == 1 && reason.contains("to open") && reason.contains("DISPLAY"), "{reason}");
+        assert_eq!((column(file).width(), column(file).height()), (1280, 720));
+    }
+    assert!(column("column.png") == column("column_2.png"));
+}
+
+#[test]
 fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
     let _lock = window_lock();
     let (display, folder) = (Display::start(), folder());

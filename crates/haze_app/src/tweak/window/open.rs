@@ -182,7 +182,7 @@ fn check_display() -> Result<(), Error> {
         return Ok(());
     }
     let reason = "no display for a window: neither DISPLAY nor WAYLAND_DISPLAY is set";
-    Err(Error::NoDevice(format!("{reason}; {INSTEAD}, and under `xvfb-run` a window opens on none")))
+    Err(Error::NoDevice(format!("{reason}; to open it, start haze in a desktop session or by `ssh -X`; {INSTEAD}")))
 }
 
 /// Converts an error of eframe to one that tells the reason and a remedy. The texts of the windowing library name a source
