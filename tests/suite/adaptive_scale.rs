@@ -5,11 +5,11 @@ use haze::builtin;
 use haze::formula::color::srgb_from_linear;
 use haze::image::Image;
 use haze::settings::ScaleMode;
-use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
+use haze_demo::offscreen_renderer::OffscreenRenderer;
 use haze_demo::shot::Shot;
 
 use crate::gpu::gpu;
-use crate::presets::without_smoke;
+use crate::presets::{offscreen_context, without_smoke};
 use crate::psnr::{MIN_PSNR, psnr_over};
 
 /// A scale, and how it is chosen.
@@ -54,8 +54,7 @@ struct Stage {
 
 impl Stage {
     fn new() -> Self {
-        let context = OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
-        Self { renderer: OffscreenRenderer::new(&context, true).unwrap() }
+        Self { renderer: OffscreenRenderer::new(offscreen_context(), true).unwrap() }
     }
 
     fn render(&mut self, shot: &Shot) -> Image<Vec4> {

@@ -50,6 +50,64 @@ use crate::gpu::gpu;
 /// Largest number of inputs or results of a case.
 const WIDTH: usize = 32;
 
+/// Declares two tests for each module of formulas, so that they run side by side.
+macro_rules! formula_tests {
+    ($($module:ident),* $(,)?) => {
+        fn formulas() -> Vec<Formula> {
+            [$($module::formulas()),*].into_iter().flatten().collect()
+        }
+
+        mod every_wgsl_formula_matches_its_rust_function {
+            $(#[test]
+            fn $module() {
+                super::$module::formulas().iter().for_each(super::assert_match);
+            })*
+        }
+
+        mod every_mutated_wgsl_formula_fails_the_comparison {
+            $(#[test]
+            fn $module() {
+                super::$module::formulas().iter().for_each(super::assert_mutants_fail);
+            })*
+        }
+    };
+}
+
+formula_tests!(
+    ambient,
+    blending,
+    color,
+    depth,
+    diffuse_bake,
+    emitter,
+    fire,
+    gradient_noise,
+    grain,
+    hash,
+    lighting,
+    lit_smoke,
+    noise_volume,
+    normal,
+    order,
+    ramp,
+    response,
+    shadow,
+    six_way,
+    smoke_extent,
+    smoke_tiles,
+    soft_fade,
+    sprite,
+    sprite_fragment,
+    sprite_vertex,
+    stretch,
+    technique,
+    tile_sprite,
+    tiles,
+    tonemap,
+    upsample,
+    view,
+);
+
 /// One function of the shaders, with the code that evaluates it in WGSL and in Rust.
 struct Formula {
     /// Name of the WGSL function and of its Rust counterpart.
@@ -66,44 +124,6 @@ struct Formula {
     tolerance: f32,
     /// Deliberate mistakes, as (text in the composed shader, replacement). Each must fail the comparison.
     mutants: &'static [(&'static str, &'static str)],
-}
-
-fn formulas() -> Vec<Formula> {
-    let all = [
-        ambient::formulas(),
-        blending::formulas(),
-        color::formulas(),
-        depth::formulas(),
-        diffuse_bake::formulas(),
-        emitter::formulas(),
-        fire::formulas(),
-        gradient_noise::formulas(),
-        grain::formulas(),
-        hash::formulas(),
-        lighting::formulas(),
-        lit_smoke::formulas(),
-        noise_volume::formulas(),
-        normal::formulas(),
-        order::formulas(),
-        ramp::formulas(),
-        response::formulas(),
-        shadow::formulas(),
-        six_way::formulas(),
-        smoke_extent::formulas(),
-        smoke_tiles::formulas(),
-        soft_fade::formulas(),
-        sprite::formulas(),
-        sprite_fragment::formulas(),
-        sprite_vertex::formulas(),
-        stretch::formulas(),
-        technique::formulas(),
-        tile_sprite::formulas(),
-        tiles::formulas(),
-        tonemap::formulas(),
-        upsample::formulas(),
-        view::formulas(),
-    ];
-    all.into_iter().flatten().collect()
 }
 
 /// Runs the formula on the GPU. `mutate` is a (text, replacement) pair that is applied to the composed shader first.
@@ -146,7 +166,7 @@ fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
          }}",
         formula.wgsl
     ));
-    let results = compute::compute(gpu(), &source, &formula.cases, WIDTH);
+    let results = compute::compute(&source, &formula.cases, WIDTH);
     gpu().check().unwrap_or_else(|error| panic!("{}: {error}\n{source}", formula.name));
     results
 }
@@ -164,23 +184,17 @@ fn error(formula: &Formula, results: &[Vec<f32>]) -> f32 {
     worst
 }
 
-#[test]
-fn every_wgsl_formula_matches_its_rust_function() {
-    for formula in formulas() {
-        let worst = error(&formula, &run(&formula, None));
-        println!("{}: {worst:e}", formula.name);
-        assert!(worst <= formula.tolerance, "{}: WGSL and Rust differ by {worst:e}", formula.name);
-    }
+fn assert_match(formula: &Formula) {
+    let worst = error(formula, &run(formula, None));
+    println!("{}: {worst:e}", formula.name);
+    assert!(worst <= formula.tolerance, "{}: WGSL and Rust differ by {worst:e}", formula.name);
 }
 
-#[test]
-fn every_mutated_wgsl_formula_fails_the_comparison() {
-    for formula in formulas() {
-        assert!(!formula.mutants.is_empty(), "{} has no mutants", formula.name);
-        for &mutant in formula.mutants {
-            let worst = error(&formula, &run(&formula, Some(mutant)));
-            assert!(worst > 10.0 * formula.tolerance, "{}: the mutant {mutant:?} passes ({worst:e})", formula.name);
-        }
+fn assert_mutants_fail(formula: &Formula) {
+    assert!(!formula.mutants.is_empty(), "{} has no mutants", formula.name);
+    for &mutant in formula.mutants {
+        let worst = error(formula, &run(formula, Some(mutant)));
+        assert!(worst > 10.0 * formula.tolerance, "{}: the mutant {mutant:?} passes ({worst:e})", formula.name);
     }
 }
 

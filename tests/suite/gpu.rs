@@ -3,6 +3,7 @@
 use std::sync::{LazyLock, OnceLock};
 
 use glam::UVec2;
+use haze::shader::Sources;
 use haze::{Context, wgpu};
 use haze_demo::headless::Headless;
 
@@ -19,11 +20,15 @@ pub fn gpu() -> &'static Headless {
     })
 }
 
-/// Returns a context for tests that only compare images, so that no pipeline is compiled twice. `None` if `gpu` is not
-/// the shared device.
-pub fn shared_context(gpu: &Headless) -> Option<&'static Context> {
-    static CONTEXT: LazyLock<Context> = LazyLock::new(|| Context::new(&self::gpu().device, &self::gpu().queue, None));
-    std::ptr::eq(gpu, self::gpu()).then_some(&CONTEXT)
+/// Returns a context for tests that only compare images, so that no pipeline is compiled twice.
+pub fn shared_context() -> Context {
+    static CONTEXT: LazyLock<Context> = LazyLock::new(|| Context::new(&gpu().device, &gpu().queue, None));
+    CONTEXT.clone()
+}
+
+/// Returns a context of its own, for tests that change it. It shares the pipelines of [`shared_context`].
+pub fn own_context() -> Context {
+    shared_context().with_shaders(&Sources::embedded()).unwrap()
 }
 
 /// Returns `is_available`, and prints that the test is skipped if it is false. Panics instead if the variable `HAZE_REQUIRE`

@@ -1,17 +1,18 @@
 //! Compares whole frames of the GPU renderer with the CPU renderer: every preset, and every setting that selects a
 //! pipeline.
 
-use std::sync::LazyLock;
+use std::cell::RefCell;
+use std::sync::{LazyLock, Mutex, PoisonError};
+use std::thread::ThreadId;
 
 use glam::{UVec2, Vec4};
-use haze::builtin;
 use haze::image::Image;
 use haze::preset::{EndBehaviour, Preset, SceneName, UpAxis};
 use haze::settings::*;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 
-use crate::gpu::gpu;
+use crate::gpu::{gpu, shared_context};
 use crate::psnr::{MIN_PSNR, psnr_over};
 
 /// Loads a preset with the path `raster` in place of `auto`, whose choice depends on the machine. `tiled.rs` compares
@@ -33,46 +34,123 @@ pub fn without_smoke(shot: &Shot) -> Shot {
     behind
 }
 
+/// Returns the context of all images, so that no pipeline is compiled twice.
+pub fn offscreen_context() -> &'static OffscreenContext {
+    static CONTEXT: LazyLock<OffscreenContext> = LazyLock::new(|| {
+        OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue).with_context(shared_context())
+    });
+    &CONTEXT
+}
+
 /// Renders a shot on the GPU. `exact_filtering` as in [`Descriptor`](haze::Descriptor).
 pub fn render_on_gpu(shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
-    // One context for all images, so that no pipeline is compiled twice.
-    static CONTEXT: LazyLock<OffscreenContext> =
-        LazyLock::new(|| OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue));
-    let mut renderer = OffscreenRenderer::new(&CONTEXT, exact_filtering).unwrap();
+    // Keeps the scene for the other images of a test, which runs on one thread. Not thread-local: wgpu's resources must not be
+    // dropped while a thread ends.
+    static KEPT: Mutex<Vec<(ThreadId, OffscreenRenderer)>> = Mutex::new(Vec::new());
+    let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    let thread = std::thread::current().id();
+    let own = {
+        let mut kept = kept();
+        let index = kept.iter().position(|(of, _)| *of == thread);
+        // Or that of a thread that has ended.
+        index.or(kept.len().checked_sub(1)).map(|index| kept.swap_remove(index).1)
+    };
+    let renderer = match own {
+        Some(own) => own.restarted(exact_filtering),
+        None => OffscreenRenderer::new(offscreen_context(), exact_filtering),
+    };
+    let mut renderer = renderer.unwrap();
     renderer.draw(gpu(), shot).unwrap();
-    renderer.read(gpu(), shot).unwrap()
+    let picture = renderer.read(gpu(), shot).unwrap();
+    kept().push((thread, renderer));
+    picture
 }
 
 fn on_gpu(shot: &Shot) -> Image<Vec4> {
     render_on_gpu(shot, true)
 }
 
+/// Renders on the GPU and on the CPU.
+fn on_both(shot: &Shot) -> [Image<Vec4>; 2] {
+    [on_gpu(shot), shot.render_on_cpu().unwrap()]
+}
+
+/// Images of a shot without smoke, on both renderers.
+struct Backgrounds {
+    shot: Shot,
+    images: [Image<Vec4>; 2],
+}
+
 /// PSNR between the renderers where there is smoke, dB, and the GPU's image.
 fn agreement(shot: &Shot) -> (f32, Image<Vec4>) {
-    let renderers = |shot: &Shot| [on_gpu(shot), shot.render_on_cpu().unwrap()];
-    let (pictures, behind) = (renderers(shot), renderers(&without_smoke(shot)));
+    thread_local! {
+        // Most images of a test have the same background.
+        static LAST: RefCell<Option<Backgrounds>> = const { RefCell::new(None) };
+    }
+    let [on_gpu, on_cpu] = on_both(shot);
+    let behind = without_smoke(shot);
+    let is_same = |last: &Backgrounds| {
+        let (last, now) = (&last.shot, &behind);
+        last.preset == now.preset && last.size == now.size && last.debug_view == now.debug_view
+    };
+    let behind = match LAST.take().filter(is_same) {
+        Some(last) => last,
+        None => Backgrounds { images: on_both(&behind), shot: behind },
+    };
     gpu().check().unwrap();
-    assert!(pictures[0].texels.iter().all(|texel| texel.is_finite()));
-    let psnr = psnr_over(pictures.each_ref(), behind.each_ref());
-    let [on_gpu, _] = pictures;
+    assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()));
+    let psnr = psnr_over([&on_gpu, &on_cpu], behind.images.each_ref());
+    LAST.set(Some(behind));
     (psnr, on_gpu)
 }
 
-#[test]
-fn gpu_and_cpu_agree_on_every_preset() {
-    for preset in builtin::PRESETS {
-        for &lighting_resolution in LightingResolution::ALL {
-            let mut shot = shot(preset.name, UVec2::new(320, 180));
-            for system in &mut shot.preset.systems {
-                system.settings.accumulate.lighting_resolution = lighting_resolution;
-            }
-            let what = format!("{}, light {}", preset.name, lighting_resolution.name());
-            let (psnr, _) = agreement(&shot);
-            println!("{what}: {psnr:.1} dB");
-            assert!(psnr >= MIN_PSNR, "{what}: {psnr:.1} dB");
+fn assert_renderers_agree(preset: &str) {
+    for &lighting_resolution in LightingResolution::ALL {
+        let mut shot = shot(preset, UVec2::new(320, 180));
+        for system in &mut shot.preset.systems {
+            system.settings.accumulate.lighting_resolution = lighting_resolution;
         }
+        let what = format!("{preset}, light {}", lighting_resolution.name());
+        let (psnr, _) = agreement(&shot);
+        println!("{what}: {psnr:.1} dB");
+        assert!(psnr >= MIN_PSNR, "{what}: {psnr:.1} dB");
     }
 }
+
+/// Declares a test for each preset, so that they run side by side.
+macro_rules! preset_tests {
+    ($($preset:ident),* $(,)?) => {
+        mod gpu_and_cpu_agree_on_every_preset {
+            $(#[test]
+            fn $preset() {
+                super::assert_renderers_agree(stringify!($preset));
+            })*
+
+            #[test]
+            fn no_preset_is_missing() {
+                let names: Vec<_> = haze::builtin::PRESETS.iter().map(|preset| preset.name).collect();
+                assert_eq!(names, [$(stringify!($preset)),*]);
+            }
+        }
+    };
+}
+
+preset_tests!(
+    column,
+    backlit_fog,
+    corridor,
+    colored_lights,
+    fence,
+    inside,
+    crates,
+    dust_storm,
+    campfire,
+    oil_fire,
+    fireball,
+    steam_vent,
+    spell,
+    wildfire_sky,
+);
 
 /// PLY file of a rotating column of 300 sprites, z up and in centimetres, as Blender exports it.
 fn column_of_ply(frame: u32) -> Vec<u8> {

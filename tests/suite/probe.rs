@@ -8,11 +8,12 @@ use haze::ramp::Ramp;
 use haze::settings::*;
 use haze::wgpu;
 use haze_demo::capture::CapturedFrame;
-use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
+use haze_demo::offscreen_renderer::OffscreenRenderer;
 use haze_demo::shot::Shot;
 use haze_reference::{Probe, SystemProbe};
 
 use crate::gpu::{can_test, gpu, is_tiled_available};
+use crate::presets::offscreen_context;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -20,8 +21,8 @@ const SIZE: UVec2 = UVec2::new(160, 90);
 /// OpenGL, which cannot copy depth to a buffer.
 fn render_and_capture(shot: &Shot, stages: &[DebugView]) -> Option<(CapturedFrame, Vec<Image<Vec4>>)> {
     let gpu = gpu();
-    let context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-    let mut renderer = OffscreenRenderer::new(&context, true).unwrap();
+    let context = offscreen_context();
+    let mut renderer = OffscreenRenderer::new(context, true).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     renderer.record(&mut encoder, shot, stages).unwrap();
     let capture = renderer.capture(&mut encoder);

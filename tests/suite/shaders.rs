@@ -10,7 +10,7 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Context, Error, SceneDepthKind, WarmUp, read_only_depth_is_supported, wgpu};
 use tempfile::TempDir;
 
-use crate::gpu::{gpu, is_tiled_available};
+use crate::gpu::{gpu, is_tiled_available, shared_context};
 use crate::psnr::psnr;
 use crate::test_host::Host;
 use crate::test_scene::{TestScene, six_way_of};
@@ -40,8 +40,7 @@ impl ShaderFolder {
     }
 
     fn context(&self) -> Result<Context, Error> {
-        let gpu = gpu();
-        Context::new(&gpu.device, &gpu.queue, None).with_shaders(&Sources::from_folder(self.0.path())?)
+        shared_context().with_shaders(&Sources::from_folder(self.0.path())?)
     }
 
     fn picture(&self) -> Image<Vec4> {

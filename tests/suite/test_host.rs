@@ -95,10 +95,11 @@ impl Host {
         Self::with_context(gpu, scene, None)
     }
 
-    /// Creates a host on the context that tests share. Only for comparing images: on a shared context, counts of
-    /// created resources and compiled pipelines mean nothing.
+    /// Creates a host on the context that tests share, if `gpu` is the device that they share. Only for comparing images: on
+    /// a shared context, counts of created resources and compiled pipelines mean nothing.
     pub fn with_shared_context(gpu: &Headless, scene: &TestScene) -> Result<Self, Error> {
-        Self::with_context(gpu, scene, shared_context(gpu))
+        let is_shared = std::ptr::eq(gpu, crate::gpu::gpu());
+        Self::with_context(gpu, scene, is_shared.then(shared_context).as_ref())
     }
 
     /// Creates a host whose renderer uses `context`, or its own context if `None`.

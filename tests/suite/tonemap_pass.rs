@@ -8,6 +8,7 @@ use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{TonemapPass, TonemapUniform, exposure, tonemap};
 
 use crate::gpu::gpu;
+use crate::presets::offscreen_context;
 use crate::resource_counter;
 use crate::test_host::convert_to_rgba16float;
 
@@ -50,8 +51,7 @@ fn tonemap_on_gpu(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot)
 }
 
 fn shot(preset: &str, debug_view: DebugView) -> (OffscreenRenderer, Shot) {
-    let context = OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
-    let mut renderer = OffscreenRenderer::new(&context, true).unwrap();
+    let mut renderer = OffscreenRenderer::new(offscreen_context(), true).unwrap();
     let mut shot = Shot { debug_view, ..Shot::load(preset, SIZE).unwrap() };
     shot.preset.camera.exposure = 0.7;
     renderer.draw(gpu(), &shot).unwrap();

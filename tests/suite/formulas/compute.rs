@@ -1,5 +1,7 @@
 //! Compute runs of WGSL functions.
 
+use std::sync::LazyLock;
+
 use glam::{UVec2, UVec3};
 use haze::noise::NoiseVolume;
 use haze::ramp::Ramp;
@@ -10,59 +12,85 @@ use haze_demo::headless::Headless;
 
 use super::fixture::uniform_bytes;
 use super::inputs::{test_noise, test_ramp, test_sprite};
+use crate::gpu::gpu;
+
+/// Resources that every run binds.
+struct Fixture {
+    layouts: [wgpu::BindGroupLayout; 2],
+    ramp: wgpu::TextureView,
+    sprite: wgpu::TextureView,
+    noise: wgpu::TextureView,
+    alpha_bounds: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+    uniforms: wgpu::BindGroup,
+}
+
+impl Fixture {
+    fn new(gpu: &Headless) -> Self {
+        let layouts = layouts(&gpu.device);
+        let uniforms = uniform_bytes().map(|bytes| {
+            let usage = wgpu::BufferUsages::UNIFORM;
+            let uniform = buffer(&gpu.device, bytes.len() as u64, usage);
+            gpu.queue.write_buffer(&uniform, 0, &bytes);
+            uniform
+        });
+        let resources = uniforms.each_ref().map(wgpu::Buffer::as_entire_binding);
+        Self {
+            ramp: upload_ramp(gpu, &test_ramp()),
+            sprite: upload_sprite(gpu, &test_sprite()),
+            noise: upload_noise(gpu, test_noise()),
+            alpha_bounds: upload_alpha_bounds(gpu, &test_sprite().alpha_bounds(None)),
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
+            uniforms: bind(&gpu.device, &layouts[1], &resources),
+            layouts,
+        }
+    }
+}
+
+fn buffer(device: &wgpu::Device, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("formula"),
+        size,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
 
 /// Runs a compute shader on cases of `width` numbers each and returns as many results per case. Group 0 has the cases,
 /// the results, and the test's textures and sampler; group 1 has the uniforms of the fixture.
-pub fn compute(gpu: &Headless, source: &str, cases: &[Vec<f32>], width: usize) -> Vec<Vec<f32>> {
+pub fn compute(source: &str, cases: &[Vec<f32>], width: usize) -> Vec<Vec<f32>> {
+    static FIXTURE: LazyLock<Fixture> = LazyLock::new(|| Fixture::new(gpu()));
+    let gpu = gpu();
     let device = &gpu.device;
+    let Fixture { layouts, ramp, sprite, noise, alpha_bounds, sampler, uniforms } = &*FIXTURE;
     let mut inputs = vec![0.0_f32; cases.len() * width];
     for (row, case) in inputs.chunks_mut(width).zip(cases) {
         row[..case.len()].copy_from_slice(case);
     }
     let bytes: &[u8] = bytemuck::cast_slice(&inputs);
-    let buffer = |size, usage| {
-        device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("formula"),
-            size,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
-    };
-    let input = buffer(bytes.len() as u64, wgpu::BufferUsages::STORAGE);
-    let output = buffer(bytes.len() as u64, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let input = buffer(device, bytes.len() as u64, wgpu::BufferUsages::STORAGE);
+    let output = buffer(device, bytes.len() as u64, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     gpu.queue.write_buffer(&input, 0, bytes);
-    let uniforms = uniform_bytes().map(|bytes| {
-        let uniform = buffer(bytes.len() as u64, wgpu::BufferUsages::UNIFORM);
-        gpu.queue.write_buffer(&uniform, 0, &bytes);
-        uniform
-    });
-    let layouts = layouts(device);
-    let pipeline = pipeline(device, source, &layouts);
-    let views = [upload_ramp(gpu, &test_ramp()), upload_sprite(gpu, &test_sprite())];
-    let others = [upload_noise(gpu, test_noise()), upload_alpha_bounds(gpu, &test_sprite().alpha_bounds(None))];
-    let sampler = device.create_sampler(&wgpu::SamplerDescriptor::default());
-    let [ramp, sprite] = views.each_ref().map(wgpu::BindingResource::TextureView);
-    let [noise, alpha_bounds] = others.each_ref().map(wgpu::BindingResource::TextureView);
+    let pipeline = pipeline(device, source, layouts);
     let group = bind(
         device,
         &layouts[0],
         &[
             input.as_entire_binding(),
             output.as_entire_binding(),
-            ramp,
-            sprite,
-            wgpu::BindingResource::Sampler(&sampler),
-            noise,
-            alpha_bounds,
+            wgpu::BindingResource::TextureView(ramp),
+            wgpu::BindingResource::TextureView(sprite),
+            wgpu::BindingResource::Sampler(sampler),
+            wgpu::BindingResource::TextureView(noise),
+            wgpu::BindingResource::TextureView(alpha_bounds),
         ],
     );
-    let fixture = bind(device, &layouts[1], &uniforms.each_ref().map(wgpu::Buffer::as_entire_binding));
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
-        pass.set_bind_group(1, &fixture, &[]);
+        pass.set_bind_group(1, uniforms, &[]);
         pass.dispatch_workgroups(cases.len() as u32, 1, 1);
     }
     gpu.submit(encoder).unwrap();
