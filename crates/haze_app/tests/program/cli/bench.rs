@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -149,7 +149,21 @@ fn the_page_fits_browser_windows_of_any_width() {
     }
 }
 
+/// Waits until a process handles SIGHUP, SIGINT and SIGTERM, as a run does from its first measurement on.
+#[cfg(target_os = "linux")]
+fn wait_for_handlers(child: &Child) {
+    let is_handled = |line: &str| {
+        let mask = line.strip_prefix("SigCgt:").and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        mask.is_some_and(|mask| [1, 2, 15].iter().all(|number| mask >> (number - 1) & 1 == 1))
+    };
+    let status = format!("/proc/{}/status", child.id());
+    while !fs::read_to_string(&status).unwrap().lines().any(is_handled) {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
 #[test]
+#[cfg(target_os = "linux")]
 fn a_request_to_stop_writes_a_partial_report() {
     let runs = ["INT", "TERM", "HUP"].map(|signal| {
         let folder = folder();
@@ -163,9 +177,8 @@ fn a_request_to_stop_writes_a_partial_report() {
             .unwrap();
         (signal, folder, child)
     });
-    // By then the runs are measuring.
-    std::thread::sleep(Duration::from_secs(10));
     for (signal, folder, mut child) in runs {
+        wait_for_handlers(&child);
         let arguments = [&format!("-{signal}"), &child.id().to_string()];
         assert!(Command::new("kill").args(arguments).status().unwrap().success());
         let asked = Instant::now();
