@@ -269,8 +269,7 @@ fn shader_around(file: &str, text: &str, snippet: &Snippet) -> String {
     match file {
         "custom_node.hlsl" => {
             let textures = ramps(&|name| format!("Texture2D {name}; SamplerState {name}Sampler;\n"));
-            // Unreal makes a function of the node's text, which Microsoft's compilers accept. glslang 12 crashed on that; here
-            // the struct stands before the function.
+            // Unreal makes a function of the node's text. glslang 12 crashed on a shader of that form, so it is split here.
             let (declared, body) = text.split_once("HazeMaterial haze;").unwrap();
             format!(
                 "{textures}{declared}float4 node(float2 uv) {{\n{inputs}\nHazeMaterial haze;{body}\n}}\n\
