@@ -257,6 +257,21 @@ fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
 }
 
 #[test]
+fn an_edit_compiles_the_pipelines_of_its_pass_alone() {
+    let folder = ShaderFolder::new();
+    let with_shaders =
+        |context: &Context| context.with_shaders(&Sources::from_folder(folder.0.path()).unwrap()).unwrap();
+    folder.edit("specular_scatter.wgsl", "//", "//");
+    let unedited = with_shaders(&shared_context());
+    assert_eq!(with_shaders(&unedited).pipeline_count(), 0);
+    folder.edit("specular_scatter.wgsl", "//", "// Edited.\n//");
+    let edited = with_shaders(&unedited);
+    assert!((1..=4).contains(&edited.pipeline_count()), "{}", edited.pipeline_count());
+    // The next one takes over edited passes, too.
+    assert_eq!(with_shaders(&edited).pipeline_count(), 0);
+}
+
+#[test]
 fn byte_order_marks_and_crlf_line_endings_are_accepted() {
     let plain = draw(None);
     let folder = ShaderFolder::new();
