@@ -9,7 +9,7 @@
 #import "lib/smoke_tiles.wgsl"
 
 @group(3) @binding(0) var lit: texture_2d<f32>;
-@group(3) @binding(2) var depth_slopes: texture_2d<f32>;
+@group(3) @binding(1) var depth_slopes: texture_2d<f32>;
 
 // True: there are slopes.
 override SLOPES: bool = false;

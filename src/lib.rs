@@ -4,16 +4,26 @@
 //! ```text
 //! host:                opaque scene ─► scene color (HDR) + scene depth
 //!                                                              │ sampled
-//! Renderer::prepare    depth_resolve      multisampled scene depth ─► farthest sample of each pixel
-//!   (host's encoder)   measure            extent of particles in a host's buffer
-//!                      depth_downsample   scene depth ─► reduced depth, linear view metres
-//!                      sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU)
+//! Renderer::prepare    measure            extent of particles in a host's buffer
+//!   (host's encoder)   sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU: depth_sort)
 //!                      density_splat      sprites ─► density grid, if a system receives shadow
-//!                      shadow_march       density grid ─► optical depths towards lights
+//!                      shadow_visibility  a host's shadow maps ─► visibility of lights from each cell
+//!                      shadow_march       density grid ─► optical depths towards lights, openness to sky and ground
+//!                                         (without compute: shadow_march_slice, shadow_visibility_slice)
+//!                      depth_resolve      multisampled scene depth ─► farthest sample of each pixel
+//!                      depth_downsample   scene depth ─► reduced depth, linear view metres
 //!                      diffuse_bake       lights ─► cubemap or motif, if a system uses one
 //!                      accumulate         sprites × normal map × soft fade ─► premultiplied normal, amount
-//! Renderer::render     transfer           the system's bounding box: decode, light, upsample, blend on the scene
-//!   (host's pass)      specular_scatter   the glow of lights behind the smoke
+//!                                         (path tiled: emit, tile_project, sort, tile_gather, tile_bin, tile_refine,
+//!                                         tile_accumulate)
+//!                      light_target       normal, amount ─► lit smoke, if light is per texel
+//!                      depth_slopes       lit smoke ─► its slope over depth, for upsampling
+//!                      mark_cells         lit smoke, slopes ─► cells that hold any, if they are drawn
+//!                      upsample_lit       lit smoke ─► pixels, where a GPU computes far faster than it draws
+//! Renderer::render     screen_shadow      darkens the host's picture, if it calls render_scene_shadow
+//!   (host's pass)      transfer           the system's bounding box: decode, light, upsample, blend on the scene
+//!                                         (transfer_lit: the same with lit smoke)
+//!                      specular_scatter   the glow of lights behind the smoke
 //!                      forward            or: every fragment lit and blended at full resolution
 //! ```
 //!

@@ -114,10 +114,10 @@ impl Context {
             .iter()
             .try_for_each(|plan| shared.pipelines.compile(plan))?;
         shared.pipelines.compile_shadow_slices()?;
-        shared.pipelines.screen_shadow.check(HostPass::color_only(wgpu::TextureFormat::Rgba16Float))?;
+        shared.pipelines.drawn.screen_shadow.check(HostPass::color_only(wgpu::TextureFormat::Rgba16Float))?;
         // OpenGL cannot read multisampled depth.
         if shared.read_only_depth {
-            shared.pipelines.depth_resolve.check(DepthResolveKey { reversed: false })?;
+            shared.pipelines.drawn.depth_resolve.check(DepthResolveKey { reversed: false })?;
         }
         Ok(context)
     }

@@ -1,9 +1,8 @@
 //! Bind group 0 of every pass: view uniforms and scene depth.
 
-use super::gpu::Gpu;
+use super::context::Shared;
 use super::gpu::error_scopes::with_error_scopes;
 use super::gpu::record::uniform_buffer;
-use super::layouts::{Layouts, bind_textures};
 use crate::error::FieldError;
 use crate::formula::uniforms::ViewUniform;
 use crate::frame::SceneDepth;
@@ -48,13 +47,12 @@ impl FrameBindings {
     /// Names the field `scene_depth` if one of its views cannot be bound.
     pub fn write(
         &mut self,
-        gpu: &Gpu<'_>,
-        layouts: &Layouts,
+        shared: &Shared,
         view: &ViewGeometry,
         scene_depth: &SceneDepth<'_>,
     ) -> Result<(), FieldError> {
-        self.buffer.write(gpu, layouts, &view.uniform(false), scene_depth.buffer())?;
-        self.linear.write(gpu, layouts, &view.uniform(true), scene_depth.linear())
+        self.buffer.write(shared, &view.uniform(false), scene_depth.buffer())?;
+        self.linear.write(shared, &view.uniform(true), scene_depth.linear())
     }
 
     /// Returns the bindings of the linear target if `linear` is true, else those of the depth buffer. `None` if the
@@ -76,8 +74,7 @@ impl Source {
 
     fn write(
         &mut self,
-        gpu: &Gpu<'_>,
-        layouts: &Layouts,
+        shared: &Shared,
         view: &ViewUniform,
         depth: Option<&wgpu::TextureView>,
     ) -> Result<(), FieldError> {
@@ -87,27 +84,27 @@ impl Source {
         };
         if self.bound.as_ref().is_none_or(|bound| bound.depth != *depth) {
             self.bound = None;
-            let bound = with_error_scopes(gpu.device, || self.bind(gpu.device, layouts, depth)).map_err(|reason| {
+            let bound = with_error_scopes(&shared.device, || self.bind(shared, depth)).map_err(|reason| {
                 let expected = format!("a 2D view of one layer and one aspect of a texture of this device ({reason})");
                 let problem = format!("a view of a {:?} texture cannot be bound", depth.texture().format());
                 FieldError::from_problem("scene_depth", problem, expected)
             })?;
             self.bound = Some(bound);
         }
-        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(view));
+        shared.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(view));
         Ok(())
     }
 
-    fn bind(&self, device: &wgpu::Device, layouts: &Layouts, depth: &wgpu::TextureView) -> DepthBindings {
-        let frame = device.create_bind_group(&wgpu::BindGroupDescriptor {
+    fn bind(&self, shared: &Shared, depth: &wgpu::TextureView) -> DepthBindings {
+        let frame = shared.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("haze frame"),
-            layout: &layouts.frame,
+            layout: &shared.layouts.frame,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: self.view.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
             ],
         });
-        let accumulate_inputs = bind_textures(device, "haze accumulate inputs", &layouts.accumulate, [depth]);
+        let accumulate_inputs = shared.pipelines.drawn.accumulate.bind_textures([depth]);
         DepthBindings { depth: depth.clone(), frame, accumulate_inputs }
     }
 }

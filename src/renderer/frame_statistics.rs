@@ -5,7 +5,7 @@ use super::auto::PathChoice;
 use super::counts::{FrameCounts, Overdraw};
 use super::memory_use::MemoryUse;
 use super::resolved_depth::ResolvedDepth;
-use super::system_state::SystemState;
+use super::system::SystemState;
 use super::targets::TargetViews;
 use crate::view_setup::{LightingChoice, ScaleChoice};
 

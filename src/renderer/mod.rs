@@ -1,6 +1,5 @@
 //! GPU renderer: records a frame, pass by pass.
 
-mod alive_copy;
 mod auto;
 mod context;
 mod counts;
@@ -9,12 +8,12 @@ mod frame_bindings;
 mod frame_context;
 mod frame_statistics;
 mod gpu;
-mod instances;
 mod layouts;
 mod material_upload;
 mod memory_use;
 mod pass;
 mod path_probe;
+mod pipeline_variants;
 mod pipelines;
 mod plan;
 mod resolved_depth;
@@ -23,11 +22,8 @@ mod screen_shadow;
 pub mod shader;
 mod shadow_map_bindings;
 mod sliced_shadow;
-mod sprite_instances;
-mod system_particles;
-mod system_passes;
-mod system_state;
-mod system_targets;
+mod support;
+mod system;
 mod targets;
 mod tiled;
 mod validate_frame;
@@ -64,8 +60,7 @@ use resolved_depth::ResolvedDepth;
 use scene_shadow::SceneShadow;
 use screen_shadow::ScreenShadowState;
 use sliced_shadow::SlicedShadow;
-use system_passes::SystemPasses;
-use system_state::SystemState;
+use system::{SystemPasses, SystemState};
 use tiled::ShadowVolume;
 use validate_frame::{host_size, validate};
 
@@ -159,14 +154,14 @@ impl Renderer {
         let inputs = self.pipeline_inputs(&view, expected.scene_depth, expected.debug_views);
         let shared = self.context.shared();
         if expected.scene_depth == SceneDepthKind::Multisampled {
-            shared.pipelines.depth_resolve.check(DepthResolveKey { reversed: view.depth.reversed })?;
+            shared.pipelines.drawn.depth_resolve.check(DepthResolveKey { reversed: view.depth.reversed })?;
         }
         for (index, settings) in expected.settings.iter().enumerate() {
             let path = || format!("settings[{index}]");
             settings.validate(path)?;
             AttachmentSet::validate(settings, path)?;
             if settings.receives_shadow() {
-                shared.pipelines.screen_shadow.check(self.scene_pass)?;
+                shared.pipelines.drawn.screen_shadow.check(self.scene_pass)?;
             }
             // The material is not known yet: compiles for one frame and for several, for smooth ramps and hard ones.
             for (frame_count, ramps) in
@@ -205,26 +200,46 @@ impl Renderer {
         let context = self.context.clone();
         let shared = context.shared();
         // Keeps the farthest sample of a multisampled scene depth.
-        let resolved = self.resolved_depth.iter().zip(&self.view);
-        resolved.for_each(|(resolved, view)| resolved.pass(shared, view).record(encoder));
+        if let (Some(resolved), Some(view)) = (&self.resolved_depth, &self.view) {
+            resolved.pass(shared, view).record(encoder);
+        }
         for visible in &self.order {
             let Some(SystemPasses::Deferred(passes)) = self.states[visible.state].passes() else { continue };
-            // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
-            passes.depth_downsample.iter().chain(&passes.depth_copy).for_each(|pass| pass.record(encoder));
+            let texels = &passes.texels;
+            // Downsamples the scene depth.
+            if let Some(pass) = &texels.depth_downsample {
+                pass.record(encoder);
+            }
+            // Writes a second copy if the backend cannot test what it samples.
+            if let Some(pass) = &texels.depth_copy {
+                pass.record(encoder);
+            }
             // Bakes all lights by normal, for the diffuse modes cubemap and motif.
-            passes.diffuse_bake.iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = &passes.diffuse_bake {
+                pass.record(encoder);
+            }
             // Accumulates sprites as premultiplied normal + amount.
             passes.accumulate.record(encoder);
             // Counts layers, for the overdraw view.
-            passes.overdraw.iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = &passes.overdraw {
+                pass.record(encoder);
+            }
             // Lights the target, if the lighting resolution is the target's.
-            passes.light_target.iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = &texels.light_target {
+                pass.record(encoder);
+            }
             // Fits how the lit smoke changes with depth, for its upsampling.
-            passes.depth_slopes.iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = &texels.depth_slopes {
+                pass.record(encoder);
+            }
             // Marks where there is smoke, and where it has slopes.
-            passes.mark_cells.iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = &texels.mark_cells {
+                pass.record(encoder);
+            }
             // Computes the pixels that transfer draws, where drawing is slow.
-            passes.upsample_lit.iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = &texels.upsample_lit {
+                pass.record(encoder);
+            }
         }
         // Reads back the lengths of the lists of tiles.
         for tiled in self.order.iter().filter_map(|visible| self.states[visible.state].tiled_passes()) {
@@ -282,7 +297,7 @@ impl Renderer {
         let frame = &FrameInput { scene_depth, ..*frame };
         let inputs = self.pipeline_inputs(&view, frame.scene_depth.kind(), frame.debug_views);
         // Bind group 0 of every system: view and scene depth.
-        self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
+        self.bindings.write(shared, &view, &frame.scene_depth)?;
         self.sync_system_states(frame);
         self.submission.track(encoder.commands());
         let timing = self.timing.as_ref();
@@ -310,10 +325,12 @@ impl Renderer {
         }
         let of_frame = |shadow| self.shadow_volume.of_frame(shadow).or_else(|| self.sliced_shadow.of_frame(shadow));
         let grid = shadow.as_ref().and_then(of_frame);
-        grid.iter().for_each(|_| self.shadow_volume.clear(encoder.commands()));
+        if grid.is_some() {
+            self.shadow_volume.clear(encoder.commands());
+        }
         self.scene_shadow.write(shared, frame, grid);
         if self.screen_shadow.write(shared, frame, &view, shadow.as_ref().filter(|_| grid.is_some())) {
-            shared.pipelines.screen_shadow.check(self.scene_pass)?;
+            shared.pipelines.drawn.screen_shadow.check(self.scene_pass)?;
         }
         let (host_size, bindings) = (host_size(frame), &self.bindings);
         let context =
@@ -331,23 +348,37 @@ impl Renderer {
                 self.order.push(VisibleSystem { state: index, distance: state.distance() });
             }
             // Copies the number of a host's particles, if only the GPU knows it.
-            state.alive().iter().for_each(|copy| copy.record(encoder.commands()));
+            if let Some(copy) = state.alive() {
+                copy.record(encoder.commands());
+            }
             // Clears the counters of the lists of tiles.
-            state.tiled_passes().iter().for_each(|tiled| tiled.clear_counters(encoder.commands()));
+            if let Some(tiled) = state.tiled_passes() {
+                tiled.clear_counters(encoder.commands());
+            }
         }
         for state in &self.states {
             // Measures a host's particles, which the CPU cannot read.
-            state.measure().iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = state.measure() {
+                pass.record(encoder);
+            }
             // Evaluates an emitter's particles, or sorts a host's particles back to front.
-            state.particle_pass().iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = state.particle_pass() {
+                pass.record(encoder);
+            }
             // Adds the sprites to the density grid.
-            state.splat().iter().for_each(|pass| pass.record(encoder));
+            if let Some(pass) = state.splat() {
+                pass.record(encoder);
+            }
         }
         // Marches from the cells of the density grid to the lights; looks up the host's shadow maps.
         match (&shadow, &shared.pipelines.tiled) {
             (Some(shadow), Some(tiled)) => {
-                self.shadow_volume.look_up(tiled, shadow).iter().for_each(|pass| pass.record(encoder));
-                self.shadow_volume.march(tiled, shadow).iter().for_each(|pass| pass.record(encoder));
+                if let Some(pass) = self.shadow_volume.look_up(tiled, shadow) {
+                    pass.record(encoder);
+                }
+                if let Some(pass) = self.shadow_volume.march(tiled, shadow) {
+                    pass.record(encoder);
+                }
             }
             // Without compute shaders, the CPU adds the sprites to the grid.
             (Some(shadow), None) => {
@@ -357,7 +388,9 @@ impl Renderer {
                     .iter()
                     .filter_map(|system| states.iter().find(|state| state.key == system.key)?.cast(system.particles));
                 cast.for_each(|(system, particles)| self.sliced_shadow.add(shadow, system, particles));
-                self.sliced_shadow.march(shared, shadow).iter().for_each(|pass| pass.record(encoder));
+                for pass in self.sliced_shadow.march(shared, shadow) {
+                    pass.record(encoder);
+                }
             }
             (None, _) => {}
         }

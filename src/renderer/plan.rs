@@ -3,8 +3,9 @@
 use glam::UVec2;
 
 use super::gpu::host_pass::HostPass;
+use super::pass::TexelPlan;
 use super::pass::accumulate::{AccumulateKey, DepthTest};
-use super::pass::depth_downsample::DepthDownsampleKey;
+use super::pass::depth_downsample::{DepthCopyKey, DepthDownsampleKey};
 use super::pass::depth_resolve::RESOLVED_DEPTH_FORMAT;
 use super::pass::depth_slopes::DepthSlopesKey;
 use super::pass::diffuse_bake::DiffuseBakeKey;
@@ -12,12 +13,13 @@ use super::pass::forward::ForwardKey;
 use super::pass::light_target::LightingKey;
 use super::pass::mark_cells::MarkCellsKey;
 use super::pass::specular_scatter::SpecularScatterKey;
+use super::pass::sprite_instances::SpriteKey;
+use super::pass::texel_pass::Planned;
 use super::pass::tile_accumulate::{TileAccumulateKey, Traversal};
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::{BoundingBoxKey, TransferKey};
 use super::pass::transfer_lit::{Tiles, TransferLitKey};
 use super::pass::upsample_lit::{LitPixelKey, UpsampleLitKey};
-use super::sprite_instances::SpriteKey;
 use super::tiled::TiledKeys;
 use crate::assets::ramp_steps::RampSteps;
 use crate::formula::diffuse_bake::baked_size_and_layers;
@@ -95,26 +97,16 @@ pub(crate) struct ForwardPlan {
 pub(crate) struct DeferredPlan<'a> {
     /// As in [`ForwardPlan`].
     pub reads_linear: bool,
-    pub depth_downsample: Option<DepthDownsampleKey>,
-    /// Same pass, for the coarse copy of the reduced depth.
-    pub depth_copy: Option<DepthDownsampleKey>,
     pub diffuse_bake: Option<DiffuseBakeKey>,
     pub accumulate: AccumulateKey,
     /// Compute passes that replace `accumulate`.
     pub tiled: Option<TiledKeys>,
     /// Accumulation variant that counts layers.
     pub overdraw: Option<AccumulateKey>,
-    /// True if compute shaders light the target and fit its slopes. Where computing is not slower than drawing it can be far
-    /// faster: server GPUs draw with a few of their processors only.
-    pub computes_texels: bool,
-    /// Present if smoke is lit at the target's resolution.
-    pub light_target: Option<LightingKey>,
-    /// Present if lit smoke is upsampled by `guided`.
-    pub depth_slopes: Option<DepthSlopesKey>,
-    /// Present if smoke is lit at the target's resolution and that is not computed.
-    pub mark_cells: Option<MarkCellsKey>,
-    /// Present if the pixels that transfer_lit draws are computed.
-    pub upsample_lit: Option<UpsampleLitKey>,
+    /// Passes over texels: depth_copy for the coarse copy of the reduced depth, light_target if smoke is lit at the target's
+    /// resolution, depth_slopes if lit smoke is upsampled by `guided`, mark_cells if light_target is drawn, upsample_lit if the
+    /// pixels that transfer_lit draws are computed.
+    pub texels: TexelPlan,
     /// Key of the debug view `Final`; `transfers` derives the keys of all debug views from it.
     pub transfer: TransferKey,
     /// Key of the debug view `Final` and of all tiles, if smoke is lit at the target's resolution; see `lit_transfers`.
@@ -190,7 +182,7 @@ fn deferred<'a>(
     let (accumulate, debug_views) = (&settings.accumulate, inputs.debug_views);
     let (host, ramp_filter, exact_filtering) = (inputs.host, settings.ramp_filter, inputs.exact_filtering);
     let depth_test = depth_test(inputs, settings);
-    let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
+    let mode = accumulate.depth_downsample;
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
     let tiled = inputs.tiles.filter(|_| settings.path == RenderPath::Tiled);
     let overdraw = debug_views.contains(&DebugView::Overdraw);
@@ -198,7 +190,8 @@ fn deferred<'a>(
     // attachments of a pass must have one size.
     let in_place = tiled.is_some() && settings.scale == 1 && !overdraw;
     let host_depth = accumulate.depth_source == DepthSource::Host || in_place;
-    // Cooperative: on a GPU.
+    // Cooperative: on a GPU. Where computing is not slower than drawing it can be far faster: server GPUs draw with a few of
+    // their processors only.
     let computes_texels = tiled.is_some() || inputs.tiles == Some(true);
     // At scale 1 a texel is a pixel, whose light can be computed too.
     let is_lit = settings.lights_per_texel() || (computes_texels && settings.scale == 1);
@@ -236,9 +229,9 @@ fn deferred<'a>(
         depth_test,
         overdraw: false,
     };
-    let depth_slopes = (lights_target && upsample == Upsample::Guided && settings.scale > 1).then_some(DepthSlopesKey);
+    let has_slopes = lights_target && upsample == Upsample::Guided && settings.scale > 1;
     let pixel = LitPixelKey { glows: computes_texels && glows, upsample, coverage, ramp_filter, exact_filtering };
-    let slope_cells = depth_slopes.is_some() && !exact_filtering;
+    let slope_cells = has_slopes && !exact_filtering;
     // One picture for all debug views that show it.
     let same_pixels = !glows || debug_views.iter().all(|view| view.shows_glow() || !view.shows_lit_smoke());
     // At scale 1, a pixel is hardly more than its lit texel.
@@ -246,8 +239,6 @@ fn deferred<'a>(
         inputs.computes_pixels && computes_texels && lights_target && settings.scale > 1 && same_pixels;
     DeferredPlan {
         reads_linear,
-        depth_downsample: (!host_depth).then(|| downsample(false)),
-        depth_copy: (depth_test == DepthTest::Copy).then(|| downsample(true)),
         diffuse_bake: bakes.then_some(DiffuseBakeKey {
             mode: settings.diffuse.mode,
             backlight: settings.diffuse.backlight,
@@ -258,12 +249,18 @@ fn deferred<'a>(
         accumulate: accumulate_key,
         tiled: tiled.map(|cooperative| tiled_keys(&accumulate_key, accumulate.layers, cooperative, exact_filtering)),
         overdraw: overdraw.then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
-        computes_texels,
-        light_target: lights_target.then_some(lighting),
-        depth_slopes,
+        texels: TexelPlan {
+            // Where the hardware counts layers, it tests the depth.
+            depth_downsample: (!host_depth)
+                .then_some(Planned { key: DepthDownsampleKey { mode }, computed: tiled.is_some() && !overdraw }),
+            depth_copy: (depth_test == DepthTest::Copy).then_some(Planned::drawn(DepthCopyKey { mode })),
+            light_target: lights_target.then_some(Planned { key: lighting, computed: computes_texels }),
+            depth_slopes: has_slopes.then_some(Planned { key: DepthSlopesKey, computed: computes_texels }),
+            mark_cells: (lights_target && !computes_texels)
+                .then_some(Planned::drawn(MarkCellsKey { slopes: has_slopes })),
+            upsample_lit: computes_pixels.then_some(Planned::computed(UpsampleLitKey { slope_cells, pixel })),
+        },
         transfer: TransferKey { drawn, lighting, upsample, host_depth, debug_view: DebugView::Final, coverage },
-        mark_cells: (lights_target && !computes_texels).then_some(MarkCellsKey { slopes: depth_slopes.is_some() }),
-        upsample_lit: computes_pixels.then_some(UpsampleLitKey { slope_cells, pixel }),
         transfer_lit: lights_target.then_some(TransferLitKey {
             drawn,
             tiles: Tiles::All,
@@ -332,11 +329,6 @@ pub(crate) fn reads_linear_target(scene_depth: SceneDepthKind, read_only_depth: 
 }
 
 impl DeferredPlan<'_> {
-    /// Returns true if compute shaders write the reduced depth. Where the hardware counts layers, it tests them.
-    pub fn computes_depth(&self) -> bool {
-        self.tiled.is_some() && self.depth_downsample.is_some() && self.overdraw.is_none()
-    }
-
     /// Returns the transfer keys of all debug views that transfer draws.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
         let drawn =

@@ -4,7 +4,6 @@ use glam::UVec2;
 
 use super::context::Shared;
 use super::gpu::error_scopes::with_error_scopes;
-use super::layouts::bind_textures;
 use super::pass::depth_resolve::{DepthResolve, DepthResolveKey, RESOLVED_DEPTH_FORMAT};
 use super::targets::single_target;
 use crate::error::FieldError;
@@ -35,7 +34,7 @@ impl ResolvedDepth {
             kept => kept,
         };
         let device = &shared.device;
-        let bind = || bind_textures(device, "haze depth samples", &shared.layouts.depth_resolve, [samples]);
+        let bind = || shared.pipelines.drawn.depth_resolve.bind_textures([samples]);
         let bound = with_error_scopes(device, bind).map_err(|reason| {
             let expected =
                 format!("a 2D view of one layer and the depth aspect of a texture of this device ({reason})");
@@ -51,7 +50,7 @@ impl ResolvedDepth {
     pub fn pass(&self, shared: &Shared, view: &ViewGeometry) -> DepthResolve<'_> {
         let key = DepthResolveKey { reversed: view.depth.reversed };
         DepthResolve {
-            pipeline: shared.pipelines.depth_resolve.get(key),
+            pipeline: shared.pipelines.drawn.depth_resolve.get(key),
             target: &self.target,
             samples: &self.bound,
             origin: view.origin,

@@ -1,8 +1,8 @@
 //! Shadow of the smoke on the scene: what a host's shaders read.
 
 use super::context::Shared;
+use super::gpu::binding::bind_resources;
 use super::gpu::record::uniform_buffer;
-use super::layouts::bind_resources;
 use super::tiled::FrameShadow;
 use crate::formula::uniforms::SceneShadowUniform;
 use crate::frame::FrameInput;

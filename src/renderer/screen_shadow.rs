@@ -3,10 +3,11 @@
 use glam::{Mat4, Vec3};
 
 use super::context::Shared;
+use super::gpu::binding::bind_resources;
 use super::gpu::host_pass::HostPass;
 use super::gpu::idle_counter::IdleCounter;
 use super::gpu::record::uniform_buffer;
-use super::layouts::{LIGHTS_SIZE, bind_resources};
+use super::layouts::LIGHTS_SIZE;
 use super::pass::screen_shadow::ScreenShadow;
 use super::shadow_map_bindings::ShadowMapBindings;
 use crate::formula::uniforms::{LightUniform, ScreenShadowUniform};
@@ -61,7 +62,7 @@ impl ScreenShadowState {
     ) -> Option<ScreenShadow<'a>> {
         let inputs = self.inputs.as_ref().filter(|_| self.is_drawn)?;
         let groups = [inputs.maps.group(), frame, &inputs.group, scene_shadow];
-        Some(ScreenShadow { pipeline: shared.pipelines.screen_shadow.get(host), groups })
+        Some(ScreenShadow { pipeline: shared.pipelines.drawn.screen_shadow.get(host), groups })
     }
 
     /// Returns the bytes of GPU memory held.

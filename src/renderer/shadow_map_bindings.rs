@@ -1,9 +1,9 @@
 //! A host's shadow maps of a block of lights, as shaders read them.
 
 use super::gpu::Gpu;
+use super::gpu::binding::bind_resources;
 use super::gpu::capabilities::array_layers;
 use super::gpu::record::uniform_buffer;
-use super::layouts::bind_resources;
 use crate::formula::shadow::LIGHTS_PER_BLOCK;
 use crate::formula::uniforms::ShadowVisibilityUniform;
 use crate::frame::ShadowMap;

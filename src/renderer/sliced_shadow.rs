@@ -6,9 +6,9 @@ use glam::UVec3;
 use super::context::Shared;
 use super::gpu::idle_counter::IdleCounter;
 use super::gpu::record::uniform_buffer;
-use super::layouts::bind_resources;
-use super::pass::VolumeSlices;
 use super::pass::shadow_march_slice::MarchTo;
+use super::pass::shadow_visibility_slice::ShadowVisibilitySliceKey;
+use super::pass::volume_slices::VolumeSlices;
 use super::shadow_map_bindings::ShadowMapBindings;
 use super::tiled::{FrameShadow, volume};
 use crate::formula::uniforms::{ShadowMarchUniform, SystemUniform};
@@ -94,12 +94,12 @@ impl SlicedShadow {
             VolumeSlices { name, pipeline, inputs: inputs.clone(), volume: &held.optical_depths, size, slices }
         };
         let march =
-            |block, to| of_block(block, "shadow_march_slice", pipelines.shadow_march_slice.get(to), &held.march);
+            |block, to| of_block(block, "shadow_march_slice", pipelines.drawn.shadow_march_slice.get(to), &held.march);
         let lights = (0..shadow.used_light_blocks()).map(|block| march(block, MarchTo::Lights));
         let sky = shadow.has_openness.then(|| march(shadow.openness_block(), MarchTo::Sky));
         let maps = (shadow.visibility_block()..).zip(held.maps.iter().take(shadow.used_light_blocks() as usize));
         let visible = maps.map(|(block, maps)| {
-            let pipeline = pipelines.shadow_visibility_slice.get(());
+            let pipeline = pipelines.drawn.shadow_visibility_slice.get(ShadowVisibilitySliceKey);
             of_block(block, "shadow_visibility_slice", pipeline, maps.group())
         });
         lights.chain(sky).chain(visible).collect()
@@ -134,7 +134,7 @@ impl SliceBuffers {
             volume(device, "haze optical depths", (resolution, blocks), wgpu::TextureUsages::RENDER_ATTACHMENT);
         let density_view = density.create_view(&wgpu::TextureViewDescriptor::default());
         let resources = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&density_view)];
-        let march = bind_resources(device, "haze shadow_march_slice", &layouts.shadow_march_slice, resources);
+        let march = shared.pipelines.drawn.shadow_march_slice.bind(resources);
         let map = |_| ShadowMapBindings::new(device, &layouts.shadow_maps, None);
         let maps = (0..shadow.map_blocks()).map(map).collect();
         Self { resolution, blocks, uniform, density, optical_depths, march, maps }

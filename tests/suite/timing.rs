@@ -1,6 +1,7 @@
 //! GPU time per pass, on a device with timestamp queries.
 
 mod cost_tables;
+mod frame_drawing;
 mod queries;
 
 use std::sync::OnceLock;

@@ -1,5 +1,6 @@
 //! wgpu helpers that all passes share. Nothing here is specific to smoke.
 
+pub(crate) mod binding;
 pub(crate) mod capabilities;
 pub(crate) mod error_scopes;
 pub(crate) mod frame_encoder;

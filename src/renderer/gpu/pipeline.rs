@@ -1,13 +1,9 @@
-//! Pipeline variants, and the states that passes share.
+//! Shaders and pipelines of passes, and the states that they share.
 
-use std::collections::HashMap;
-use std::hash::Hash;
+use std::fmt::Debug;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-use super::error_scopes::with_error_scopes;
-use crate::error::{Error, one_line};
 
 /// Shader of a pass.
 #[derive(Clone, Debug)]
@@ -58,35 +54,33 @@ impl PipelineStore {
         Self { device: device.clone(), cache: cache.cloned(), count: Arc::default() }
     }
 
+    /// Counts a compiled pipeline.
+    pub fn count_pipeline(&self) {
+        self.count.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// Returns the number of pipelines compiled so far.
     pub fn pipeline_count(&self) -> usize {
         self.count.load(Ordering::Relaxed)
     }
 }
 
-/// Shader of a pass, and its pipelines by key. A pipeline is compiled on first use, from any thread.
-#[derive(Debug)]
-pub(crate) struct PipelineVariants<K, P: PipelineDescription = RenderPipelineDescription> {
-    common: Common,
-    describe: fn(K) -> P,
-    /// Shared by contexts with the same module.
-    pipelines: Arc<Mutex<HashMap<K, P::Pipeline>>>,
-}
-
 /// Properties that all pipelines of a pass share.
 #[derive(Debug)]
 pub(crate) struct Common {
     /// Name of the pass, used as label.
-    name: &'static str,
-    module: wgpu::ShaderModule,
-    path: PathBuf,
-    layout: wgpu::PipelineLayout,
-    store: PipelineStore,
+    pub name: &'static str,
+    pub module: wgpu::ShaderModule,
+    pub path: PathBuf,
+    pub layout: wgpu::PipelineLayout,
+    pub store: PipelineStore,
 }
 
 /// Variant-specific parts of a pipeline; together with the properties that its pass shares, they create it.
 pub(crate) trait PipelineDescription {
-    type Pipeline: Clone + std::fmt::Debug;
+    /// Stages that read the pass's own bind group.
+    const STAGES: wgpu::ShaderStages;
+    type Pipeline: Clone + Debug;
 
     fn create(&self, common: &Common) -> Self::Pipeline;
 }
@@ -109,74 +103,8 @@ pub(crate) struct ComputePipelineDescription {
     pub constants: Vec<Constant>,
 }
 
-impl<K: Copy + Eq + Hash, P: PipelineDescription> PipelineVariants<K, P> {
-    /// `name`: name of the pass, used as label.
-    pub fn new(
-        store: &PipelineStore,
-        name: &'static str,
-        shader: Shader,
-        describe: fn(K) -> P,
-        groups: &[Option<&wgpu::BindGroupLayout>],
-    ) -> Self {
-        let layout = store.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(name),
-            bind_group_layouts: groups,
-            immediate_size: 0,
-        });
-        let Shader { module, path, text: _, loops_end: _ } = shader;
-        let common = Common { name, module, path, layout, store: store.clone() };
-        Self { common, describe, pipelines: Arc::default() }
-    }
-
-    /// Shares the pipelines of another context if its module is the same.
-    pub fn share(&mut self, other: &Self) {
-        if self.common.module == other.common.module {
-            self.pipelines = other.pipelines.clone();
-        }
-    }
-
-    /// Returns the pipeline for `key`; compiles it on first use. The lock is not held during compilation, so other
-    /// threads do not wait.
-    pub fn get(&self, key: K) -> P::Pipeline {
-        let found = self.lock().get(&key).cloned();
-        found.unwrap_or_else(|| self.keep(key, self.compile(key)))
-    }
-
-    /// Compiles the pipeline for `key`, or returns the shader error.
-    pub fn check(&self, key: K) -> Result<(), Error> {
-        if self.lock().contains_key(&key) {
-            return Ok(());
-        }
-        let compiled = with_error_scopes(&self.common.store.device, || self.compile(key)).map_err(|reason| {
-            let stages = [("VERTEX", "vertex"), ("FRAGMENT", "fragment"), ("COMPUTE", "compute")];
-            let plain = |text: String, (stage, name): (&str, _)| text.replace(&format!("ShaderStages({stage})"), name);
-            let reason = one_line(stages.into_iter().fold(reason, plain));
-            Error::Shader { path: self.common.path.clone(), line: 1, column: 1, reason }
-        })?;
-        self.keep(key, compiled);
-        Ok(())
-    }
-
-    /// Stores a compiled pipeline, unless another thread stored one first; returns the stored one.
-    fn keep(&self, key: K, compiled: P::Pipeline) -> P::Pipeline {
-        let count = &self.common.store.count;
-        let stored = |compiled| {
-            count.fetch_add(1, Ordering::Relaxed);
-            compiled
-        };
-        self.lock().entry(key).or_insert_with(|| stored(compiled)).clone()
-    }
-
-    fn lock(&self) -> MutexGuard<'_, HashMap<K, P::Pipeline>> {
-        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn compile(&self, key: K) -> P::Pipeline {
-        (self.describe)(key).create(&self.common)
-    }
-}
-
 impl PipelineDescription for RenderPipelineDescription {
+    const STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT;
     type Pipeline = wgpu::RenderPipeline;
 
     fn create(&self, common: &Common) -> wgpu::RenderPipeline {
@@ -206,6 +134,7 @@ impl PipelineDescription for RenderPipelineDescription {
 }
 
 impl PipelineDescription for ComputePipelineDescription {
+    const STAGES: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
     type Pipeline = wgpu::ComputePipeline;
 
     fn create(&self, common: &Common) -> wgpu::ComputePipeline {
@@ -219,15 +148,6 @@ impl PipelineDescription for ComputePipelineDescription {
         })
     }
 }
-
-/// Makes the [`PipelineVariants`] of a pass's module, which is named like its shader.
-macro_rules! pipeline_variants {
-    ($store:expr, $shader:expr, $pass:ident, $groups:expr) => {{
-        let name = stringify!($pass);
-        PipelineVariants::new($store, name, $shader(name)?, $pass::describe, $groups)
-    }};
-}
-pub(crate) use pipeline_variants;
 
 /// A WGSL override constant: its name and its value.
 pub(crate) type Constant = (&'static str, f64);

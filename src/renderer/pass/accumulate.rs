@@ -9,7 +9,10 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::Groups;
+use super::depth_downsample::{DEPTH_COPY, REDUCED_DEPTH};
+use super::groups::Groups;
+use super::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
+use crate::renderer::gpu::binding::LOADED;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::host_pass::MAX_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{
@@ -17,8 +20,9 @@ use crate::renderer::gpu::pipeline::{
     read_only_depth,
 };
 use crate::renderer::gpu::record::{color_attachment, set_viewport_and_scissor, tested_depth};
-use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
-use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, attachment_constants, attachments};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
+use crate::renderer::targets::{attachment_constants, attachments};
 use crate::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
 use crate::view_setup::AttachmentSet;
 
@@ -50,33 +54,42 @@ pub(crate) enum DepthTest {
     Host(wgpu::TextureFormat, bool),
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: AccumulateKey) -> RenderPipelineDescription {
-    let set = if key.overdraw { AttachmentSet::NORMAL_AND_AMOUNT } else { key.attachments };
-    RenderPipelineDescription {
-        buffers: const { &[Some(PARTICLE_LAYOUT)] },
-        primitive: QUAD_STRIP,
-        depth_stencil: match key.depth_test {
-            DepthTest::InShader => None,
-            DepthTest::Reduced => Some(read_only_depth(REDUCED_DEPTH_FORMAT, depth_compare(false))),
-            DepthTest::Copy => Some(read_only_depth(DEPTH_COPY_FORMAT, depth_compare(false))),
-            DepthTest::Host(format, reversed) => Some(read_only_depth(format, depth_compare(reversed))),
-        },
-        sample_count: 1,
-        targets: attachments(set)
-            .map(|row| {
-                let blend = if key.overdraw { ADD_ALL } else { row.blend(key.order) };
-                color_target(row.raster_format(key.format), Some(blend))
-            })
-            .collect(),
-        constants: key.sprite.constants(attachment_constants(set).chain([
-            enum_constant!("NORMAL_ENCODING", key.encoding),
-            bool_constant("HOST_DEPTH", key.host_depth),
-            bool_constant("WEIGHTED", key.order == BlendOrder::Weighted),
-            // The copy is too coarse to replace the shader's own test.
-            bool_constant("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
-            bool_constant("OVERDRAW", key.overdraw),
-        ])),
+impl PipelineKey for AccumulateKey {
+    const PASS: &'static str = "accumulate";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = RenderPipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![LOADED]
+    }
+
+    fn describe(self) -> RenderPipelineDescription {
+        let set = if self.overdraw { AttachmentSet::NORMAL_AND_AMOUNT } else { self.attachments };
+        RenderPipelineDescription {
+            buffers: const { &[Some(PARTICLE_LAYOUT)] },
+            primitive: QUAD_STRIP,
+            depth_stencil: match self.depth_test {
+                DepthTest::InShader => None,
+                DepthTest::Reduced => Some(read_only_depth(REDUCED_DEPTH.drawn, depth_compare(false))),
+                DepthTest::Copy => Some(read_only_depth(DEPTH_COPY.drawn, depth_compare(false))),
+                DepthTest::Host(format, reversed) => Some(read_only_depth(format, depth_compare(reversed))),
+            },
+            sample_count: 1,
+            targets: attachments(set)
+                .map(|row| {
+                    let blend = if self.overdraw { ADD_ALL } else { row.blend(self.order) };
+                    color_target(row.raster_format(self.format), Some(blend))
+                })
+                .collect(),
+            constants: self.sprite.constants(attachment_constants(set).chain([
+                enum_constant!("NORMAL_ENCODING", self.encoding),
+                bool_constant("HOST_DEPTH", self.host_depth),
+                bool_constant("WEIGHTED", self.order == BlendOrder::Weighted),
+                // The copy is too coarse to replace the shader's own test.
+                bool_constant("DEPTH_TESTED", !matches!(self.depth_test, DepthTest::InShader | DepthTest::Copy)),
+                bool_constant("OVERDRAW", self.overdraw),
+            ])),
+        }
     }
 }
 

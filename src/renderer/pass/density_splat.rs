@@ -5,13 +5,30 @@
 
 use glam::UVec2;
 
-use super::Groups;
+use super::groups::Groups;
+use crate::formula::uniforms::SplatUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
-/// Returns the pipeline's parts.
-pub(crate) fn describe((): ()) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "add_sprite", constants: Vec::new() }
+/// Key of the only pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DensitySplatKey;
+
+impl PipelineKey for DensitySplatKey {
+    const PASS: &'static str = "density_splat";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![uniform(size_of::<SplatUniform>()), READ_BUFFER, WRITTEN_BUFFER]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        ComputePipelineDescription { entry_point: "add_sprite", constants: Vec::new() }
+    }
 }
 
 /// The pass for one system.

@@ -10,6 +10,8 @@ use glam::UVec2;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, read_only_depth};
 use crate::renderer::gpu::record::{set_viewport_and_scissor, written_depth};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Format of the resolved depth.
 pub(crate) const RESOLVED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -21,18 +23,31 @@ pub(crate) struct DepthResolveKey {
     pub reversed: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: DepthResolveKey) -> RenderPipelineDescription {
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            depth_write_enabled: Some(true),
-            ..read_only_depth(RESOLVED_DEPTH_FORMAT, wgpu::CompareFunction::Always)
-        }),
-        sample_count: 1,
-        targets: Vec::new(),
-        constants: vec![bool_constant("REVERSED", key.reversed)],
+impl PipelineKey for DepthResolveKey {
+    const PASS: &'static str = "depth_resolve";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = RenderPipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: true,
+        }]
+    }
+
+    fn describe(self) -> RenderPipelineDescription {
+        RenderPipelineDescription {
+            buffers: &[],
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                depth_write_enabled: Some(true),
+                ..read_only_depth(RESOLVED_DEPTH_FORMAT, wgpu::CompareFunction::Always)
+            }),
+            sample_count: 1,
+            targets: Vec::new(),
+            constants: vec![bool_constant("REVERSED", self.reversed)],
+        }
     }
 }
 

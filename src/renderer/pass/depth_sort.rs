@@ -3,9 +3,13 @@
 //! Reads: particles; after the sort, the sorted particle indices.
 //! Writes: keys and particle indices; after the sort, sorted particles.
 
-use super::Groups;
+use super::groups::Groups;
 use super::sort::Sort;
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Key of a pipeline: the step before the sort, and the step after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,13 +18,22 @@ pub(crate) enum DepthSortKey {
     GatherParticles,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: DepthSortKey) -> ComputePipelineDescription {
-    let entry_point = match key {
-        DepthSortKey::DepthKeys => "depth_keys",
-        DepthSortKey::GatherParticles => "gather_particles",
-    };
-    ComputePipelineDescription { entry_point, constants: Vec::new() }
+impl PipelineKey for DepthSortKey {
+    const PASS: &'static str = "depth_sort";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![uniform(size_of::<TilesUniform>()), READ_BUFFER, WRITTEN_BUFFER, WRITTEN_BUFFER, WRITTEN_BUFFER]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        let entry_point = match self {
+            DepthSortKey::DepthKeys => "depth_keys",
+            DepthSortKey::GatherParticles => "gather_particles",
+        };
+        ComputePipelineDescription { entry_point, constants: Vec::new() }
+    }
 }
 
 /// The pass for one system.

@@ -7,11 +7,13 @@
 
 use std::sync::Arc;
 
-use super::Groups;
+use super::groups::Groups;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, color_target, enum_constant};
 use crate::renderer::gpu::record::color_attachment;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
 use crate::settings::{Backlight, DiffuseMode, RampFilter};
 
@@ -26,23 +28,28 @@ pub(crate) struct DiffuseBakeKey {
     pub exact_filtering: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: DiffuseBakeKey) -> RenderPipelineDescription {
-    let (side, _) = baked_size_and_layers(key.mode).unwrap_or((1, 1));
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        sample_count: 1,
-        targets: vec![color_target(BAKED_DIFFUSE_FORMAT, None)],
-        constants: vec![
-            bool_constant("MOTIF", key.mode == DiffuseMode::Motif),
-            ("BAKE_SIZE", f64::from(side)),
-            enum_constant!("BACKLIGHT", key.backlight),
-            bool_constant("AMBIENT", key.ambient),
-            enum_constant!("RAMP_FILTER", key.ramp_filter),
-            bool_constant("EXACT_FILTERING", key.exact_filtering),
-        ],
+impl PipelineKey for DiffuseBakeKey {
+    const PASS: &'static str = "diffuse_bake";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = RenderPipelineDescription;
+
+    fn describe(self) -> RenderPipelineDescription {
+        let (side, _) = baked_size_and_layers(self.mode).unwrap_or((1, 1));
+        RenderPipelineDescription {
+            buffers: &[],
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            sample_count: 1,
+            targets: vec![color_target(BAKED_DIFFUSE_FORMAT, None)],
+            constants: vec![
+                bool_constant("MOTIF", self.mode == DiffuseMode::Motif),
+                ("BAKE_SIZE", f64::from(side)),
+                enum_constant!("BACKLIGHT", self.backlight),
+                bool_constant("AMBIENT", self.ambient),
+                enum_constant!("RAMP_FILTER", self.ramp_filter),
+                bool_constant("EXACT_FILTERING", self.exact_filtering),
+            ],
+        }
     }
 }
 

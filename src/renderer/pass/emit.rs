@@ -3,11 +3,28 @@
 //! Reads: the emitter at a time.
 //! Writes: particles.
 
+use crate::formula::uniforms::EmitterUniform;
+use crate::renderer::gpu::binding::{WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
-/// Returns the parts of the only pipeline.
-pub(crate) fn describe((): ()) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "emit", constants: Vec::new() }
+/// Key of the only pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct EmitKey;
+
+impl PipelineKey for EmitKey {
+    const PASS: &'static str = "emit";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![uniform(size_of::<EmitterUniform>()), WRITTEN_BUFFER]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        ComputePipelineDescription { entry_point: "emit", constants: Vec::new() }
+    }
 }
 
 /// The pass for one system.

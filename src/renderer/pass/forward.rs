@@ -5,13 +5,15 @@
 //! Blend: alpha, additive or multiply.
 //! Source: OTEE "Typical game particles so far".
 
-use super::Groups;
+use super::groups::Groups;
+use super::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
     ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, QUAD_STRIP, RenderPipelineDescription, bool_constant, depth_compare,
     enum_constant, read_only_depth,
 };
-use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 use crate::settings::{Backlight, BlendMode, SoftScatterMode};
 
 /// Key of a forward pipeline.
@@ -29,30 +31,35 @@ pub(crate) struct ForwardKey {
     pub reversed: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
-    let blend = match key.blend_mode {
-        BlendMode::Alpha => PREMULTIPLIED_OVER,
-        BlendMode::Additive => ADDITIVE,
-        BlendMode::Multiply => MULTIPLY,
-    };
-    let compare = if key.shows_through { wgpu::CompareFunction::Always } else { depth_compare(key.reversed) };
-    RenderPipelineDescription {
-        buffers: const { &[Some(PARTICLE_LAYOUT)] },
-        primitive: QUAD_STRIP,
-        depth_stencil: key.host.depth_format.map(|format| read_only_depth(format, compare)),
-        sample_count: key.host.sample_count,
-        targets: key.host.color_targets(blend),
-        constants: key.sprite.constants([
-            enum_constant!("BLEND_MODE", key.blend_mode),
-            bool_constant("BY_DEPTH", key.sprite.lights_by_depth()),
-            ("SHADOW_BLOCKS", f64::from(key.shadow_blocks)),
-            bool_constant("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
-            enum_constant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
-            enum_constant!("BACKLIGHT", key.backlight),
-            bool_constant("AMBIENT", key.ambient),
-            bool_constant("FULL_RESOLUTION", true),
-        ]),
+impl PipelineKey for ForwardKey {
+    const PASS: &'static str = "forward";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = RenderPipelineDescription;
+
+    fn describe(self) -> RenderPipelineDescription {
+        let blend = match self.blend_mode {
+            BlendMode::Alpha => PREMULTIPLIED_OVER,
+            BlendMode::Additive => ADDITIVE,
+            BlendMode::Multiply => MULTIPLY,
+        };
+        let compare = if self.shows_through { wgpu::CompareFunction::Always } else { depth_compare(self.reversed) };
+        RenderPipelineDescription {
+            buffers: const { &[Some(PARTICLE_LAYOUT)] },
+            primitive: QUAD_STRIP,
+            depth_stencil: self.host.depth_format.map(|format| read_only_depth(format, compare)),
+            sample_count: self.host.sample_count,
+            targets: self.host.color_targets(blend),
+            constants: self.sprite.constants([
+                enum_constant!("BLEND_MODE", self.blend_mode),
+                bool_constant("BY_DEPTH", self.sprite.lights_by_depth()),
+                ("SHADOW_BLOCKS", f64::from(self.shadow_blocks)),
+                bool_constant("DEPTH_TESTED", self.host.depth_format.is_some() && !self.shows_through),
+                enum_constant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
+                enum_constant!("BACKLIGHT", self.backlight),
+                bool_constant("AMBIENT", self.ambient),
+                bool_constant("FULL_RESOLUTION", true),
+            ]),
+        }
     }
 }
 

@@ -1,17 +1,45 @@
 //! light_target: lights the accumulated smoke once per texel, if `lighting_resolution` selects it; transfer_lit
-//! then upsamples the light. `TexelPass` records it.
+//! then upsamples the light.
 //!
 //! Reads: accumulation target, lights, ramps.
-//! Writes: lit smoke, Rgba16Float.
+//! Writes: lit smoke, Rgba16Float; in compute also the cells with smoke, and the glow of lights.
 //! Blend: none.
 //! Source: OTEE "Transfer & lighting", at the target's resolution.
 
-use crate::renderer::gpu::pipeline::{
-    ComputePipelineDescription, Constant, RenderPipelineDescription, bool_constant, color_target, enum_constant,
-};
-use crate::renderer::targets::{LIT_FORMAT, attachment_constants};
+use super::depth_downsample::REDUCED_DEPTH;
+use super::texel_pass::TexelKey;
+use crate::renderer::gpu::binding::{LOADED, texture};
+use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
+use crate::renderer::targets::{Extent, SystemTextures, Target, attachment_constants};
 use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
-use crate::view_setup::{AttachmentRole, AttachmentSet};
+use crate::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
+
+/// Light times amount in rgb, amount in a. Light is HDR, whatever the format of the normals.
+pub(crate) const LIT: Target = Target {
+    label: "haze lit smoke",
+    extent: Extent::Texels,
+    drawn: wgpu::TextureFormat::Rgba16Float,
+    computed: wgpu::TextureFormat::Rgba16Float,
+};
+
+/// Cells of the lit smoke that hold some. mark_cells draws them.
+pub(crate) const SMOKE_CELLS: Target = Target {
+    label: "haze smoke cells",
+    extent: Extent::Cells,
+    drawn: wgpu::TextureFormat::R8Unorm,
+    computed: wgpu::TextureFormat::R32Float,
+};
+
+/// Glow of lights, if it is computed.
+pub(crate) const GLOWS: Target = Target {
+    label: "haze glows",
+    extent: Extent::Lights,
+    drawn: wgpu::TextureFormat::Rgba32Float,
+    computed: wgpu::TextureFormat::Rgba32Float,
+};
+
+/// Number of textures that the pass reads: first attachment, reduced depth, baked light, further attachments.
+const TEXTURES: usize = 3 + (MAX_TARGET_ATTACHMENTS - 1);
 
 /// Lighting options that select a pipeline, here and in transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,7 +58,7 @@ pub(crate) struct LightingKey {
 
 impl LightingKey {
     /// Returns the override constants of `shaders/lib/lit_smoke.wgsl`, followed by the pass's own.
-    pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
+    pub fn constants_with<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
         let shared = [
             enum_constant!("DIFFUSE_MODE", self.diffuse_mode),
             enum_constant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
@@ -47,19 +75,44 @@ impl LightingKey {
     }
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: LightingKey) -> RenderPipelineDescription {
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        sample_count: 1,
-        targets: vec![color_target(LIT_FORMAT, None)],
-        constants: key.constants([]),
+/// Types of the textures that the pass reads, as does transfer.
+pub(crate) const READS: [wgpu::BindingType; TEXTURES] = {
+    let mut types = [LOADED; TEXTURES];
+    types[2] = texture(true, wgpu::TextureViewDimension::D2Array);
+    types
+};
+
+impl TexelKey for LightingKey {
+    const PASS: &'static str = "light_target";
+    const READS: &'static [wgpu::BindingType] = &READS;
+    const COMPUTED: &'static [Target] = &[LIT, SMOKE_CELLS, GLOWS];
+
+    fn drawn(self) -> &'static [Target] {
+        &[LIT]
+    }
+
+    fn reads(textures: SystemTextures<'_>) -> Vec<&wgpu::TextureView> {
+        accumulated(textures, &textures.accumulation.attachments[0])
+    }
+
+    fn constants(self) -> Vec<Constant> {
+        self.constants_with([])
     }
 }
 
-/// Returns the parts of the compute pipeline for a key.
-pub(crate) fn describe_compute(key: LightingKey) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "texels", constants: key.constants([]) }
+/// Returns the textures of `READS`, with `first` in place of the first attachment.
+pub(crate) fn accumulated<'a>(
+    textures: SystemTextures<'a>,
+    first: &'a wgpu::TextureView,
+) -> Vec<&'a wgpu::TextureView> {
+    let target = textures.accumulation;
+    let further = target.attachments[1..].iter();
+    // The bindings of attachments that a system does not have are filled, but not read.
+    let filled = std::iter::repeat(first);
+    [first, target.get_or_first(&REDUCED_DEPTH), &textures.baked_diffuse.array]
+        .into_iter()
+        .chain(further)
+        .chain(filled)
+        .take(TEXTURES)
+        .collect()
 }

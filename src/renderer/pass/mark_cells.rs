@@ -1,13 +1,17 @@
 //! mark_cells: marks the cells of lit smoke by which transfer_lit draws, where light_target and depth_slopes do not compute
-//! them. `TexelPass` records it.
+//! them.
 //!
 //! Reads: lit smoke and its depth slopes.
 //! Writes: cells with smoke, cells with slopes, R8Unorm.
 //! Blend: none.
 //! Source: own.
 
-use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, color_target};
-use crate::renderer::targets::DRAWN_CELLS_FORMAT;
+use super::depth_slopes::{DEPTH_SLOPES, SLOPE_CELLS};
+use super::light_target::{LIT, SMOKE_CELLS};
+use super::texel_pass::TexelKey;
+use crate::renderer::gpu::binding::LOADED;
+use crate::renderer::gpu::pipeline::{Constant, bool_constant};
+use crate::renderer::targets::{SystemTextures, Target};
 
 /// Key of a mark_cells pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,14 +20,21 @@ pub(crate) struct MarkCellsKey {
     pub slopes: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: MarkCellsKey) -> RenderPipelineDescription {
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        sample_count: 1,
-        targets: vec![color_target(DRAWN_CELLS_FORMAT, None); 2],
-        constants: vec![bool_constant("SLOPES", key.slopes)],
+impl TexelKey for MarkCellsKey {
+    const PASS: &'static str = "mark_cells";
+    const READS: &'static [wgpu::BindingType] = &[LOADED, LOADED];
+    const COMPUTED: &'static [Target] = &[];
+
+    fn drawn(self) -> &'static [Target] {
+        &[SMOKE_CELLS, SLOPE_CELLS]
+    }
+
+    fn reads(textures: SystemTextures<'_>) -> Vec<&wgpu::TextureView> {
+        let target = textures.accumulation;
+        vec![target.get_or_first(&LIT), target.get_or_first(&DEPTH_SLOPES)]
+    }
+
+    fn constants(self) -> Vec<Constant> {
+        vec![bool_constant("SLOPES", self.slopes)]
     }
 }

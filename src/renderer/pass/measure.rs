@@ -5,10 +5,14 @@
 
 use std::mem::offset_of;
 
-use super::Groups;
+use super::groups::Groups;
+use crate::formula::uniforms::MeasureUniform;
 use crate::formula::uniforms::SystemUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Invocations of a workgroup, and the largest number of workgroups: WORKGROUP in `shaders/measure.wgsl`.
 pub(crate) const WORKGROUP: u32 = 256;
@@ -36,14 +40,23 @@ impl MeasureKey {
     pub const ALL: [Self; 3] = [Self::SumParticles, Self::CombineSums, Self::FarthestParticle];
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: MeasureKey) -> ComputePipelineDescription {
-    let entry_point = match key {
-        MeasureKey::SumParticles => "sum_particles",
-        MeasureKey::CombineSums => "combine_sums",
-        MeasureKey::FarthestParticle => "farthest_particle",
-    };
-    ComputePipelineDescription { entry_point, constants: Vec::new() }
+impl PipelineKey for MeasureKey {
+    const PASS: &'static str = "measure";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![uniform(size_of::<MeasureUniform>()), READ_BUFFER, WRITTEN_BUFFER, WRITTEN_BUFFER]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        let entry_point = match self {
+            MeasureKey::SumParticles => "sum_particles",
+            MeasureKey::CombineSums => "combine_sums",
+            MeasureKey::FarthestParticle => "farthest_particle",
+        };
+        ComputePipelineDescription { entry_point, constants: Vec::new() }
+    }
 }
 
 /// The pass for one system.

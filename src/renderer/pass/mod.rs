@@ -10,6 +10,7 @@ pub(crate) mod depth_sort;
 pub(crate) mod diffuse_bake;
 pub(crate) mod emit;
 pub(crate) mod forward;
+pub(crate) mod groups;
 pub(crate) mod light_target;
 pub(crate) mod mark_cells;
 pub(crate) mod measure;
@@ -20,6 +21,8 @@ pub(crate) mod shadow_visibility;
 pub(crate) mod shadow_visibility_slice;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;
+pub(crate) mod sprite_instances;
+pub(crate) mod texel_pass;
 pub(crate) mod tile_accumulate;
 pub(crate) mod tile_bin;
 pub(crate) mod tile_gather;
@@ -28,142 +31,82 @@ pub(crate) mod tile_refine;
 pub(crate) mod transfer;
 pub(crate) mod transfer_lit;
 pub(crate) mod upsample_lit;
+pub(crate) mod volume_slices;
 
-use std::ops::Range;
+use super::gpu::pipeline::{PipelineStore, Shader};
+use super::layouts::Layouts;
+use super::targets::{PlannedTargets, planned_targets};
+use crate::error::Error;
+use depth_downsample::{DepthCopyKey, DepthDownsampleKey};
+use depth_slopes::DepthSlopesKey;
+use light_target::LightingKey;
+use mark_cells::MarkCellsKey;
+use texel_pass::{Planned, TexelInputs, TexelPass, TexelPipelines};
+use upsample_lit::UpsampleLitKey;
 
-use glam::{UVec2, UVec3};
-
-use super::gpu::frame_encoder::FrameEncoder;
-use super::gpu::pipeline::{Constant, RenderPipelineDescription, color_target};
-use super::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor, written_depth};
-use super::layouts::SHADOW_FORMAT;
-
-/// Bind groups 0 to 2 of a system's passes.
-#[derive(Clone, Debug)]
-pub(crate) struct Groups {
-    pub frame: wgpu::BindGroup,
-    pub system: wgpu::BindGroup,
-    pub material: wgpu::BindGroup,
-    /// The part of the material that the passes that light accumulated smoke read.
-    pub lighting: wgpu::BindGroup,
-}
-
-impl Groups {
-    fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.bind_with(pass, &self.material);
-    }
-
-    /// Binds the groups of a pass that lights accumulated smoke.
-    fn bind_for_lighting(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.bind_with(pass, &self.lighting);
-    }
-
-    fn bind_with(&self, pass: &mut wgpu::RenderPass<'_>, material: &wgpu::BindGroup) {
-        pass.set_bind_group(0, &self.frame, &[]);
-        pass.set_bind_group(1, &self.system, &[]);
-        pass.set_bind_group(2, material, &[]);
-    }
-
-    fn bind_to_compute(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.bind_to_compute_with(pass, &self.material);
-    }
-
-    fn bind_to_compute_with(&self, pass: &mut wgpu::ComputePass<'_>, material: &wgpu::BindGroup) {
-        pass.set_bind_group(0, &self.frame, &[]);
-        pass.set_bind_group(1, &self.system, &[]);
-        pass.set_bind_group(2, material, &[]);
-    }
-}
-
-/// A pass that writes every texel of a system's target, every cell or every pixel: depth_downsample, light_target,
-/// depth_slopes, mark_cells, upsample_lit.
-#[derive(Debug)]
-pub(crate) struct TexelPass {
-    /// Name in times and captures.
-    pub name: &'static str,
-    pub pipeline: TexelPipeline,
-    /// Size of the part in use, texels.
-    pub size: UVec2,
-    pub groups: Groups,
-    /// Group 3.
-    pub inputs: Option<wgpu::BindGroup>,
-}
-
-/// Pipeline of a `TexelPass`, and the target that it writes.
-#[derive(Debug)]
-pub(crate) enum TexelPipeline {
-    Color(wgpu::RenderPipeline, wgpu::TextureView),
-    Colors(wgpu::RenderPipeline, [wgpu::TextureView; 2]),
-    Depth(wgpu::RenderPipeline, wgpu::TextureView),
-    /// The target is among the inputs.
-    Compute(wgpu::ComputePipeline),
-}
-
-/// Texels or pixels of a workgroup along each axis.
-const TEXELS_SIDE: u32 = 8;
-
-impl TexelPass {
-    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
-        let (pipeline, colors, depth) = match &self.pipeline {
-            TexelPipeline::Color(pipeline, target) => (pipeline, [color_attachment(target), None], None),
-            TexelPipeline::Colors(pipeline, targets) => (pipeline, targets.each_ref().map(color_attachment), None),
-            TexelPipeline::Depth(pipeline, target) => (pipeline, [None, None], Some(written_depth(target))),
-            TexelPipeline::Compute(pipeline) => return self.record_compute(pipeline, encoder),
-        };
-        let count = colors.iter().flatten().count();
-        let mut pass = encoder.render(self.name, &colors[..count], depth);
-        set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
-        pass.set_pipeline(pipeline);
-        self.groups.bind_for_lighting(&mut pass);
-        pass.set_bind_group(3, &self.inputs, &[]);
-        pass.draw(0..3, 0..1);
-    }
-
-    fn record_compute(&self, pipeline: &wgpu::ComputePipeline, encoder: &mut FrameEncoder<'_>) {
-        let pass = encoder.compute(self.name);
-        pass.set_pipeline(pipeline);
-        self.groups.bind_to_compute_with(pass, &self.groups.lighting);
-        pass.set_bind_group(3, &self.inputs, &[]);
-        pass.dispatch_workgroups(self.size.x.div_ceil(TEXELS_SIDE), self.size.y.div_ceil(TEXELS_SIDE), 1);
-    }
-}
-
-/// A pass that computes slices of the volume of a frame's shadow: shadow_march_slice, shadow_visibility_slice.
-#[derive(Debug)]
-pub(crate) struct VolumeSlices<'a> {
-    pub name: &'static str,
-    pub pipeline: wgpu::RenderPipeline,
-    /// Group 0.
-    pub inputs: wgpu::BindGroup,
-    pub volume: &'a wgpu::TextureView,
-    /// Number of cells along each axis.
-    pub size: UVec3,
-    /// Indices along z.
-    pub slices: Range<u32>,
-}
-
-impl VolumeSlices<'_> {
-    pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
-        for slice in self.slices.clone() {
-            let target = color_attachment(self.volume)
-                .map(|target| wgpu::RenderPassColorAttachment { depth_slice: Some(slice), ..target });
-            let mut pass = begin_pass(encoder.commands(), self.name, &[target], None, None);
-            set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size.truncate());
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &self.inputs, &[]);
-            pass.draw(0..3, slice..slice + 1);
+/// Defines the set of texel passes from their names and keys.
+macro_rules! texel_passes {
+    ($($pass:ident: $key:ty,)+) => {
+        /// Pipelines of the texel passes.
+        #[derive(Debug)]
+        pub(crate) struct TexelPipelineSet {
+            $($pass: TexelPipelines<$key>,)+
         }
-    }
+
+        /// Texel passes in the plan of a system.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) struct TexelPlan {
+            $(pub $pass: Option<Planned<$key>>,)+
+        }
+
+        /// Texel passes of a system in a frame.
+        #[derive(Debug)]
+        pub(crate) struct TexelPasses {
+            $(pub $pass: Option<TexelPass>,)+
+        }
+
+        impl TexelPipelineSet {
+            /// As [`TexelPipelines::new`].
+            pub fn new<E>(
+                store: &PipelineStore,
+                layouts: &Layouts,
+                computes: bool,
+                shader: impl Fn(&'static str) -> Result<Shader, E>,
+            ) -> Result<Self, E> {
+                Ok(Self { $($pass: TexelPipelines::new(store, layouts, computes, &shader)?,)+ })
+            }
+
+            /// Shares the pipelines of another context of the device that have the same module.
+            pub fn share(&mut self, other: &Self) {
+                $(self.$pass.share(&other.$pass);)+
+            }
+
+            /// Compiles the pipelines of a plan, or returns the shader error.
+            pub fn check(&self, plan: &TexelPlan) -> Result<(), Error> {
+                $(plan.$pass.map_or(Ok(()), |planned| self.$pass.check(planned))?;)+
+                Ok(())
+            }
+
+            /// Builds the passes of a plan.
+            pub fn passes(&self, plan: &TexelPlan, system: &mut TexelInputs<'_>) -> TexelPasses {
+                TexelPasses { $($pass: plan.$pass.and_then(|planned| self.$pass.pass(planned, system)),)+ }
+            }
+        }
+
+        impl TexelPlan {
+            /// Returns what the passes write.
+            pub fn targets(&self) -> PlannedTargets {
+                planned_targets(std::iter::empty()$(.chain(self.$pass.into_iter().flat_map(Planned::targets)))+)
+            }
+        }
+    };
 }
 
-/// Returns the parts of a pipeline of `VolumeSlices`.
-fn volume_slice(constants: Vec<Constant>) -> RenderPipelineDescription {
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        sample_count: 1,
-        targets: vec![color_target(SHADOW_FORMAT, None)],
-        constants,
-    }
+texel_passes! {
+    depth_downsample: DepthDownsampleKey,
+    depth_copy: DepthCopyKey,
+    light_target: LightingKey,
+    depth_slopes: DepthSlopesKey,
+    mark_cells: MarkCellsKey,
+    upsample_lit: UpsampleLitKey,
 }

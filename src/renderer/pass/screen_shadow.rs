@@ -6,16 +6,23 @@
 
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{MULTIPLY, RenderPipelineDescription, read_only_depth};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
-/// Returns the pipeline's parts for a host's pass.
-pub(crate) fn describe(host: HostPass) -> RenderPipelineDescription {
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: host.depth_format.map(|format| read_only_depth(format, wgpu::CompareFunction::Always)),
-        sample_count: host.sample_count,
-        targets: host.color_targets(MULTIPLY),
-        constants: Vec::new(),
+impl PipelineKey for HostPass {
+    const PASS: &'static str = "screen_shadow";
+    const GROUPS: GroupSet = GroupSet::ScreenShadow;
+    type Description = RenderPipelineDescription;
+
+    fn describe(self) -> RenderPipelineDescription {
+        RenderPipelineDescription {
+            buffers: &[],
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: self.depth_format.map(|format| read_only_depth(format, wgpu::CompareFunction::Always)),
+            sample_count: self.sample_count,
+            targets: self.color_targets(MULTIPLY),
+            constants: Vec::new(),
+        }
     }
 }
 

@@ -6,8 +6,13 @@
 
 use glam::UVec3;
 
+use crate::formula::uniforms::ShadowMarchUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, SAMPLER, texture, uniform, written_texture};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::layouts::SHADOW_FORMAT;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Cells of a workgroup along each axis: SIDE in `shaders/shadow_march.wgsl`.
 const SIDE: u32 = 4;
@@ -25,14 +30,29 @@ impl ShadowMarchKey {
     pub const ALL: [Self; 3] = [Self::CopyDensity, Self::MarchCells, Self::MarchSky];
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: ShadowMarchKey) -> ComputePipelineDescription {
-    let entry_point = match key {
-        ShadowMarchKey::CopyDensity => "copy_density",
-        ShadowMarchKey::MarchCells => "march_cells",
-        ShadowMarchKey::MarchSky => "march_sky",
-    };
-    ComputePipelineDescription { entry_point, constants: Vec::new() }
+impl PipelineKey for ShadowMarchKey {
+    const PASS: &'static str = "shadow_march";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![
+            uniform(size_of::<ShadowMarchUniform>()),
+            READ_BUFFER,
+            written_texture(SHADOW_FORMAT, wgpu::TextureViewDimension::D3),
+            texture(true, wgpu::TextureViewDimension::D3),
+            SAMPLER,
+        ]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        let entry_point = match self {
+            ShadowMarchKey::CopyDensity => "copy_density",
+            ShadowMarchKey::MarchCells => "march_cells",
+            ShadowMarchKey::MarchSky => "march_sky",
+        };
+        ComputePipelineDescription { entry_point, constants: Vec::new() }
+    }
 }
 
 /// The pass for one frame.

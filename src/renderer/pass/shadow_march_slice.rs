@@ -4,8 +4,12 @@
 //! Writes: optical depths towards the lights; openness to sky and ground.
 //! Blend: none.
 
-use super::volume_slice;
+use super::volume_slices::volume_slice;
+use crate::formula::uniforms::ShadowMarchUniform;
+use crate::renderer::gpu::binding::{texture, uniform};
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Ends of the marches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,7 +18,16 @@ pub(crate) enum MarchTo {
     Sky,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: MarchTo) -> RenderPipelineDescription {
-    volume_slice(vec![bool_constant("TO_SKY", key == MarchTo::Sky)])
+impl PipelineKey for MarchTo {
+    const PASS: &'static str = "shadow_march_slice";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = RenderPipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![uniform(size_of::<ShadowMarchUniform>()), texture(false, wgpu::TextureViewDimension::D3)]
+    }
+
+    fn describe(self) -> RenderPipelineDescription {
+        volume_slice(vec![bool_constant("TO_SKY", self == MarchTo::Sky)])
+    }
 }

@@ -5,15 +5,31 @@
 
 use glam::UVec3;
 
+use crate::renderer::gpu::binding::written_texture;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::layouts::{GroupSet, SHADOW_FORMAT, SHADOW_MAP_TYPES};
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Cells of a workgroup along each axis.
 const SIDE: u32 = 2;
 
-/// Returns the pipeline's parts.
-pub(crate) fn describe((): ()) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "look_up_cells", constants: Vec::new() }
+/// Key of the only pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ShadowVisibilityKey;
+
+impl PipelineKey for ShadowVisibilityKey {
+    const PASS: &'static str = "shadow_visibility";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        [SHADOW_MAP_TYPES.as_slice(), &[written_texture(SHADOW_FORMAT, wgpu::TextureViewDimension::D3)]].concat()
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        ComputePipelineDescription { entry_point: "look_up_cells", constants: Vec::new() }
+    }
 }
 
 /// The pass for one frame.

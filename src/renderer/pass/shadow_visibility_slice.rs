@@ -4,10 +4,21 @@
 //! Writes: visibility of the lights, in blocks of the volume.
 //! Blend: none.
 
-use super::volume_slice;
+use super::volume_slices::volume_slice;
 use crate::renderer::gpu::pipeline::RenderPipelineDescription;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
-/// Returns the pipeline's parts.
-pub(crate) fn describe((): ()) -> RenderPipelineDescription {
-    volume_slice(Vec::new())
+/// Key of the only pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ShadowVisibilitySliceKey;
+
+impl PipelineKey for ShadowVisibilitySliceKey {
+    const PASS: &'static str = "shadow_visibility_slice";
+    const GROUPS: GroupSet = GroupSet::ShadowMaps;
+    type Description = RenderPipelineDescription;
+
+    fn describe(self) -> RenderPipelineDescription {
+        volume_slice(Vec::new())
+    }
 }

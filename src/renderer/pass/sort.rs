@@ -5,7 +5,11 @@
 //! Source: Merrill and Grimshaw, "High performance and scalable radix sorting", 2011; rank sort: Knuth, "The art of
 //! computer programming" 3, 5.2 (comparison counting).
 
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Keys per workgroup: `ROUNDS` in `shaders/sort.wgsl` times its invocations.
 pub(crate) const BLOCK: u32 = 1024;
@@ -68,19 +72,36 @@ fn is_ranked(cooperative: bool, count: u32) -> bool {
     cooperative && count <= MAX_RANKED_KEYS
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: SortKey) -> ComputePipelineDescription {
-    ComputePipelineDescription {
-        entry_point: match key.step {
-            Step::CountDigits => "count_digits",
-            Step::SumCounts => "sum_counts",
-            Step::Scatter => "scatter",
-            Step::Rank => "rank",
-        },
-        constants: vec![
-            ("SHIFT", f64::from(key.digit * DIGITS.ilog2())),
-            bool_constant("WITHOUT_SCAN", key.without_scan),
-        ],
+impl PipelineKey for SortKey {
+    const PASS: &'static str = "sort";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![
+            uniform(size_of::<TilesUniform>()),
+            READ_BUFFER,
+            READ_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+        ]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        ComputePipelineDescription {
+            entry_point: match self.step {
+                Step::CountDigits => "count_digits",
+                Step::SumCounts => "sum_counts",
+                Step::Scatter => "scatter",
+                Step::Rank => "rank",
+            },
+            constants: vec![
+                ("SHIFT", f64::from(self.digit * DIGITS.ilog2())),
+                bool_constant("WITHOUT_SCAN", self.without_scan),
+            ],
+        }
     }
 }
 

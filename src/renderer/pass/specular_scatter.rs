@@ -5,11 +5,17 @@
 //! Blend: ONE, ONE.
 //! Source: OTEE "Specular scattering".
 
-use super::Groups;
+use super::depth_slopes::DEPTH_SLOPES;
+use super::groups::Groups;
+use super::light_target::LIT;
+use super::upsample_lit::{LIT_TYPES, lit_textures};
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
     ADDITIVE, QUAD_STRIP, RenderPipelineDescription, bool_constant, enum_constant, read_only_depth,
 };
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
+use crate::renderer::targets::{InputGroups, SystemTextures};
 use crate::settings::{DebugView, RampFilter, Upsample};
 
 /// Key of a specular scatter pipeline.
@@ -23,22 +29,42 @@ pub(crate) struct SpecularScatterKey {
     pub exact_filtering: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: SpecularScatterKey) -> RenderPipelineDescription {
-    let always = |format| read_only_depth(format, wgpu::CompareFunction::Always);
-    RenderPipelineDescription {
-        buffers: &[],
-        primitive: QUAD_STRIP,
-        depth_stencil: key.host.depth_format.map(always),
-        sample_count: key.host.sample_count,
-        targets: key.host.color_targets(ADDITIVE),
-        constants: vec![
-            bool_constant("LIT", key.lit),
-            enum_constant!("UPSAMPLE", key.upsample),
-            enum_constant!("RAMP_FILTER", key.ramp_filter),
-            bool_constant("EXACT_FILTERING", key.exact_filtering),
-        ],
+impl PipelineKey for SpecularScatterKey {
+    const PASS: &'static str = "specular_scatter";
+    const GROUPS: GroupSet = GroupSet::Lighting;
+    type Description = RenderPipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        LIT_TYPES.to_vec()
     }
+
+    fn describe(self) -> RenderPipelineDescription {
+        let always = |format| read_only_depth(format, wgpu::CompareFunction::Always);
+        RenderPipelineDescription {
+            buffers: &[],
+            primitive: QUAD_STRIP,
+            depth_stencil: self.host.depth_format.map(always),
+            sample_count: self.host.sample_count,
+            targets: self.host.color_targets(ADDITIVE),
+            constants: vec![
+                bool_constant("LIT", self.lit),
+                enum_constant!("UPSAMPLE", self.upsample),
+                enum_constant!("RAMP_FILTER", self.ramp_filter),
+                bool_constant("EXACT_FILTERING", self.exact_filtering),
+            ],
+        }
+    }
+}
+
+/// Returns group 3.
+pub(crate) fn inputs(
+    pipelines: &PipelineVariants<SpecularScatterKey>,
+    textures: SystemTextures<'_>,
+    groups: &mut InputGroups,
+) -> wgpu::BindGroup {
+    let target = textures.accumulation;
+    let [lit, slopes] = [LIT, DEPTH_SLOPES].map(|read| target.get_or_first(&read));
+    groups.get("specular_scatter", || pipelines.bind_textures(lit_textures(target, lit, slopes)))
 }
 
 /// The pass for one system, in the host's pass: one quad per light.

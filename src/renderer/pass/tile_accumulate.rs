@@ -6,13 +6,17 @@
 
 use glam::UVec2;
 
-use super::Groups;
+use super::groups::Groups;
+use super::sprite_instances::SpriteKey;
 use super::tile_refine;
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::binding::{LOADED, READ_BUFFER, uniform, written_texture};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant, enum_constant};
-use crate::renderer::sprite_instances::SpriteKey;
-use crate::renderer::targets::{TiledFormats, attachment_constants, tiled_formats};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
+use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, attachment_constants, tiled_formats};
 use crate::settings::{AccumulationFormat, NormalEncoding};
-use crate::view_setup::AttachmentSet;
+use crate::view_setup::{AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 /// Texels per workgroup of the entry points `cooperative` and `split`, of `split_finely`, and of `per_invocation`, in
 /// `shaders/tile_accumulate.wgsl`.
@@ -75,23 +79,42 @@ impl TileAccumulateKey {
     }
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileAccumulateKey) -> ComputePipelineDescription {
-    ComputePipelineDescription {
-        entry_point: match key.traversal {
-            Traversal::PerInvocation => "per_invocation",
-            Traversal::Cooperative => "cooperative",
-            Traversal::Split => "split",
-            Traversal::SplitFinely => "split_finely",
-        },
-        constants: key.sprite.constants(attachment_constants(key.attachments).chain([
-            enum_constant!("NORMAL_ENCODING", key.encoding),
-            bool_constant("HOST_DEPTH", key.host_depth),
-            bool_constant("WEIGHTED", key.weighted),
-            bool_constant("STOPS", key.stops),
-            bool_constant("LOADS_SPRITE", !key.is_cooperative()),
-        ])),
+impl PipelineKey for TileAccumulateKey {
+    const PASS: &'static str = "tile_accumulate";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        inputs([PLACEHOLDER_FORMAT; MAX_TARGET_ATTACHMENTS]).to_vec()
     }
+
+    fn describe(self) -> ComputePipelineDescription {
+        ComputePipelineDescription {
+            entry_point: match self.traversal {
+                Traversal::PerInvocation => "per_invocation",
+                Traversal::Cooperative => "cooperative",
+                Traversal::Split => "split",
+                Traversal::SplitFinely => "split_finely",
+            },
+            constants: self.sprite.constants(attachment_constants(self.attachments).chain([
+                enum_constant!("NORMAL_ENCODING", self.encoding),
+                bool_constant("HOST_DEPTH", self.host_depth),
+                bool_constant("WEIGHTED", self.weighted),
+                bool_constant("STOPS", self.stops),
+                bool_constant("LOADS_SPRITE", !self.is_cooperative()),
+            ])),
+        }
+    }
+}
+
+/// Returns the types of the bindings of group 3 for targets of these formats.
+pub(crate) fn inputs(formats: TiledFormats) -> [wgpu::BindingType; 8 + MAX_TARGET_ATTACHMENTS] {
+    let mut types = [READ_BUFFER; 8 + MAX_TARGET_ATTACHMENTS];
+    types[0] = uniform(size_of::<TilesUniform>());
+    types[6] = LOADED;
+    let targets = formats.map(|format| written_texture(format, wgpu::TextureViewDimension::D2));
+    types[7..7 + MAX_TARGET_ATTACHMENTS].copy_from_slice(&targets);
+    types
 }
 
 /// The pass for one system.

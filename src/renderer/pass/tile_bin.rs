@@ -3,7 +3,11 @@
 //! Reads: sorted sprite indices and rectangles.
 //! Writes: sprite lists, and the start of each.
 
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Up to this many sprites, one dispatch makes all lists: the number of bits of `touching` in `shaders/tile_bin.wgsl`.
 pub(crate) const MAX_SPRITES_SINGLE_DISPATCH: u32 = 1 << 15;
@@ -39,19 +43,36 @@ pub(crate) fn keys(cooperative: bool, few: bool) -> impl Iterator<Item = TileBin
     steps.iter().map(|&step| TileBinKey { step })
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileBinKey) -> ComputePipelineDescription {
-    ComputePipelineDescription {
-        entry_point: match key.step {
-            Step::CountSprites => "count_sprites",
-            Step::BuildLists => "build_lists_in_one_dispatch",
-            Step::Allocate => "allocate",
-            Step::AllocatePerInvocation => "allocate_per_invocation",
-            Step::Fill => "fill",
-            Step::CountPerRun => "count_per_run",
-            Step::FillPerRun => "fill_per_run",
-        },
-        constants: Vec::new(),
+impl PipelineKey for TileBinKey {
+    const PASS: &'static str = "tile_bin";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![
+            uniform(size_of::<TilesUniform>()),
+            READ_BUFFER,
+            READ_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+        ]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        ComputePipelineDescription {
+            entry_point: match self.step {
+                Step::CountSprites => "count_sprites",
+                Step::BuildLists => "build_lists_in_one_dispatch",
+                Step::Allocate => "allocate",
+                Step::AllocatePerInvocation => "allocate_per_invocation",
+                Step::Fill => "fill",
+                Step::CountPerRun => "count_per_run",
+                Step::FillPerRun => "fill_per_run",
+            },
+            constants: Vec::new(),
+        }
     }
 }
 

@@ -3,7 +3,11 @@
 //! Reads: sorted keys and sprite indices, rectangles.
 //! Writes: sorted rectangles, the count, and the indirect dispatch size for it.
 
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -12,9 +16,26 @@ pub(crate) struct TileGatherKey {
     pub sorted: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileGatherKey) -> ComputePipelineDescription {
-    ComputePipelineDescription { entry_point: "gather", constants: vec![bool_constant("SORTED", key.sorted)] }
+impl PipelineKey for TileGatherKey {
+    const PASS: &'static str = "tile_gather";
+    const GROUPS: GroupSet = GroupSet::None;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![
+            uniform(size_of::<TilesUniform>()),
+            READ_BUFFER,
+            READ_BUFFER,
+            READ_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+        ]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        ComputePipelineDescription { entry_point: "gather", constants: vec![bool_constant("SORTED", self.sorted)] }
+    }
 }
 
 /// The pass for one system.

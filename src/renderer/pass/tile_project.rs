@@ -3,9 +3,13 @@
 //! Reads: particles.
 //! Writes: sprites, their rectangles, and the keys and indices to sort.
 
-use super::Groups;
+use super::groups::Groups;
+use super::sprite_instances::SpriteKey;
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
-use crate::renderer::sprite_instances::SpriteKey;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,10 +18,27 @@ pub(crate) struct TileProjectKey {
     pub weighted: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileProjectKey) -> ComputePipelineDescription {
-    let constants = key.sprite.constants([bool_constant("WEIGHTED", key.weighted)]);
-    ComputePipelineDescription { entry_point: "project", constants }
+impl PipelineKey for TileProjectKey {
+    const PASS: &'static str = "tile_project";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![
+            uniform(size_of::<TilesUniform>()),
+            READ_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+            WRITTEN_BUFFER,
+        ]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        let constants = self.sprite.constants([bool_constant("WEIGHTED", self.weighted)]);
+        ComputePipelineDescription { entry_point: "project", constants }
+    }
 }
 
 /// The pass for one system.

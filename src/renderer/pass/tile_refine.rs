@@ -5,9 +5,13 @@
 
 use glam::UVec2;
 
-use super::Groups;
+use super::groups::Groups;
+use super::sprite_instances::SpriteKey;
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::binding::{LOADED, READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
-use crate::renderer::sprite_instances::SpriteKey;
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::PipelineKey;
 
 /// Texels of a tile: `PER_INVOCATION_TILE` in `shaders/lib/tiles.wgsl`.
 pub(crate) const PER_INVOCATION_TILE: UVec2 = UVec2::new(8, 4);
@@ -22,11 +26,20 @@ pub(crate) struct TileRefineKey {
     pub stops: bool,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileRefineKey) -> ComputePipelineDescription {
-    let constants =
-        key.sprite.constants([bool_constant("HOST_DEPTH", key.host_depth), bool_constant("STOPS", key.stops)]);
-    ComputePipelineDescription { entry_point: "refine", constants }
+impl PipelineKey for TileRefineKey {
+    const PASS: &'static str = "tile_refine";
+    const GROUPS: GroupSet = GroupSet::Sprites;
+    type Description = ComputePipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        vec![uniform(size_of::<TilesUniform>()), READ_BUFFER, READ_BUFFER, READ_BUFFER, LOADED, WRITTEN_BUFFER]
+    }
+
+    fn describe(self) -> ComputePipelineDescription {
+        let constants =
+            self.sprite.constants([bool_constant("HOST_DEPTH", self.host_depth), bool_constant("STOPS", self.stops)]);
+        ComputePipelineDescription { entry_point: "refine", constants }
+    }
 }
 
 /// The pass for one system.

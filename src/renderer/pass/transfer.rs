@@ -5,13 +5,16 @@
 //! Blend: ONE, ONE_MINUS_SRC_ALPHA.
 //! Source: OTEE "Transfer & lighting".
 
-use super::Groups;
-use super::light_target::LightingKey;
+use super::groups::Groups;
+use super::light_target::{self, LightingKey, accumulated};
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
     Constant, PREMULTIPLIED_OVER, RenderPipelineDescription, bool_constant, depth_compare, enum_constant,
     read_only_depth,
 };
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
+use crate::renderer::targets::{InputGroups, SystemTextures};
 use crate::settings::{CoverageMode, DebugView, Upsample};
 
 /// Vertices of the box: twelve triangles.
@@ -65,14 +68,43 @@ impl BoundingBoxKey {
     }
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
-    key.drawn.describe(key.lighting.constants([
-        enum_constant!("UPSAMPLE", key.upsample),
-        enum_constant!("DEBUG_VIEW", key.debug_view),
-        bool_constant("HOST_DEPTH", key.host_depth),
-        enum_constant!("COVERAGE_MODE", key.coverage),
-    ]))
+impl PipelineKey for TransferKey {
+    const PASS: &'static str = "transfer";
+    const GROUPS: GroupSet = GroupSet::Lighting;
+    type Description = RenderPipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        light_target::READS.to_vec()
+    }
+
+    fn describe(self) -> RenderPipelineDescription {
+        self.drawn.describe(self.lighting.constants_with([
+            enum_constant!("UPSAMPLE", self.upsample),
+            enum_constant!("DEBUG_VIEW", self.debug_view),
+            bool_constant("HOST_DEPTH", self.host_depth),
+            enum_constant!("COVERAGE_MODE", self.coverage),
+        ]))
+    }
+}
+
+/// Returns group 3.
+pub(crate) fn inputs(
+    pipelines: &PipelineVariants<TransferKey>,
+    textures: SystemTextures<'_>,
+    groups: &mut InputGroups,
+) -> wgpu::BindGroup {
+    let first = &textures.accumulation.attachments[0];
+    groups.get("transfer", || pipelines.bind_textures(accumulated(textures, first)))
+}
+
+/// Returns group 3 with counted layers in place of the first texture, if they are counted.
+pub(crate) fn overdraw_inputs(
+    pipelines: &PipelineVariants<TransferKey>,
+    textures: SystemTextures<'_>,
+    groups: &mut InputGroups,
+) -> Option<wgpu::BindGroup> {
+    let layers = textures.accumulation.overdraw.as_ref()?;
+    Some(groups.get("overdraw", || pipelines.bind_textures(accumulated(textures, &layers[0]))))
 }
 
 /// The pass for one system, in the host's pass; with lit smoke, transfer_lit.

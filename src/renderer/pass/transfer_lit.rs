@@ -7,9 +7,14 @@
 //! Blend: ONE, ONE_MINUS_SRC_ALPHA.
 //! Source: OTEE "Transfer & lighting".
 
+use super::depth_slopes::DEPTH_SLOPES;
+use super::light_target::LIT;
 use super::transfer::BoundingBoxKey;
-use super::upsample_lit::LitPixelKey;
+use super::upsample_lit::{LIT_TYPES, LitPixelKey, PIXELS, lit_textures};
 use crate::renderer::gpu::pipeline::{QUAD_STRIP, RenderPipelineDescription, bool_constant};
+use crate::renderer::layouts::GroupSet;
+use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
+use crate::renderer::targets::{InputGroups, SystemTextures};
 
 /// Tiles that a pipeline draws: `TILES` in `shaders/transfer_lit.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -38,9 +43,32 @@ pub(crate) struct TransferLitKey {
     pub pixel: LitPixelKey,
 }
 
-/// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TransferLitKey) -> RenderPipelineDescription {
-    let of_pass = [("TILES", f64::from(key.tiles as u32)), bool_constant("COMPUTED", key.computed)];
-    let description = key.drawn.describe(key.pixel.constants(&of_pass));
-    RenderPipelineDescription { primitive: QUAD_STRIP, ..description }
+impl PipelineKey for TransferLitKey {
+    const PASS: &'static str = "transfer_lit";
+    const GROUPS: GroupSet = GroupSet::Lighting;
+    type Description = RenderPipelineDescription;
+
+    fn inputs() -> Vec<wgpu::BindingType> {
+        LIT_TYPES.to_vec()
+    }
+
+    fn describe(self) -> RenderPipelineDescription {
+        let of_pass = [("TILES", f64::from(self.tiles as u32)), bool_constant("COMPUTED", self.computed)];
+        let description = self.drawn.describe(self.pixel.constants(&of_pass));
+        RenderPipelineDescription { primitive: QUAD_STRIP, ..description }
+    }
+}
+
+/// Returns group 3: pixels take the place of the lit smoke if they are computed.
+pub(crate) fn inputs(
+    pipelines: &PipelineVariants<TransferLitKey>,
+    textures: SystemTextures<'_>,
+    groups: &mut InputGroups,
+) -> wgpu::BindGroup {
+    let target = textures.accumulation;
+    let [lit, slopes] = match target.get(&PIXELS) {
+        Some(pixels) => [pixels, pixels],
+        None => [LIT, DEPTH_SLOPES].map(|read| target.get_or_first(&read)),
+    };
+    groups.get("transfer_lit", || pipelines.bind_textures(lit_textures(target, lit, slopes)))
 }

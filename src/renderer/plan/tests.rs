@@ -55,14 +55,14 @@ fn planned_depth_reads_and_tests_match_the_table_in_the_docs() {
             let plan = deferred(&inputs, &settings);
             assert_eq!(plan.reads_linear, read == "linear", "{row}");
             assert_eq!(plan.accumulate.host_depth, compared == "host's", "{row}");
-            assert_eq!(plan.depth_downsample.is_some(), compared == "reduced", "{row}");
+            assert_eq!(plan.texels.depth_downsample.is_some(), compared == "reduced", "{row}");
             let test = match tested {
                 "reduced" => DepthTest::Reduced,
                 "copy" => DepthTest::Copy,
                 _ => DepthTest::Host(Depth24Plus, false),
             };
             assert_eq!(plan.accumulate.depth_test, test, "{row}");
-            assert_eq!(plan.depth_copy.is_some(), tested == "copy", "{row}");
+            assert_eq!(plan.texels.depth_copy.is_some(), tested == "copy", "{row}");
             settings.soft_fade.curve = FadeCurve::Always;
             let always = deferred(&inputs, &settings).accumulate.depth_test;
             assert_eq!(always, if technique.is_soft() { DepthTest::InShader } else { test }, "{row}");
@@ -85,7 +85,7 @@ fn compute_shaders_read_the_hosts_depth_in_place_at_scale_1() {
         let mut settings = Settings { path, ..Settings::default() };
         settings.accumulate.scale = scale;
         let plan = deferred(&inputs, &settings);
-        assert_eq!(plan.depth_downsample.is_none(), in_place, "{path:?} {scale}");
+        assert_eq!(plan.texels.depth_downsample.is_none(), in_place, "{path:?} {scale}");
         assert_eq!(plan.tiled.is_some_and(|keys| keys.accumulate.host_depth), in_place, "{path:?} {scale}");
     }
 }
@@ -126,34 +126,34 @@ fn only_the_modes_cubemap_and_motif_bake_light() {
 fn light_target_is_planned_only_for_final_images_at_reduced_resolution_or_if_computed() {
     let mut settings = Settings::default();
     settings.accumulate.lighting_resolution = LightingResolution::Full;
-    assert_eq!(deferred(&inputs(), &settings).light_target, None);
+    assert_eq!(deferred(&inputs(), &settings).texels.light_target, None);
     settings.accumulate.lighting_resolution = LightingResolution::Target;
     for &debug_view in DebugView::ALL {
         let inputs = PipelineInputs { debug_views: &[debug_view], ..inputs() };
         let shown = deferred(&inputs, &settings);
         let shows_lit_smoke = matches!(debug_view, DebugView::Final | DebugView::Combined);
         let needs_lit = shows_lit_smoke || debug_view == DebugView::SpecularScatter;
-        assert_eq!(shown.light_target.is_some(), needs_lit, "{debug_view:?}");
+        assert_eq!(shown.texels.light_target.is_some(), needs_lit, "{debug_view:?}");
         assert_eq!(shown.draws_lit(debug_view), shows_lit_smoke, "{debug_view:?}");
-        assert_eq!(shown.depth_slopes.is_some(), needs_lit, "{debug_view:?}");
+        assert_eq!(shown.texels.depth_slopes.is_some(), needs_lit, "{debug_view:?}");
     }
     let all = PipelineInputs { debug_views: DebugView::ALL, ..inputs() };
     let by_transfer: Vec<_> = deferred(&all, &settings).transfers().map(|key| key.debug_view).collect();
     let lit = [DebugView::Final, DebugView::Combined, DebugView::SpecularScatter];
     assert!(DebugView::ALL.iter().all(|view| by_transfer.contains(view) != lit.contains(view)), "{by_transfer:?}");
     settings.accumulate.upsample = Upsample::Bilinear;
-    assert_eq!(deferred(&inputs(), &settings).depth_slopes, None);
+    assert_eq!(deferred(&inputs(), &settings).texels.depth_slopes, None);
     settings.accumulate.scale = 1;
     let computed = deferred(&inputs(), &settings);
-    assert!(computed.light_target.is_some() && computed.depth_slopes.is_none());
-    assert!(computed.mark_cells.is_none());
+    assert!(computed.texels.light_target.is_some() && computed.texels.depth_slopes.is_none());
+    assert!(computed.texels.mark_cells.is_none());
     let drawn = PipelineInputs { tiles: None, ..inputs() };
-    assert_eq!(deferred(&drawn, &settings).light_target, None);
+    assert_eq!(deferred(&drawn, &settings).texels.light_target, None);
     settings.accumulate.max_side = 1279;
     let drawn = deferred(&drawn, &settings);
     assert!(
-        drawn.light_target.is_some()
-            && drawn.mark_cells.is_some()
+        drawn.texels.light_target.is_some()
+            && drawn.texels.mark_cells.is_some()
             && drawn.transfer_lit.is_some_and(|key| !key.pixel.glows)
     );
 }
@@ -164,8 +164,8 @@ fn pixels_are_computed_where_that_saves_time_and_all_debug_views_show_the_same()
     settings.accumulate.fix_scale(2);
     let is_computed = |inputs: &PipelineInputs<'_>, settings: &Settings| {
         let plan = deferred(inputs, settings);
-        assert_eq!(plan.upsample_lit.is_some(), plan.transfer_lit.is_some_and(|key| key.computed));
-        plan.upsample_lit.is_some()
+        assert_eq!(plan.texels.upsample_lit.is_some(), plan.transfer_lit.is_some_and(|key| key.computed));
+        plan.texels.upsample_lit.is_some()
     };
     assert!(!is_computed(&inputs(), &settings), "a device that draws fast");
     let slow = PipelineInputs { computes_pixels: true, ..inputs() };
@@ -192,11 +192,11 @@ fn one_of_each_covers_every_pass() {
         else {
             panic!()
         };
-        assert!(deferred.light_target.is_none() && lit.light_target.is_some());
-        assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
+        assert!(deferred.texels.light_target.is_none() && lit.texels.light_target.is_some());
+        assert!(deferred.texels.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
         assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
         assert!(tiled.tiled.is_some() && deferred.tiled.is_none());
-        assert!(tiled.upsample_lit.is_some() && lit.upsample_lit.is_none());
+        assert!(tiled.texels.upsample_lit.is_some() && lit.texels.upsample_lit.is_none());
     }
 }
 

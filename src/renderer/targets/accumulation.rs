@@ -1,4 +1,4 @@
-//! Accumulation target of a system, and the depth that its sprites are compared with.
+//! Accumulation target of a system, and what the passes over its texels write.
 
 use std::sync::Arc;
 
@@ -6,32 +6,11 @@ use glam::UVec2;
 use wgpu::TextureUsages;
 
 use super::attachments::{Attachment, attachments};
+use super::target::{Extent, PlannedTargets, Target};
 use super::texture_allocator::TextureAllocator;
-use crate::formula::smoke_tiles::CELL_SIDE;
-use crate::frame::MAX_LIGHTS;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::settings::AccumulationFormat;
 use crate::view_setup::AttachmentSet;
-
-/// A depth format, so that it can be attached and the hardware rejects hidden sprites. Every backend can render to it,
-/// which does not hold for `R32Float`.
-pub(crate) const REDUCED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// Format of the reduced depth if compute shaders write it, which no device can do to a depth format.
-pub(crate) const COMPUTED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
-
-/// Format of the copy that OpenGL tests against: half the size of the reduced depth, to limit the memory per system.
-pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-
-/// Format of lit smoke: light is HDR, whatever the format of the normals.
-pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-
-/// Format of the cells with smoke and with slopes, if they are drawn: every backend can render to it.
-pub(crate) const DRAWN_CELLS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
-
-/// Format of the cells if compute shaders mark them, and of the glow of lights.
-pub(crate) const CELLS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
-pub(crate) const GLOWS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// Properties that decide, in addition to the size, whether a system's textures can be reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,24 +19,14 @@ pub(crate) struct AccumulationKey {
     pub attachments: AttachmentSet,
     /// True if the textures must have the size of the host's.
     pub is_host_sized: bool,
-    /// True if sprites are compared with a reduced depth.
-    pub reduced_depth: bool,
     /// True if layers are counted as well.
     pub overdraw: bool,
-    /// True if smoke is lit at this resolution.
-    pub lit: bool,
-    /// True if slopes of the lit smoke are needed.
-    pub depth_slopes: bool,
-    /// True if the backend cannot test what it samples, so that a copy of the reduced depth is needed.
-    pub depth_copy: bool,
-    /// True if compute shaders write the target.
+    /// True if compute shaders write the attachments.
     pub tiled: bool,
-    /// True if compute shaders write the reduced depth.
-    pub computes_depth: bool,
-    /// True if compute shaders light the target and fit its slopes.
-    pub computes_texels: bool,
-    /// Pixels per texel, if compute shaders write lit smoke at full resolution as well.
+    /// Pixels per texel, if one of `targets` has pixels.
     pub pixels_scale: Option<u32>,
+    /// What the passes over texels write.
+    pub targets: PlannedTargets,
 }
 
 /// Textures of one system. The part in use starts at (0, 0) and has the size of the system's screen rectangle.
@@ -70,22 +39,8 @@ pub(crate) struct AccumulationTarget {
     pub attachments: Arc<[wgpu::TextureView]>,
     /// Counted layers, in the format of the first attachment.
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
-    /// Light times amount in rgb and amount in a, if smoke is lit at this resolution.
-    pub lit: Option<wgpu::TextureView>,
-    /// Cells of the lit smoke that hold some.
-    pub smoke_cells: Option<wgpu::TextureView>,
-    /// Glow of lights, if compute shaders light the smoke.
-    pub glows: Option<wgpu::TextureView>,
-    /// Change of the lit smoke with depth.
-    pub depth_slopes: Option<wgpu::TextureView>,
-    /// Cells with such a change.
-    pub slope_cells: Option<wgpu::TextureView>,
-    /// Lit smoke at full resolution, if compute shaders upsample it.
-    pub pixels: Option<wgpu::TextureView>,
-    /// `None` if sprites are compared with the host's own depth.
-    pub reduced_depth: Option<wgpu::TextureView>,
-    /// Coarser copy of the reduced depth, if the backend cannot test what it samples.
-    pub depth_copy: Option<wgpu::TextureView>,
+    /// What the passes over texels write.
+    written: Vec<(Target, wgpu::TextureView)>,
     pub bytes: u64,
 }
 
@@ -117,9 +72,20 @@ impl AccumulationTarget {
         self.key.attachments
     }
 
-    /// Returns the number of pixels of `texels` that compute shaders write.
-    pub fn pixels_in_use(&self, texels: UVec2) -> UVec2 {
-        texels * self.key.pixels_scale.unwrap_or(0)
+    /// Returns a texture, if a pass of the system writes it.
+    pub fn get(&self, target: &Target) -> Option<&wgpu::TextureView> {
+        self.written.iter().find(|(written, _)| written == target).map(|(_, view)| view)
+    }
+
+    /// Returns a texture, or the first attachment if no pass of the system writes it: bindings that no shader reads must be
+    /// filled.
+    pub fn get_or_first(&self, target: &Target) -> &wgpu::TextureView {
+        self.get(target).unwrap_or(&self.attachments[0])
+    }
+
+    /// Returns the size of the part of a target that belongs to `texels`.
+    pub fn size_in_use(&self, extent: Extent, texels: UVec2) -> UVec2 {
+        extent.size(texels, self.key.pixels_scale.unwrap_or(1))
     }
 
     /// Returns true if the textures hold `size` texels and have not been much too large for more than 120 frames.
@@ -134,10 +100,8 @@ impl AccumulationTarget {
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
         let mut textures = TextureAllocator { device, bytes: 0, written: TextureUsages::RENDER_ATTACHMENT };
-        let written =
-            |computed| if computed { TextureUsages::STORAGE_BINDING } else { TextureUsages::RENDER_ATTACHMENT };
         let mut create = |set, tiled| -> Arc<[_]> {
-            textures.written = written(tiled);
+            textures.written = if tiled { TextureUsages::STORAGE_BINDING } else { TextureUsages::RENDER_ATTACHMENT };
             let mut texture = |row: &Attachment| {
                 let format = if tiled { row.tiled_format(key.format) } else { row.raster_format(key.format) };
                 textures.create_whole(row.label, format, size)
@@ -147,45 +111,16 @@ impl AccumulationTarget {
         let attachments = create(key.attachments, key.tiled);
         // Layers are always counted by hardware blending.
         let overdraw = key.overdraw.then(|| create(AttachmentSet::NORMAL_AND_AMOUNT, false));
-        textures.written = written(key.computes_texels);
-        let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
-        let cells_format = if key.computes_texels { CELLS_FORMAT } else { DRAWN_CELLS_FORMAT };
-        let cells = size.map(|side| side.div_ceil(CELL_SIDE));
-        let smoke_cells = key.lit.then(|| textures.create_whole("haze smoke cells", cells_format, cells));
-        let lights = UVec2::new(MAX_LIGHTS as u32, 2);
-        let computes_light = key.lit && key.computes_texels;
-        let glows = computes_light.then(|| textures.create_whole("haze glows", GLOWS_FORMAT, lights));
-        let depth_slopes = key.depth_slopes.then(|| textures.create_whole("haze depth slopes", LIT_FORMAT, size));
-        // mark_cells writes both kinds of cells, even without slopes.
-        let has_slope_cells = key.depth_slopes || (key.lit && !key.computes_texels);
-        let slope_cells = has_slope_cells.then(|| textures.create_whole("haze slope cells", cells_format, cells));
-        let pixels = key.pixels_scale.map(|scale| {
-            let side = device.limits().max_texture_dimension_2d;
-            textures.create_whole("haze lit pixels", LIT_FORMAT, (size * scale).min(UVec2::splat(side)))
-        });
-        textures.written = written(key.computes_depth);
-        let depth_format = if key.computes_depth { COMPUTED_DEPTH_FORMAT } else { REDUCED_DEPTH_FORMAT };
-        let reduced_depth = key.reduced_depth.then(|| textures.create_whole("haze reduced depth", depth_format, size));
-        textures.written = TextureUsages::RENDER_ATTACHMENT;
-        let depth_copy = (key.reduced_depth && key.depth_copy)
-            .then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
-        let bytes = textures.bytes;
-        Self {
-            key,
-            size,
-            idle: IdleCounter::default(),
-            attachments,
-            overdraw,
-            lit,
-            smoke_cells,
-            glows,
-            depth_slopes,
-            slope_cells,
-            pixels,
-            reduced_depth,
-            depth_copy,
-            bytes,
+        let largest = UVec2::splat(device.limits().max_texture_dimension_2d);
+        let mut written = Vec::new();
+        for planned in key.targets.into_iter().flatten() {
+            textures.written = planned.usage();
+            let size = planned.target.extent.size(size, key.pixels_scale.unwrap_or(1)).min(largest);
+            let texture = textures.create_whole(planned.target.label, planned.format(), size);
+            written.push((planned.target, texture));
         }
+        let bytes = textures.bytes;
+        Self { key, size, idle: IdleCounter::default(), attachments, overdraw, written, bytes }
     }
 }
 

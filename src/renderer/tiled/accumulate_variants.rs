@@ -7,10 +7,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::UVec2;
 
 use crate::error::Error;
-use crate::formula::uniforms::TilesUniform;
-use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineStore, PipelineVariants, Shader};
+use crate::renderer::gpu::pipeline::{PipelineStore, Shader};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
+use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, single_target};
 use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 
@@ -26,15 +26,7 @@ pub(crate) struct AccumulateVariants {
     /// may be bound for writing twice.
     pub placeholders: [wgpu::TextureView; MAX_TARGET_ATTACHMENTS],
     /// Shared by contexts with the same shader.
-    variants: Arc<Mutex<HashMap<TiledFormats, Arc<AccumulateVariant>>>>,
-}
-
-/// The variant for one combination of formats.
-#[derive(Debug)]
-pub(crate) struct AccumulateVariant {
-    /// Group 3.
-    pub layout: wgpu::BindGroupLayout,
-    pipelines: PipelineVariants<TileAccumulateKey, ComputePipelineDescription>,
+    variants: Arc<Mutex<HashMap<TiledFormats, Arc<PipelineVariants<TileAccumulateKey>>>>>,
 }
 
 impl AccumulateVariants {
@@ -59,7 +51,7 @@ impl AccumulateVariants {
 
     /// Returns the variant for these formats; creates it on first use. The lock is not held during creation, so other
     /// threads do not wait.
-    pub fn get(&self, formats: TiledFormats) -> Arc<AccumulateVariant> {
+    pub fn get(&self, formats: TiledFormats) -> Arc<PipelineVariants<TileAccumulateKey>> {
         let found = self.lock().get(&formats).cloned();
         found.unwrap_or_else(|| {
             let created = Arc::new(self.create(formats));
@@ -69,33 +61,28 @@ impl AccumulateVariants {
 
     /// Compiles the pipeline for `key`, or returns the shader error.
     pub fn check(&self, key: TileAccumulateKey) -> Result<(), Error> {
-        self.get(key.formats()).pipelines.check(key)
+        self.get(key.formats()).check(key)
     }
 
     /// Returns the pipeline for `key`; compiles it on first use.
     pub fn pipeline(&self, key: TileAccumulateKey) -> wgpu::ComputePipeline {
-        self.get(key.formats()).pipelines.get(key)
+        self.get(key.formats()).get(key)
     }
 
-    fn create(&self, formats: TiledFormats) -> AccumulateVariant {
+    fn create(&self, formats: TiledFormats) -> PipelineVariants<TileAccumulateKey> {
         let device = &self.store.device;
-        let layout = layout(device, formats);
         let mut shader = self.shader.clone();
         if formats != [PLACEHOLDER_FORMAT; MAX_TARGET_ATTACHMENTS] {
-            shader = shader.with_text(device, "tile_accumulate", |text| {
+            shader = shader.with_text(device, TileAccumulateKey::PASS, |text| {
                 (0..).zip(formats).fold(text.to_owned(), |text, (slot, format)| {
                     text.replace(&target_declaration(slot, PLACEHOLDER_FORMAT), &target_declaration(slot, format))
                 })
             });
         }
-        let [frame, system, material] = self.groups.each_ref().map(Some);
-        let groups = [frame, system, material, Some(&layout)];
-        let pipelines =
-            PipelineVariants::new(&self.store, "tile_accumulate", shader, tile_accumulate::describe, &groups);
-        AccumulateVariant { layout, pipelines }
+        PipelineVariants::with_inputs(&self.store, &self.groups.each_ref(), shader, &tile_accumulate::inputs(formats))
     }
 
-    fn lock(&self) -> MutexGuard<'_, HashMap<TiledFormats, Arc<AccumulateVariant>>> {
+    fn lock(&self) -> MutexGuard<'_, HashMap<TiledFormats, Arc<PipelineVariants<TileAccumulateKey>>>> {
         self.variants.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -105,36 +92,6 @@ fn target_declaration(slot: usize, format: wgpu::TextureFormat) -> String {
     // WGSL's names of formats are wgpu's in lower case.
     let format = format!("{format:?}").to_lowercase();
     format!("var texture_{slot}: texture_storage_2d<{format}, write>;")
-}
-
-fn layout(device: &wgpu::Device, formats: TiledFormats) -> wgpu::BindGroupLayout {
-    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: wgpu::BufferSize::new(size_of::<TilesUniform>() as u64),
-    };
-    let depth = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: false },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let read = buffer(wgpu::BufferBindingType::Storage { read_only: true });
-    let targets = formats.map(|format| wgpu::BindingType::StorageTexture {
-        access: wgpu::StorageTextureAccess::WriteOnly,
-        format,
-        view_dimension: wgpu::TextureViewDimension::D2,
-    });
-    let types = [uniform, read, read, read, read, read, depth].into_iter().chain(targets).chain([read]);
-    let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty,
-        count: None,
-    };
-    let entries: Vec<_> = (0..).zip(types).map(entry).collect();
-    let label = Some("haze tile_accumulate inputs");
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries })
 }
 
 #[cfg(test)]

@@ -1,14 +1,13 @@
 //! Evaluation of an emitter's particles on the GPU.
 
-use super::storage_buffers::bind;
 use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{EmitterSnapshot, Particle};
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
-use crate::renderer::pass::emit::Emit;
-use crate::renderer::sprite_instances::Sprites;
+use crate::renderer::pass::emit::{Emit, EmitKey};
+use crate::renderer::pass::sprite_instances::Sprites;
 
 /// Buffer for the particles of one system, kept between frames.
 #[derive(Debug, Default)]
@@ -47,7 +46,10 @@ impl EmittedParticles {
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&emission.uniform));
         let buffer = buffers.particles.clone();
         let sprites = Sprites { buffer, offset: 0, count, loops, is_sorted: false, by_view_depth: false };
-        Some((sprites, Emit { pipeline: tiled.emit.get(()), inputs: buffers.inputs.clone(), births: count }))
+        Some((
+            sprites,
+            Emit { pipeline: tiled.passes.emit.get(EmitKey), inputs: buffers.inputs.clone(), births: count },
+        ))
     }
 
     /// Returns the bytes of GPU memory held.
@@ -66,7 +68,7 @@ impl EmitterBuffers {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
             mapped_at_creation: false,
         });
-        let inputs = bind(device, &tiled.layouts.emit, [&uniform, &particles].map(wgpu::Buffer::as_entire_binding));
+        let inputs = tiled.passes.emit.bind([&uniform, &particles].map(wgpu::Buffer::as_entire_binding));
         Self { uniform, particles, inputs }
     }
 }

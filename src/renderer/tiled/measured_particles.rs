@@ -1,14 +1,14 @@
 //! Measurement of a host's particles on the GPU.
 
-use super::storage_buffers::{bind, storage};
+use super::storage_buffers::storage;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::MeasureUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
-use crate::renderer::pass::Groups;
+use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::measure::{Measure, MeasureKey, WORKGROUP};
-use crate::renderer::sprite_instances::Sprites;
+use crate::renderer::pass::sprite_instances::Sprites;
 
 /// Bytes of ExtentSums and of MeasuredExtent in `shaders/measure.wgsl`.
 const SUMS_BYTES: u64 = 32;
@@ -58,9 +58,9 @@ impl MeasuredParticles {
         };
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
         Measure {
-            pipelines: MeasureKey::ALL.map(|key| tiled.measure.get(key)),
+            pipelines: MeasureKey::ALL.map(|key| tiled.passes.measure.get(key)),
             groups: groups.clone(),
-            inputs: buffers.bind(gpu.device, tiled, range),
+            inputs: buffers.bind(tiled, range),
             workgroups,
             measured: buffers.measured.clone(),
             system: system.clone(),
@@ -74,7 +74,7 @@ impl MeasuredParticles {
 }
 
 impl MeasureBuffers {
-    fn bind(&mut self, device: &wgpu::Device, tiled: &TiledPipelines, range: ParticleRange) -> wgpu::BindGroup {
+    fn bind(&mut self, tiled: &TiledPipelines, range: ParticleRange) -> wgpu::BindGroup {
         match &self.inputs {
             Some((bound, group)) if *bound == range => group.clone(),
             _ => {
@@ -84,7 +84,7 @@ impl MeasureBuffers {
                     self.sums.as_entire_binding(),
                     self.measured.as_entire_binding(),
                 ];
-                let group = bind(device, &tiled.layouts.measure, resources);
+                let group = tiled.passes.measure.bind(resources);
                 self.inputs = Some((range, group.clone()));
                 group
             }

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::storage_buffers::{bind, storage};
+use super::storage_buffers::storage;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::{ShadowMarchUniform, SplatUniform};
@@ -11,12 +11,12 @@ use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::layouts::SHADOW_FORMAT;
-use crate::renderer::pass::Groups;
-use crate::renderer::pass::density_splat::DensitySplat;
+use crate::renderer::pass::density_splat::{DensitySplat, DensitySplatKey};
+use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::shadow_march::{ShadowMarch, ShadowMarchKey};
-use crate::renderer::pass::shadow_visibility::ShadowVisibility;
+use crate::renderer::pass::shadow_visibility::{ShadowVisibility, ShadowVisibilityKey};
+use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::shadow_map_bindings::ShadowMapBindings;
-use crate::renderer::sprite_instances::Sprites;
 use crate::view_setup::SmokeShadow;
 
 /// Bytes of a cell: two words.
@@ -80,7 +80,7 @@ impl ShadowVolume {
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&shadow.march));
         for (block, held) in (0..).zip(&mut buffers.maps) {
             let volume = Some(&buffers.optical_depths);
-            held.write(gpu, &tiled.layouts.shadow_visibility, (shadow, block), maps, volume);
+            held.write(gpu, &tiled.passes.shadow_visibility.inputs, (shadow, block), maps, volume);
         }
     }
 
@@ -102,10 +102,11 @@ impl ShadowVolume {
         let shares_dispatch = tiled.cooperative();
         let marches_sky = shadow.has_openness;
         Some(ShadowMarch {
-            copy_density: tiled.shadow_march.get(ShadowMarchKey::CopyDensity),
+            copy_density: tiled.passes.shadow_march.get(ShadowMarchKey::CopyDensity),
             copy_inputs: buffers.copy_density.clone(),
-            march_cells: tiled.shadow_march.get(ShadowMarchKey::MarchCells),
-            march_sky: (marches_sky && !shares_dispatch).then(|| tiled.shadow_march.get(ShadowMarchKey::MarchSky)),
+            march_cells: tiled.passes.shadow_march.get(ShadowMarchKey::MarchCells),
+            march_sky: (marches_sky && !shares_dispatch)
+                .then(|| tiled.passes.shadow_march.get(ShadowMarchKey::MarchSky)),
             march_inputs: buffers.march.clone(),
             size: shadow.grid.size,
             blocks: shadow.used_light_blocks() + u32::from(marches_sky && shares_dispatch),
@@ -117,7 +118,11 @@ impl ShadowVolume {
         let maps = self.buffers.as_ref().map(|held| &held.maps).filter(|maps| !maps.is_empty())?;
         let used = maps.iter().take(shadow.used_light_blocks() as usize);
         let inputs = used.map(|maps| maps.group().clone()).collect();
-        Some(ShadowVisibility { pipeline: tiled.shadow_visibility.get(()), inputs, size: shadow.grid.size })
+        Some(ShadowVisibility {
+            pipeline: tiled.passes.shadow_visibility.get(ShadowVisibilityKey),
+            inputs,
+            size: shadow.grid.size,
+        })
     }
 
     /// Returns the bytes of GPU memory held.
@@ -153,12 +158,12 @@ impl VolumeBuffers {
                 wgpu::BindingResource::TextureView(read),
                 wgpu::BindingResource::Sampler(&sampler),
             ];
-            bind(device, &tiled.layouts.shadow_march, resources)
+            tiled.passes.shadow_march.bind(resources)
         };
         let copy_density = bind_volumes(&density_texture, &optical_depths);
         let march = bind_volumes(&optical_depths, &density_texture);
         let maps = (0..shadow.map_blocks())
-            .map(|_| ShadowMapBindings::new(device, &tiled.layouts.shadow_visibility, Some(&optical_depths)))
+            .map(|_| ShadowMapBindings::new(device, &tiled.passes.shadow_visibility.inputs, Some(&optical_depths)))
             .collect();
         Self { resolution, blocks, uniform, density, optical_depths, copy_density, march, maps }
     }
@@ -223,11 +228,16 @@ impl SplatParticles {
             Some((bound, grid, group)) if *bound == range && grid == density => group.clone(),
             _ => {
                 let resources = [held.uniform.as_entire_binding(), range.binding(), density.as_entire_binding()];
-                let group = bind(gpu.device, &tiled.layouts.density_splat, resources);
+                let group = tiled.passes.density_splat.bind(resources);
                 held.inputs = Some((range, density.clone(), group.clone()));
                 group
             }
         };
-        DensitySplat { pipeline: tiled.density_splat.get(()), groups: groups.clone(), inputs, workgroups }
+        DensitySplat {
+            pipeline: tiled.passes.density_splat.get(DensitySplatKey),
+            groups: groups.clone(),
+            inputs,
+            workgroups,
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Buffers of a sort.
 
-use super::storage_buffers::{WORD_BYTES, bind, storage};
+use super::storage_buffers::{WORD_BYTES, storage};
 use super::tiled_pipelines::TiledPipelines;
 use crate::renderer::pass::sort::{BLOCK, DIGITS};
 
@@ -25,7 +25,7 @@ impl SortBuffers {
         let digit_totals = words("haze digit totals", DIGITS);
         let ping_pong = [(0, 1), (1, 0)].map(|(from, to)| {
             let buffers = [uniform, &keys[from], &indices[from], &keys[to], &indices[to], &digit_counts, &digit_totals];
-            bind(device, &tiled.layouts.sort, buffers.map(wgpu::Buffer::as_entire_binding))
+            tiled.passes.sort.bind(buffers.map(wgpu::Buffer::as_entire_binding))
         });
         Self { keys, indices, digit_counts, digit_totals, ping_pong }
     }

@@ -1,7 +1,6 @@
 //! Sort of a host's particles back to front on the GPU.
 
 use super::sort_buffers::SortBuffers;
-use super::storage_buffers::bind;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::TilesUniform;
@@ -12,7 +11,7 @@ use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
 use crate::renderer::pass::sort::{BLOCK, Sort};
-use crate::renderer::sprite_instances::Sprites;
+use crate::renderer::pass::sprite_instances::Sprites;
 
 /// Buffers for the sorted particles of one system, kept between frames.
 #[derive(Debug, Default)]
@@ -48,11 +47,11 @@ impl SortedParticles {
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
         let buffer = buffers.particles.clone();
         let sorted = Sprites { buffer, offset: 0, is_sorted: true, by_view_depth: true, ..*sprites };
-        let [first, second] = buffers.bind(gpu.device, tiled, range);
+        let [first, second] = buffers.bind(tiled, range);
         let sort = DepthSort {
-            depth_keys: tiled.depth_sort.get(DepthSortKey::DepthKeys),
+            depth_keys: tiled.passes.depth_sort.get(DepthSortKey::DepthKeys),
             sort: Sort { pipelines: tiled.sort(count), ping_pong: buffers.sort.ping_pong.clone(), keys: count },
-            gather_particles: tiled.depth_sort.get(DepthSortKey::GatherParticles),
+            gather_particles: tiled.passes.depth_sort.get(DepthSortKey::GatherParticles),
             unsorted: if tiled.unsorted_pair(count) == 0 { first.clone() } else { second },
             sorted: first,
             particles: count,
@@ -87,14 +86,14 @@ impl DepthSortBuffers {
     }
 
     /// Returns the bind groups by the pair of keys.
-    fn bind(&mut self, device: &wgpu::Device, tiled: &TiledPipelines, range: ParticleRange) -> [wgpu::BindGroup; 2] {
+    fn bind(&mut self, tiled: &TiledPipelines, range: ParticleRange) -> [wgpu::BindGroup; 2] {
         let bound = self.inputs.take().filter(|(bound, _)| *bound == range);
         let (_, groups) = self.inputs.insert(bound.unwrap_or_else(|| {
             let groups = [0, 1].map(|pair| {
                 let [keys, indices] = self.sort.pair(pair);
                 let own = [keys, indices, &self.particles].map(wgpu::Buffer::as_entire_binding);
                 let resources = [self.uniform.as_entire_binding(), range.binding()];
-                bind(device, &tiled.layouts.depth_sort, resources.into_iter().chain(own))
+                tiled.passes.depth_sort.bind(resources.into_iter().chain(own))
             });
             (range, groups)
         }));

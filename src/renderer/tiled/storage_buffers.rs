@@ -1,6 +1,4 @@
-//! Creation of buffers and bind groups.
-
-use crate::renderer::layouts::bind_resources;
+//! Creation of buffers.
 
 /// Bytes of a key, index or count.
 pub(super) const WORD_BYTES: u64 = 4;
@@ -23,13 +21,4 @@ pub(super) fn workgroups(device: &wgpu::Device, name: &str) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
         mapped_at_creation: false,
     })
-}
-
-/// Creates a bind group of resources, in the order of its layout.
-pub(super) fn bind<'a>(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
-) -> wgpu::BindGroup {
-    bind_resources(device, "haze tiled", layout, resources)
 }

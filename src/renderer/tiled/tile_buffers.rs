@@ -3,13 +3,12 @@
 use std::sync::Arc;
 
 use super::sort_buffers::SortBuffers;
-use super::storage_buffers::{WORD_BYTES, bind, storage, workgroups};
+use super::storage_buffers::{WORD_BYTES, storage, workgroups};
 use super::tiled_pipelines::TiledPipelines;
 use crate::formula::uniforms::TilesUniform;
-use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::memory_use::TiledMemory;
-use crate::renderer::sprite_instances::Sprites;
+use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::targets::TiledFormats;
 use crate::view_setup::MAX_TARGET_ATTACHMENTS;
 
@@ -118,9 +117,9 @@ impl TileBuffers {
         let workgroups = workgroups(device, "haze bin workgroups");
         let [sorted_keys, sorted_indices] = sort.pair(0);
         let gather = [&uniform, sorted_keys, sorted_indices, &rects, &sorted_rects, &counters, &workgroups];
-        let gather = bind(device, &tiled.layouts.gather, gather.map(wgpu::Buffer::as_entire_binding));
+        let gather = tiled.passes.gather.bind(gather.map(wgpu::Buffer::as_entire_binding));
         let bin = [&uniform, sorted_indices, &sorted_rects, &bin_counts, &lists, &bins, &counters];
-        let bin = bind(device, &tiled.layouts.bin, bin.map(wgpu::Buffer::as_entire_binding));
+        let bin = tiled.passes.bin.bind(bin.map(wgpu::Buffer::as_entire_binding));
         Self {
             capacity,
             sprites: storage("haze tile sprites", particles, TILE_SPRITE_BYTES),
@@ -156,13 +155,7 @@ impl TileBuffers {
     }
 
     /// `pair`: pair of buffers that the keys are written to.
-    pub fn bind_project(
-        &mut self,
-        gpu: &Gpu<'_>,
-        tiled: &TiledPipelines,
-        particles: ParticleRange,
-        pair: usize,
-    ) -> wgpu::BindGroup {
+    pub fn bind_project(&mut self, tiled: &TiledPipelines, particles: ParticleRange, pair: usize) -> wgpu::BindGroup {
         let bound = self.project.take().filter(|(bound, _)| *bound == particles);
         let (_, groups) = self.project.insert(bound.unwrap_or_else(|| {
             let Self { uniform, sprites, sprite_values, rects, sort, .. } = self;
@@ -170,14 +163,14 @@ impl TileBuffers {
                 let [keys, indices] = sort.pair(pair);
                 let buffers = [&*sprites, rects, keys, indices, sprite_values].map(wgpu::Buffer::as_entire_binding);
                 let own = [uniform.as_entire_binding(), particles.binding()];
-                bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers))
+                tiled.passes.project.bind(own.into_iter().chain(buffers))
             });
             (particles, groups)
         }));
         groups[pair].clone()
     }
 
-    pub fn bind_refine(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, depth: &wgpu::TextureView) -> wgpu::BindGroup {
+    pub fn bind_refine(&mut self, tiled: &TiledPipelines, depth: &wgpu::TextureView) -> wgpu::BindGroup {
         match &self.refine {
             Some((bound, group)) if bound == depth => group.clone(),
             _ => {
@@ -185,7 +178,7 @@ impl TileBuffers {
                 let read = [&*uniform, sprites, rects, bins].map(wgpu::Buffer::as_entire_binding);
                 let depth_binding = wgpu::BindingResource::TextureView(depth);
                 let resources = read.into_iter().chain([depth_binding, lists.as_entire_binding()]);
-                let group = bind(gpu.device, &tiled.layouts.refine, resources);
+                let group = tiled.passes.refine.bind(resources);
                 self.refine = Some((depth.clone(), group.clone()));
                 group
             }
@@ -194,7 +187,6 @@ impl TileBuffers {
 
     pub fn bind_accumulate(
         &mut self,
-        gpu: &Gpu<'_>,
         tiled: &TiledPipelines,
         formats: TiledFormats,
         attachments: &[wgpu::TextureView],
@@ -212,7 +204,7 @@ impl TileBuffers {
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
                 let resources = resources.chain([sprite_values.as_entire_binding()]);
-                let group = bind(gpu.device, &tiled.accumulate.get(formats).layout, resources);
+                let group = tiled.accumulate.get(formats).bind(resources);
                 self.accumulate = Some((views.map(wgpu::TextureView::clone).to_vec(), group.clone()));
                 group
             }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::storage_buffers::WORD_BYTES;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
-use crate::renderer::pass::Groups;
+use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::sort::Sort;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::TileBin;

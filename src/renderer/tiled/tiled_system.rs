@@ -15,14 +15,14 @@ use crate::renderer::auto::PathWorkload;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::memory_use::TiledMemory;
-use crate::renderer::pass::Groups;
+use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
+use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::pass::tile_accumulate::{COOPERATIVE_TILE, TileAccumulate, TileAccumulateKey, Traversal};
 use crate::renderer::pass::tile_bin::TileBin;
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::TileRefine;
-use crate::renderer::sprite_instances::Sprites;
 
 /// Minimum number of entries of all lists together.
 const MIN_ENTRIES: u32 = 1 << 16;
@@ -126,12 +126,12 @@ impl TiledSystem {
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
         let pipelines = tiled.pipelines(keys, sorts, sprites.count);
         let pair = if sorts { tiled.unsorted_pair(sprites.count) } else { 0 };
-        let project = buffers.bind_project(gpu, tiled, particles, pair);
+        let project = buffers.bind_project(tiled, particles, pair);
         let refine = pipelines.refine.map(|pipeline| {
-            let inputs = buffers.bind_refine(gpu, tiled, depth);
+            let inputs = buffers.bind_refine(tiled, depth);
             TileRefine { pipeline, inputs, bins }
         });
-        let accumulate = buffers.bind_accumulate(gpu, tiled, keys.accumulate.formats(), attachments, depth);
+        let accumulate = buffers.bind_accumulate(tiled, keys.accumulate.formats(), attachments, depth);
         TiledPasses {
             groups: groups.clone(),
             project: TileProject { pipeline: pipelines.project, inputs: project, particles: sprites.count },

@@ -3,28 +3,29 @@
 use glam::{UVec2, Vec2, Vec3};
 
 use super::alive_copy::AliveCopy;
-use super::auto::{PathChoice, PathChooser, PathWorkload, estimate_workload};
-use super::context::Shared;
-use super::counts::{FrameCounts, Overdraw};
-use super::frame_bindings::DepthBindings;
-use super::frame_context::FrameContext;
-use super::gpu::idle_counter::IdleCounter;
-use super::gpu::record::uniform_buffer;
-use super::layouts::LIGHTS_SIZE;
-use super::memory_use::MemoryUse;
-use super::pass::Groups;
-use super::pass::density_splat::DensitySplat;
-use super::pass::measure::Measure;
-use super::plan::{Plan, plan};
-use super::system_particles::SystemParticles;
-use super::system_passes::{AccumulatePasses, DeferredPasses, ParticlePass, PassBuilder, SystemPasses, TiledContext};
-use super::system_targets::SystemTargets;
-use super::targets::TargetViews;
-use super::tiled::{TiledPasses, TiledSystem};
-use super::validate_frame::tiled_unavailable_reason;
+use super::particles::SystemParticles;
+use super::passes::{AccumulatePasses, DeferredInputs, DeferredPasses, ParticlePass, PassBuilder, SystemPasses};
+use super::targets::SystemTargets;
 use crate::assets::material_assets::MaterialInfo;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Particle, ParticleSystem, Particles};
+use crate::renderer::auto::{PathChoice, PathChooser, PathWorkload, estimate_workload};
+use crate::renderer::context::Shared;
+use crate::renderer::counts::{FrameCounts, Overdraw};
+use crate::renderer::frame_bindings::DepthBindings;
+use crate::renderer::frame_context::FrameContext;
+use crate::renderer::gpu::idle_counter::IdleCounter;
+use crate::renderer::gpu::record::uniform_buffer;
+use crate::renderer::layouts::LIGHTS_SIZE;
+use crate::renderer::memory_use::MemoryUse;
+use crate::renderer::pass::density_splat::DensitySplat;
+use crate::renderer::pass::depth_downsample::REDUCED_DEPTH;
+use crate::renderer::pass::groups::Groups;
+use crate::renderer::pass::measure::Measure;
+use crate::renderer::plan::{Plan, plan};
+use crate::renderer::support::tiled_unavailable_reason;
+use crate::renderer::targets::{SystemTextures, TargetViews};
+use crate::renderer::tiled::{TiledPasses, TiledSystem};
 use crate::settings::{RenderPath, Technique};
 use crate::view_setup::{
     LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
@@ -252,11 +253,11 @@ impl SystemState {
         let PreparedSystem { setup, passes: SystemPasses::Deferred(_), .. } = self.prepared.as_ref()? else {
             return None;
         };
-        let (accumulation, baked_diffuse) = self.targets.textures()?;
+        let SystemTextures { accumulation, baked_diffuse } = self.targets.textures()?;
         Some(TargetViews {
             accumulation: &accumulation.attachments,
             roles: accumulation.roles(),
-            reduced_depth: accumulation.reduced_depth.as_ref(),
+            reduced_depth: accumulation.get(&REDUCED_DEPTH),
             baked_diffuse: &baked_diffuse.faces,
             origin: setup.rect.origin,
             size: setup.rect.size,
@@ -368,9 +369,17 @@ impl SystemState {
             Plan::Forward(plan) => builder.forward(plan),
             Plan::Deferred(plan) => {
                 let limit = UVec2::new(view.size.x.div_ceil(settings.scale), view.size.y.div_ceil(settings.scale));
-                let targets = self.targets.ensure(shared, &settings, plan, setup.rect.size, limit);
-                let tiles = TiledContext { system: &mut self.tiles, workload: workload.as_ref() };
-                builder.deferred(plan, tiles, targets, &setup, depth, frame.scene_depth.buffer())
+                let (textures, groups) = self.targets.ensure(&shared.device, &settings, plan, setup.rect.size, limit);
+                let inputs = DeferredInputs {
+                    textures,
+                    groups,
+                    setup: &setup,
+                    depth,
+                    host_depth: frame.scene_depth.buffer(),
+                    tiles: &mut self.tiles,
+                    workload: workload.as_ref(),
+                };
+                builder.deferred(plan, inputs)
             }
         };
         Some(PreparedSystem {

@@ -1,9 +1,9 @@
 //! Instance buffer of a system whose particles are in CPU memory.
 
-use super::gpu::Gpu;
-use super::gpu::idle_counter::IdleCounter;
-use super::sprite_instances::Sprites;
 use crate::frame::{Particle, Particles};
+use crate::renderer::gpu::Gpu;
+use crate::renderer::gpu::idle_counter::IdleCounter;
+use crate::renderer::pass::sprite_instances::Sprites;
 use crate::settings::{BlendOrder, Settings};
 use crate::view_setup::{DrawingOrder, ParticleSpace};
 

@@ -1,18 +1,18 @@
 //! Particles of one system: measured on the CPU, uploaded, evaluated or sorted.
 
-use super::context::Shared;
-use super::frame_context::FrameContext;
-use super::gpu::idle_counter::IdleCounter;
 use super::instances::{Instances, ParticleUse, SortedBy};
-use super::memory_use::TiledMemory;
-use super::pass::Groups;
-use super::pass::density_splat::DensitySplat;
-use super::pass::measure::Measure;
-use super::sprite_instances::Sprites;
-use super::system_passes::ParticlePass;
-use super::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
-use super::validate_frame::{exceeds_tiled_limits, is_readable_by_compute};
+use super::passes::ParticlePass;
 use crate::frame::{Particle, ParticleSystem, Particles, SpriteExtent};
+use crate::renderer::context::Shared;
+use crate::renderer::frame_context::FrameContext;
+use crate::renderer::gpu::idle_counter::IdleCounter;
+use crate::renderer::memory_use::TiledMemory;
+use crate::renderer::pass::density_splat::DensitySplat;
+use crate::renderer::pass::groups::Groups;
+use crate::renderer::pass::measure::Measure;
+use crate::renderer::pass::sprite_instances::Sprites;
+use crate::renderer::support::{exceeds_tiled_limits, is_readable_by_compute};
+use crate::renderer::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
 use crate::settings::{BlendOrder, RenderPath, Settings};
 use crate::view_setup::{ParticleMeasures, ParticleSpace, SystemBoxes, ViewGeometry};
 
