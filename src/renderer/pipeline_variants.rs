@@ -11,7 +11,7 @@ use super::gpu::pipeline::{Common, PipelineDescription, PipelineStore, Shader};
 use super::layouts::{GroupSet, Layouts};
 use crate::error::{Error, one_line};
 
-/// What the file of a pass declares of its pipelines; the key that tells them apart implements it.
+/// Declaration of a pass's pipelines, in its file: the key that tells them apart implements it.
 pub(crate) trait PipelineKey: Copy + Debug + Eq + Hash {
     /// Name of the pass: of its shader, and in times and captures.
     const PASS: &'static str;

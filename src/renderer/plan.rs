@@ -250,7 +250,7 @@ fn deferred<'a>(
         tiled: tiled.map(|cooperative| tiled_keys(&accumulate_key, accumulate.layers, cooperative, exact_filtering)),
         overdraw: overdraw.then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         texels: TexelPlan {
-            // Where the hardware counts layers, it tests the depth.
+            // Hardware that counts layers tests the depth as well.
             depth_downsample: (!host_depth)
                 .then_some(Planned { key: DepthDownsampleKey { mode }, computed: tiled.is_some() && !overdraw }),
             depth_copy: (depth_test == DepthTest::Copy).then_some(Planned::drawn(DepthCopyKey { mode })),

@@ -1,4 +1,4 @@
-//! What the compute shaders of a device can read and hold.
+//! Limits of a device's compute shaders.
 
 use super::auto::PathReason;
 use super::context::Shared;

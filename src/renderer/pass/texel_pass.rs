@@ -18,7 +18,7 @@ use crate::renderer::layouts::{GroupSet, Layouts};
 use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{InputGroups, PlannedTarget, SystemTextures, Target};
 
-/// What the file of a texel pass declares; the key of its pipelines implements it.
+/// Declaration of a texel pass, in its file: the key of its pipelines implements it.
 pub(crate) trait TexelKey: Copy + Debug + Eq + Hash {
     /// Name of the pass: of its shader, and in times and captures.
     const PASS: &'static str;

@@ -1,4 +1,4 @@
-//! Accumulation target of a system, and what the passes over its texels write.
+//! Accumulation target of a system, and the targets of its texel passes.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub(crate) struct AccumulationKey {
     pub tiled: bool,
     /// Pixels per texel, if one of `targets` has pixels.
     pub pixels_scale: Option<u32>,
-    /// What the passes over texels write.
+    /// Targets of the texel passes.
     pub targets: PlannedTargets,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct AccumulationTarget {
     pub attachments: Arc<[wgpu::TextureView]>,
     /// Counted layers, in the format of the first attachment.
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
-    /// What the passes over texels write.
+    /// Targets of the texel passes.
     written: Vec<(Target, wgpu::TextureView)>,
     pub bytes: u64,
 }

@@ -1,4 +1,4 @@
-//! Textures of a system that the passes over its texels write.
+//! Targets of texel passes.
 
 use glam::UVec2;
 
@@ -16,7 +16,7 @@ pub(crate) struct Target {
     pub computed: wgpu::TextureFormat,
 }
 
-/// What the elements of a target stand for.
+/// Elements of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Extent {
     /// Texels of the accumulation target.
