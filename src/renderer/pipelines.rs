@@ -68,9 +68,9 @@ impl Pipelines {
             Ok(shader)
         };
         let computes = tiles_are_supported(&store.device);
-        let drawn = DrawnPipelines::new(store, layouts, &shader)?;
-        let texels = TexelPipelineSet::new(store, layouts, computes, &shader)?;
-        let tiled = if computes { Some(TiledPipelines::new(store, layouts, &shader)?) } else { None };
+        let drawn = DrawnPipelines::new(store, layouts, shader)?;
+        let texels = TexelPipelineSet::new(store, layouts, computes, shader)?;
+        let tiled = if computes { Some(TiledPipelines::new(store, layouts, shader)?) } else { None };
         Ok(Self { drawn, texels, tiled, store: store.clone(), shaders: created.into_inner() })
     }
 
