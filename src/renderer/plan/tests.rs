@@ -1,6 +1,7 @@
 //! Tests of planning.
 
 use super::*;
+use crate::renderer::pass::upsample_lit::PIXELS;
 use crate::settings::{DiffuseMode, FadeCurve, RenderPath};
 use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
 
@@ -197,6 +198,9 @@ fn one_of_each_covers_every_pass() {
         assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
         assert!(tiled.tiled.is_some() && deferred.tiled.is_none());
         assert!(tiled.texels.upsample_lit.is_some() && lit.texels.upsample_lit.is_none());
+        // The last target of the last pass: all before it have found a place.
+        let targets = tiled.texels.targets();
+        assert!(targets.iter().flatten().any(|planned| planned.target == PIXELS), "{targets:?}");
     }
 }
 

@@ -65,7 +65,7 @@ const MAX_TARGETS: usize = 8;
 /// Targets of a system. An array, so that a frame allocates nothing to compare them.
 pub(crate) type PlannedTargets = [Option<PlannedTarget>; MAX_TARGETS];
 
-/// Collects the targets of a system. Those beyond the maximum are left out; a test plans all.
+/// Collects the targets of a system. `one_of_each_covers_every_pass` checks that none is left out.
 pub(crate) fn planned_targets(targets: impl Iterator<Item = PlannedTarget>) -> PlannedTargets {
     let mut planned = [None; MAX_TARGETS];
     planned.iter_mut().zip(targets).for_each(|(slot, target)| *slot = Some(target));
