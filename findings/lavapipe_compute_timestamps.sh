@@ -3,7 +3,7 @@
 # enclose its work. Both are taken after it: a pass of a second reads as 0.02 ms. Before the first render pass they are right.
 # One expects the pass's own time at any point of a program. Times of haze's compute passes on lavapipe are wrong in the same way:
 # docs/bench.md, "Method".
-# Seen with wgpu-py 0.32.0 (wgpu-native), which writes the timestamps with vkCmdWriteTimestamp, as wgpu does.
+# Seen with wgpu-py 0.32.0.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -69,7 +69,7 @@ def draw():
     device.queue.submit([encoder.finish()])
 
 
-def share_of_wall_time():
+def fraction_of_wall_time():
     """Measures the compute pass: its time by timestamps, divided by that of the submission by the clock."""
     start = time.perf_counter()
     encoder = device.create_command_encoder()
@@ -87,12 +87,12 @@ def share_of_wall_time():
     return (end - begin) / 1e6 / wall
 
 
-share_of_wall_time()
+fraction_of_wall_time()
 print("before the first render pass:")
-before = share_of_wall_time()
+before = fraction_of_wall_time()
 draw()
 print("after it:")
-after = share_of_wall_time()
+after = fraction_of_wall_time()
 if before < 0.5 or after > 0.1:
     sys.exit("changed: timestamps no longer lose the work of compute passes, or they never have it")
 PYTHON

@@ -41,7 +41,8 @@ fn recorded_frames() -> Vec<Vec<String>> {
     let mut lit = raster.clone();
     lit.settings.accumulate.lighting_resolution = LightingResolution::Target;
     let mut tiled = lit.clone();
-    (tiled.settings.path, tiled.settings.accumulate.scale) = (RenderPath::Tiled, 2);
+    tiled.settings.path = RenderPath::Tiled;
+    tiled.settings.accumulate.scale = 2;
     let mut forward = raster.clone();
     forward.settings.path = RenderPath::Forward;
     let mut multisampled = raster.clone();
@@ -85,8 +86,8 @@ fn drawings_of_the_frame_show_every_recorded_pass_in_order() {
         for frame in &frames {
             // `sort` is a step of tiled frames, too.
             let drawn = |name: &&String| heads.contains(&name.as_str()) && *name != "sort";
-            let places = frame.iter().filter(drawn).map(|name| heads.iter().position(|head| head == name));
-            assert!(places.is_sorted(), "{document} shows another order than {frame:?}");
+            let positions = frame.iter().filter(drawn).map(|name| heads.iter().position(|head| head == name));
+            assert!(positions.is_sorted(), "{document} shows another order than {frame:?}");
         }
         assert_eq!(heads.len(), 17, "{document}: {heads:?}");
     }

@@ -178,11 +178,11 @@ fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
     let window = client.window();
     // Searches the bar below the menus for its first button, from the left.
     let mut places = (150..650).step_by(15).cycle();
-    wait_for_rest(&child);
+    wait_for_rest(&child, ANSWERED);
     wait_until("the work is offered", || {
         client.click(places.next().unwrap(), 45);
         // A second click before the answer to the first would hit what the bar has covered.
-        wait_for_rest(&child);
+        wait_for_rest(&child, ANSWERED);
         !first.exists()
     });
     assert!(Preset::load(&second).unwrap() == kept);
@@ -205,11 +205,15 @@ fn cpu_ticks(child: &Child) -> u64 {
     fields[11..13].iter().map(|field| field.parse::<u64>().unwrap()).sum()
 }
 
-/// Waits until a window has done the work that follows an event, and uses no more CPU time.
-fn wait_for_rest(child: &Child) {
+/// Time without CPU use after which an event is answered, and after which a window is idle.
+const ANSWERED: Duration = Duration::from_millis(300);
+const IDLE: Duration = Duration::from_millis(700);
+
+/// Waits until a window has done the work that follows an event, and has used no CPU time for so long.
+fn wait_for_rest(child: &Child, quiet: Duration) {
     wait_until("the window rests", || {
         let before = cpu_ticks(child);
-        std::thread::sleep(Duration::from_millis(300));
+        std::thread::sleep(quiet);
         cpu_ticks(child) - before <= 1
     });
 }
@@ -221,16 +225,16 @@ fn a_window_of_any_size_runs_idles_and_closes() {
     let mut child = haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
     let mut client = display.connect();
     let window = client.window();
-    wait_for_rest(&child);
+    wait_for_rest(&child, IDLE);
     for (width, height) in [(1, 1), (3, 900), (1500, 2), (64, 64), (700, 420)] {
         client.resize(window, width, height);
-        wait_for_rest(&child);
+        wait_for_rest(&child, IDLE);
         assert!(child.try_wait().unwrap().is_none(), "{width}x{height}");
     }
     client.unmap(window);
-    wait_for_rest(&child);
+    wait_for_rest(&child, IDLE);
     client.map(window);
-    wait_for_rest(&child);
+    wait_for_rest(&child, IDLE);
     client.close(window);
     wait_for_success(child);
 }
