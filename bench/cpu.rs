@@ -6,11 +6,11 @@ use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{UVec2, Vec3};
-use haze::emitter::Emitter;
-use haze::settings::BlendOrder;
 use haze::{Context, Descriptor, FrameInput, Light, ParticleSystem, Particles, Renderer, SceneDepth, Settings, wgpu};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::emitter::Emitter;
+use haze_core::settings::BlendOrder;
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 
@@ -52,7 +52,7 @@ fn prepare(criterion: &mut Criterion) {
             // Small sprites keep the GPU work short, so that it does not delay the next `prepare`.
             settings.sprite.size = 0.02;
             let mut renderer = Renderer::new(&context, &Descriptor::default()).unwrap();
-            let pictures = haze::preset::MaterialNames::default().load(Path::new("")).unwrap();
+            let pictures = haze_preset::MaterialNames::default().load(Path::new("")).unwrap();
             let material = context.create_material(&pictures).unwrap();
             let (emitter, time) = emitter(count);
             let mut particles = Vec::new();

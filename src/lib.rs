@@ -38,13 +38,14 @@
 //! # fn host() -> (wgpu::Device, wgpu::Queue, wgpu::CommandEncoder, wgpu::TextureView, haze::View) { unimplemented!() }
 //! # fn pass_with_read_only_depth(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { unimplemented!() }
 //! # let (device, queue, mut encoder, scene_depth, view) = host();
-//! use haze::{Context, Descriptor, FrameInput, Light, ParticleSystem, Particles, Renderer, SceneDepth, Settings};
+//! use haze::{
+//!     Context, Descriptor, FrameInput, Light, MaterialAssets, ParticleSystem, Particles, Renderer, SceneDepth, Settings,
+//! };
 //!
 //! // Once.
 //! let context = Context::new(&device, &queue, None);
 //! let mut smoke = Renderer::new(&context, &Descriptor::default())?;
-//! let assets = haze::preset::MaterialNames::default().load("".as_ref())?;
-//! let material = context.create_material(&assets)?;
+//! let material = context.create_material(&MaterialAssets::default())?;
 //! let settings = Settings::default();
 //!
 //! // Every frame, after the opaque scene.
@@ -63,9 +64,13 @@
 //! # Versions
 //! haze follows semantic versioning; before 1.0 the minor version takes the place of the major one. wgpu's and glam's types
 //! are part of the interface, so a new version of either that changes types comes with a new major version of haze;
-//! [`wgpu`] and [`glam`] are the versions in use. A minor version may add fields and variants: create structs with
-//! `..Default::default()` or `..FrameInput::new(…)`, and give every `match` a wildcard arm. Messages of errors, the feature
-//! `exhaustive`, and items that these pages do not show may change in any version.
+//! [`wgpu`] and [`glam`] are the versions in use. A new major version may add fields and variants; structs that are created with
+//! `..Default::default()` or `..FrameInput::new(…)`, and a `match` with a wildcard arm, compile with it as they are. Messages of
+//! errors may change in any version.
+//!
+//! # Features
+//! - `preset` (default): [`preset`] and [`builtin`], and with them 1.7 MB of images. [`MaterialAssets::default`] needs neither.
+//! - `schema`: JSON schemas of settings and presets.
 //!
 //! # Conventions
 //! Metres, seconds, radians; angles in settings are degrees. World and view space are the host's, left- or
@@ -80,35 +85,89 @@
 //! - BLOG: *Soft Particles*, after Umenhoffer et al., *Spherical Billboards*, 2006.
 //! - MS: the DirectX 10 *SoftParticles* sample.
 
-#[doc(hidden)]
-pub mod assets;
-pub mod emitter;
-pub mod error;
-pub mod fire;
-#[doc(hidden)]
-pub mod formula;
-pub mod frame;
-pub mod preset;
+mod frame;
 mod renderer;
-pub mod settings;
-#[doc(hidden)]
-pub mod view_setup;
 
-pub use assets::material_assets::MaterialAssets;
+pub use haze_core::{emitter, fire};
+
 #[doc(inline)]
-pub use assets::{builtin, image, noise, ramp, sprite};
-pub use error::{Error, FieldError};
-pub use frame::{
-    AliveCount, Bounds, EmitterSnapshot, FrameInput, Light, LightKind, LightRole, Material, Particle, ParticleBuffer,
-    ParticleSystem, Particles, SceneDepth, ShadowMap, ShadowProjection, SpriteExtent, View,
+pub use frame::{AliveCount, FrameInput, Material, ParticleBuffer, ParticleSystem, Particles, SceneDepth, ShadowMap};
+#[doc(inline)]
+pub use haze_core::assets::material_assets::MaterialAssets;
+#[doc(inline)]
+pub use haze_core::error::{Error, FieldError};
+#[doc(inline)]
+pub use haze_core::formula::ambient::hemisphere_light;
+#[doc(inline)]
+pub use haze_core::formula::shadow_map::MAX_SHADOW_LAYERS;
+#[doc(inline)]
+pub use haze_core::frame::{
+    Bounds, EmitterSnapshot, Light, LightKind, LightRole, MAX_LIGHTS, MAX_MAGNITUDE, Particle, ShadowProjection,
+    SpriteExtent, View, particle_bounds,
 };
+#[doc(inline)]
+pub use haze_core::settings::Settings;
+#[doc(inline)]
+pub use haze_core::view_setup::{AttachmentRole, AttachmentSet, LightingChoice, ScaleChoice};
+#[cfg(feature = "preset")]
+#[doc(inline)]
+pub use haze_preset::builtin;
 pub use renderer::{
     Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,
     PathModelSource, PathReason, PathWorkload, Renderer, SceneDepthKind, TargetViews, TiledMemory, Timing,
     TimingDetail, WarmUp, read_only_depth_is_supported, shader,
 };
-pub use settings::{ScaleBudget, Settings};
-pub use view_setup::{AttachmentRole, AttachmentSet, LightingChoice, ScaleChoice};
+
+/// Images in memory, and reading of PNG files.
+pub mod image {
+    #[doc(inline)]
+    pub use haze_core::assets::image::{
+        Image, MAX_BYTES, MAX_SIDE, color_conversion_notes, decode_color_png, decode_png, read_color_png, read_png,
+    };
+}
+
+/// Tiling 3D noise.
+pub mod noise {
+    #[doc(inline)]
+    pub use haze_core::assets::noise::{MAX_SIZE, NoiseVolume};
+}
+
+/// Presets: a camera, lights and particle systems in a JSON file.
+#[cfg(feature = "preset")]
+pub mod preset {
+    #[doc(inline)]
+    pub use haze_preset::{
+        AnimatedPreset, AssetFolders, Camera, Ease, EndBehaviour, Environment, Flicker, ImageCache, ImageSource,
+        KeyValue, Keyframe, MAX_IMAGE_BYTES, MAX_KEYFRAMES, MAX_SYSTEMS, MAX_TIME, MaterialNames, PRESET_VERSION,
+        ParticleFiles, Preset, PresetSystem, SceneName, Track, UpAxis,
+    };
+}
+
+/// Ramps: light, heat and coverage as an artist painted them.
+pub mod ramp {
+    #[doc(inline)]
+    pub use haze_core::assets::ramp::{Ramp, RampRole};
+}
+
+/// Flipbooks of normal maps.
+pub mod sprite {
+    #[doc(inline)]
+    pub use haze_core::assets::sprite::{MAX_FRAMES, Sprite, SpriteLayout, six_way_layout};
+}
+
+/// Settings of one particle system: plain data with units and ranges. Every slider moves one of their fields.
+pub mod settings {
+    #[doc(inline)]
+    pub use haze_core::settings::{
+        Accumulate, AccumulationFormat, Ambient, BackdropKind, Backlight, BlendMode, BlendOrder, Budget,
+        COARSEST_AUTO_SCALE, Choice, CoverageMode, Curve, CurveError, DebugView, Density, DepthDownsample, DepthSource,
+        Diffuse, DiffuseMode, FadeCurve, FieldHeading, FieldRef, FieldValue, FieldVisitor, Fields, Fire, Grain,
+        ImageRole, Layers, Lighting, LightingResolution, MAX_CURVE_POINTS, NormalDecode, NormalEncoding, PathStep,
+        RampFilter, RenderPath, ScaleBudget, ScaleMode, Shadow, SoftFade, SoftScatter, SoftScatterMode,
+        SpecularScatter, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, UnknownChoice, Upsample,
+        Volumetric, field_path, field_values, for_each_field, set_field, validate, write_field_path,
+    };
+}
 
 pub use glam;
 pub use wgpu;

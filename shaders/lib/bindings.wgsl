@@ -4,7 +4,7 @@
 #import "lib/system.wgsl"
 #import "lib/lighting.wgsl"
 
-// MAX_LIGHTS in src/frame/light.rs.
+// MAX_LIGHTS in crates/haze_core/src/frame/light.rs.
 const MAX_LIGHTS: u32 = 128u;
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -1,10 +1,10 @@
 // Scene depth as linear view depth, metres.
 
-// View depth of pixels without a surface. SKY_VIEW_DEPTH in src/formula/depth.rs.
+// View depth of pixels without a surface. SKY_VIEW_DEPTH in crates/haze_core/src/formula/depth.rs.
 const SKY_VIEW_DEPTH: f32 = 1.0e6;
 
 // view_depth = (c.x + c.y·d) / (c.z + c.w·d), one form for every convention. The coefficients and their derivation are
-// in depth_coefficients() in src/formula/depth.rs.
+// in depth_coefficients() in crates/haze_core/src/formula/depth.rs.
 fn view_depth_from_ndc_depth(ndc_depth: f32, coefficients: vec4f) -> f32 {
     let numerator = coefficients.x + coefficients.y * ndc_depth;
     let denominator = coefficients.z + coefficients.w * ndc_depth;

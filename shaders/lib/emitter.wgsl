@@ -3,7 +3,7 @@
 #import "lib/curve.wgsl"
 #import "lib/gradient_noise.wgsl"
 
-// An emitter at a time. Mirrors EmitterUniform in src/formula/uniforms.rs; src/emitter.rs documents the settings.
+// An emitter at a time. Mirrors EmitterUniform in crates/haze_core/src/formula/uniforms.rs; crates/haze_core/src/emitter.rs documents the settings.
 struct Emitter {
     // Lower 32 bits of the index of the first birth that may be alive, and the number of births from there on.
     first: u32,

@@ -2,7 +2,7 @@
 
 #import "lib/color.wgsl"
 
-// Mirrors LightUniform in src/formula/uniforms.rs.
+// Mirrors LightUniform in crates/haze_core/src/formula/uniforms.rs.
 struct Light {
     // Point and spot.
     position: vec3f,

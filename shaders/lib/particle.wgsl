@@ -1,4 +1,4 @@
-// One sprite of a particle system, in the layout of `Particle` in src/frame/particle.rs.
+// One sprite of a particle system, in the layout of `Particle` in crates/haze_core/src/frame/particle.rs.
 
 struct Particle {
     // World space; radius in w.

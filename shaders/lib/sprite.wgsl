@@ -135,7 +135,7 @@ fn sample_sprite(
     return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
 }
 
-// Largest motion that a detail map can store, in uv. MOTION_RANGE in src/formula/sprite.rs.
+// Largest motion that a detail map can store, in uv. MOTION_RANGE in crates/haze_core/src/formula/sprite.rs.
 const MOTION_RANGE: f32 = 0.125;
 
 // Decodes a detail map's texel: x = offset towards the viewer, -1..1 radii; yz = motion to the next frame, in uv. A

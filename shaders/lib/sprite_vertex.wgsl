@@ -14,7 +14,7 @@
 #import "lib/stretch.wgsl"
 #import "lib/technique.wgsl"
 
-// Largest magnitude of a particle's numbers that is drawn. MAX_MAGNITUDE in src/frame/particle.rs.
+// Largest magnitude of a particle's numbers that is drawn. MAX_MAGNITUDE in crates/haze_core/src/frame/particle.rs.
 const MAX_MAGNITUDE: f32 = 1.0e9;
 
 struct SpriteVertex {
@@ -228,7 +228,7 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
 const FULL_ALPHA_BOUNDS: vec4u = vec4u(0xffffffffu);
 
 // Part of a frame that is not clear, at a sprite's mip level: a bit for each cell in xy, the extent in z.
-// AlphaBoundsTexel in src/assets/sprite/alpha_bounds.rs.
+// AlphaBoundsTexel in crates/haze_core/src/assets/sprite/alpha_bounds.rs.
 fn alpha_bounds_texel(frame: i32, lod: f32) -> vec4u {
     if DEBUG_SPRITE || MOTION {
         return FULL_ALPHA_BOUNDS;

@@ -1,4 +1,4 @@
-// One particle system in this view. Mirrors SystemUniform in src/formula/uniforms.rs. Fields named like settings have
+// One particle system in this view. Mirrors SystemUniform in crates/haze_core/src/formula/uniforms.rs. Fields named like settings have
 // the values of those settings.
 
 struct System {

@@ -1,4 +1,4 @@
-// Uniforms, constants and counts of the tiled path. Tiles mirrors TilesUniform in src/formula/uniforms.rs.
+// Uniforms, constants and counts of the tiled path. Tiles mirrors TilesUniform in crates/haze_core/src/formula/uniforms.rs.
 
 struct Tiles {
     // Number of particles, and how often all particles are drawn.
@@ -34,7 +34,7 @@ const NO_LIST: u32 = 0xffffffffu;
 const PER_INVOCATION_TILE: vec2u = vec2u(8u, 4u);
 // Parts of a bin. With the usual bin side of 32 texels, a part is a tile.
 const PARTS: vec2u = vec2u(4u, 8u);
-// Sprites of a list that share one word per part, one bit each. Equal to the number of parts. In src/formula/tiles.rs
+// Sprites of a list that share one word per part, one bit each. Equal to the number of parts. In crates/haze_core/src/formula/tiles.rs
 // too.
 const BITS_PER_WORD: u32 = 32u;
 
@@ -43,7 +43,7 @@ fn refine_words(length: u32) -> u32 {
     return (length + BITS_PER_WORD - 1u) / BITS_PER_WORD * BITS_PER_WORD;
 }
 
-// Sprites per run. RUN in src/formula/tiles.rs.
+// Sprites per run. RUN in crates/haze_core/src/formula/tiles.rs.
 const RUN: u32 = 64u;
 
 // Returns the number of runs of `count` sprites.

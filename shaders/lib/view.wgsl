@@ -1,4 +1,4 @@
-// Camera. Mirrors ViewUniform in src/formula/uniforms.rs.
+// Camera. Mirrors ViewUniform in crates/haze_core/src/formula/uniforms.rs.
 
 struct View {
     view_from_world: mat4x4f,

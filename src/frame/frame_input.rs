@@ -2,14 +2,11 @@
 
 use glam::{Mat4, UVec2, Vec3};
 
-use super::bounds::Bounds;
-use super::emitter_snapshot::EmitterSnapshot;
-use super::light::Light;
+use haze_core::frame::{Bounds, EmitterSnapshot, Light, Particle, View};
+
 use super::material::Material;
-use super::particle::Particle;
 use super::shadow_map::ShadowMap;
-use super::view::View;
-use crate::settings::{BlendOrder, DebugView, Settings};
+use haze_core::settings::{BlendOrder, DebugView, Settings};
 
 /// Input of [`Renderer::prepare`](crate::Renderer::prepare) for one frame.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +18,7 @@ pub struct FrameInput<'a> {
     /// Size of the host's targets, pixels, if the views of the scene depth show another mip level than the first: wgpu
     /// does not tell the level of a view. `None` for the size of the depth texture.
     pub target_size: Option<UVec2>,
-    /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
+    /// At most [`MAX_LIGHTS`](crate::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
     /// Shadow maps of lights, at most one per light. They shade the smoke of systems with
     /// [`shadow.by_depth`](crate::settings::Shadow::by_depth), for the lights that cast shadow.
@@ -68,7 +65,6 @@ impl<'a> FrameInput<'a> {
 /// Single-sampled, but for [`SceneDepth::Multisampled`]. `docs/depth.md` has a table of which depth is read and which is
 /// tested.
 #[derive(Clone, Copy, Debug)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum SceneDepth<'a> {
     /// Depth buffer written with the view's projection: a 2D view of its depth aspect.
     Buffer(&'a wgpu::TextureView),
@@ -124,10 +120,10 @@ pub struct ParticleSystem<'a> {
     /// An emitter that moves as a whole, or a simulation in local space, needs no work on the CPU.
     pub world_from_particles: Mat4,
     /// Box in the particles' space that contains every sprite with its corners:
-    /// [`SpriteExtent::reach`](super::SpriteExtent::reach) around each particle. It decides which pixels are lit, which lights
+    /// [`SpriteExtent::reach`](crate::SpriteExtent::reach) around each particle. It decides which pixels are lit, which lights
     /// reach the smoke, and whether the system is visible.
     /// Sprites outside the box may be cut off; a box that is too large costs time. `None` measures a slice with
-    /// [`particle_bounds`](crate::frame::particle_bounds).
+    /// [`particle_bounds`](crate::particle_bounds).
     pub bounds: Option<Bounds>,
     /// View depth, metres, of the plane on which light is evaluated, and by which systems are drawn far to near. It
     /// should move without jumps. The mean depth of the sprites, weighted by amount and area, is best; `None` uses it.
@@ -184,7 +180,6 @@ pub struct AliveCount<'a> {
 
 /// Source of the sprites.
 #[derive(Clone, Copy, Debug)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum Particles<'a> {
     /// Particles in memory. [`Renderer::prepare`](crate::Renderer::prepare) sorts and uploads them. A sprite with a
     /// number that is not finite or out of range is skipped.

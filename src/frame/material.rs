@@ -1,6 +1,6 @@
 //! Images of a particle system on the GPU.
 
-use crate::assets::material_assets::MaterialInfo;
+use haze_core::assets::material_assets::MaterialInfo;
 
 /// Ramps and sprite images on the GPU. Cheap to clone and to share between systems, renderers and frames.
 /// [`Context::create_material`](crate::Context::create_material) creates it.

@@ -18,11 +18,11 @@ use super::pipelines::Pipelines;
 use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
 use super::tiled::{TiledPipelines, volume};
-use crate::assets::material_assets::MaterialAssets;
-use crate::assets::ramp::Ramp;
-use crate::error::Error;
 use crate::frame::Material;
-use crate::view_setup::Support;
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
+use haze_core::view_setup::Support;
 
 /// Resources that all renderers of one device share: device, queue, shader modules, bind group layouts, samplers and
 /// pipelines. A clone refers to the same context. A context can be used from any thread.
@@ -212,7 +212,6 @@ impl Context {
     /// Selects the traversal of the path `tiled`: true for cooperative (a workgroup shares each batch of sprites;
     /// default on GPUs), false for per invocation (default on CPUs). For tests and measurements of the variant that is
     /// not the device's default. Both give the same image.
-    #[doc(hidden)]
     pub fn set_cooperative_traversal(&self, cooperative: bool) {
         self.0.pipelines.tiled.iter().for_each(|tiled| tiled.set_cooperative(cooperative));
     }

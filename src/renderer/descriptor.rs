@@ -1,7 +1,7 @@
 //! Description of a renderer and of the host's render pass.
 
 use super::gpu::host_pass::{HostPass, MAX_ATTACHMENTS};
-use crate::error::FieldError;
+use haze_core::error::FieldError;
 
 /// Describes the host's render pass. All fields are fixed for the lifetime of a [`Renderer`](crate::Renderer).
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,10 @@ impl Descriptor<'_> {
         let Some(format) = self.scene_color_format else { return Ok(host) };
         let HostPass { depth_format, sample_count, .. } = host;
         let pass = HostPass { depth_format, sample_count, ..HostPass::color_only(format) };
-        pass.validate(device).map_err(|error| FieldError { field: "scene_color_format".into(), ..error })?;
+        pass.validate(device).map_err(|mut error| {
+            error.field = "scene_color_format".into();
+            error
+        })?;
         Ok(pass)
     }
 }

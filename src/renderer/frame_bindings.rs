@@ -3,10 +3,10 @@
 use super::context::Shared;
 use super::gpu::error_scopes::with_error_scopes;
 use super::gpu::record::uniform_buffer;
-use crate::error::FieldError;
-use crate::formula::uniforms::ViewUniform;
 use crate::frame::SceneDepth;
-use crate::view_setup::ViewGeometry;
+use haze_core::error::FieldError;
+use haze_core::formula::uniforms::ViewUniform;
+use haze_core::view_setup::ViewGeometry;
 
 /// View uniforms, bound with each kind of scene depth.
 #[derive(Debug)]

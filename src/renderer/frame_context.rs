@@ -8,7 +8,7 @@ use super::gpu::Gpu;
 use super::plan::PipelineInputs;
 use super::tiled::FrameShadow;
 use crate::frame::FrameInput;
-use crate::view_setup::ViewGeometry;
+use haze_core::view_setup::ViewGeometry;
 
 /// A frame, with the resources that every system needs.
 pub(crate) struct FrameContext<'a> {

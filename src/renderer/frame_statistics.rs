@@ -7,7 +7,7 @@ use super::memory_use::MemoryUse;
 use super::resolved_depth::ResolvedDepth;
 use super::system::SystemState;
 use super::targets::TargetViews;
-use crate::view_setup::{LightingChoice, ScaleChoice};
+use haze_core::view_setup::{LightingChoice, ScaleChoice};
 
 impl Renderer {
     /// Returns the view depth of a system's smoke, metres, by which [`render`](Self::render) sorts: `ParticleSystem::depth`, or

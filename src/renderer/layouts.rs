@@ -2,10 +2,10 @@
 
 use super::gpu::binding::{FILTERED, LOADED, SAMPLER, bind_group_layout, texture, uniform};
 use super::gpu::capabilities::tiles_are_supported;
-use crate::formula::uniforms::{
+use haze_core::formula::uniforms::{
     LightUniform, SceneShadowUniform, ScreenShadowUniform, ShadowVisibilityUniform, SystemUniform, ViewUniform,
 };
-use crate::frame::MAX_LIGHTS;
+use haze_core::frame::MAX_LIGHTS;
 
 /// Size of the lights' uniform block, bytes.
 pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as u64;

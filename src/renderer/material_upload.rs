@@ -5,13 +5,13 @@ use glam::UVec2;
 use super::gpu::Gpu;
 use super::gpu::capabilities::array_layers;
 use super::layouts::{LIGHTING_BINDINGS, Layouts, SPRITE_BINDINGS};
-use crate::assets::material_assets::MaterialAssets;
-use crate::assets::noise::NoiseVolume;
-use crate::assets::ramp::Ramp;
-use crate::assets::sprite::Sprite;
-use crate::assets::sprite::alpha_bounds::AlphaBounds;
-use crate::error::FieldError;
 use crate::frame::Material;
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::assets::noise::NoiseVolume;
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::Sprite;
+use haze_core::assets::sprite::alpha_bounds::AlphaBounds;
+use haze_core::error::FieldError;
 
 /// Samplers and textures that every material binds.
 #[derive(Debug)]

@@ -29,12 +29,12 @@ mod tiled;
 mod validate_frame;
 mod warm_up;
 
-use crate::assets::ramp_steps::RampSteps;
-use crate::error::{Error, FieldError};
-use crate::formula::shadow::SHADOWED_LIGHTS;
 use crate::frame::{FrameInput, SceneDepth};
-use crate::settings::DebugView;
-use crate::view_setup::{AttachmentSet, ResolvedSettings, SmokeShadow, ViewGeometry};
+use haze_core::assets::ramp_steps::RampSteps;
+use haze_core::error::{Error, FieldError};
+use haze_core::formula::shadow::SHADOWED_LIGHTS;
+use haze_core::settings::DebugView;
+use haze_core::view_setup::{AttachmentSet, ResolvedSettings, SmokeShadow, ViewGeometry};
 
 pub use auto::{PathChoice, PathCosts, PathModel, PathModelSource, PathReason, PathWorkload};
 pub use context::Context;

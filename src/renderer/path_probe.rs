@@ -1,6 +1,5 @@
 //! Measurement of both accumulation paths on a device, by a few small frames.
 
-use std::path::Path as FilePath;
 use std::time::{Duration, Instant};
 
 use glam::camera::rh::proj::directx::perspective;
@@ -11,10 +10,11 @@ use super::auto::{PathCosts, PathModel, PathWorkload};
 use super::context::Context;
 use super::descriptor::Descriptor;
 use super::gpu::record::{begin_pass, written_depth};
-use crate::error::Error;
-use crate::frame::{FrameInput, Material, Particle, ParticleSystem, Particles, SceneDepth, View};
-use crate::preset::MaterialNames;
-use crate::settings::{Layers, RenderPath, Settings};
+use crate::frame::{FrameInput, Material, ParticleSystem, Particles, SceneDepth};
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
+use haze_core::frame::{Particle, View};
+use haze_core::settings::{Layers, RenderPath, Settings};
 
 /// Test scene: `SPRITES` sprites, one behind the other, each covering an image of `SIZE` pixels.
 const SIZE: UVec2 = UVec2::splat(256);
@@ -78,7 +78,7 @@ struct ProbeScene {
 impl ProbeScene {
     fn new(context: &Context) -> Result<Self, Error> {
         let renderer = Renderer::new(context, &Descriptor::default())?;
-        let material = context.create_material(&MaterialNames::default().load(FilePath::new(""))?)?;
+        let material = context.create_material(&MaterialAssets::default())?;
         let depth = context.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("haze probe depth"),
             size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },

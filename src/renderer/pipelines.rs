@@ -20,7 +20,7 @@ use super::pass::transfer_lit::TransferLitKey;
 use super::pipeline_variants::pipeline_set;
 use super::plan::Plan;
 use super::tiled::TiledPipelines;
-use crate::error::Error;
+use haze_core::error::Error;
 
 pipeline_set! {
     /// Passes that draw, but for those over texels.

@@ -21,18 +21,17 @@ use super::pass::transfer::{BoundingBoxKey, TransferKey};
 use super::pass::transfer_lit::{Tiles, TransferLitKey};
 use super::pass::upsample_lit::{LitPixelKey, UpsampleLitKey};
 use super::tiled::TiledKeys;
-use crate::assets::ramp_steps::RampSteps;
-use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
-use crate::settings::{
+use haze_core::assets::ramp_steps::RampSteps;
+use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::settings::{
     BlendOrder, DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, RenderPath, Settings, Technique,
     Upsample,
 };
-use crate::view_setup::{AttachmentSet, ResolvedSettings, Support};
+use haze_core::view_setup::{AttachmentSet, ResolvedSettings, Support};
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum SceneDepthKind {
     /// [`SceneDepth::Buffer`].
     Buffer(wgpu::TextureFormat),

@@ -4,8 +4,8 @@ use super::context::Shared;
 use super::gpu::binding::bind_resources;
 use super::gpu::record::uniform_buffer;
 use super::tiled::FrameShadow;
-use crate::formula::uniforms::SceneShadowUniform;
 use crate::frame::FrameInput;
+use haze_core::formula::uniforms::SceneShadowUniform;
 
 /// Bind group for a host's shaders, kept between frames.
 #[derive(Debug)]

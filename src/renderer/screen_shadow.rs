@@ -10,9 +10,9 @@ use super::gpu::record::uniform_buffer;
 use super::layouts::LIGHTS_SIZE;
 use super::pass::screen_shadow::ScreenShadow;
 use super::shadow_map_bindings::ShadowMapBindings;
-use crate::formula::uniforms::{LightUniform, ScreenShadowUniform};
 use crate::frame::FrameInput;
-use crate::view_setup::{SmokeShadow, ViewGeometry, scene_light_uniforms};
+use haze_core::formula::uniforms::{LightUniform, ScreenShadowUniform};
+use haze_core::view_setup::{SmokeShadow, ViewGeometry, scene_light_uniforms};
 
 /// Inputs of the pass, kept between frames.
 #[derive(Debug, Default)]

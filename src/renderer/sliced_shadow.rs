@@ -11,9 +11,10 @@ use super::pass::shadow_visibility_slice::ShadowVisibilitySliceKey;
 use super::pass::volume_slices::VolumeSlices;
 use super::shadow_map_bindings::ShadowMapBindings;
 use super::tiled::{FrameShadow, volume};
-use crate::formula::uniforms::{ShadowMarchUniform, SystemUniform};
-use crate::frame::{Particle, ShadowMap};
-use crate::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
+use crate::frame::ShadowMap;
+use haze_core::formula::uniforms::{ShadowMarchUniform, SystemUniform};
+use haze_core::frame::Particle;
+use haze_core::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 /// Bytes of a cell on the GPU: of its density, and of a texel of the volume.
 const DENSITY_BYTES: u64 = 4;

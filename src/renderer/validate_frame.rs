@@ -8,16 +8,14 @@ use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear_target;
 use super::targets::validate_attachments;
 use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
-use crate::error::FieldError;
-use crate::frame::validate_input::{
+use crate::frame::{AliveCount, FrameInput, ParticleBuffer, ParticleSystem, Particles, SceneDepth, ShadowMap};
+use haze_core::error::FieldError;
+use haze_core::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
     validate_world_from_particles,
 };
-use crate::frame::{
-    AliveCount, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, ShadowMap, SpriteExtent,
-    View,
-};
-use crate::settings::{DepthSource, RenderPath, Technique};
+use haze_core::frame::{Particle, SpriteExtent, View};
+use haze_core::settings::{DepthSource, RenderPath, Technique};
 
 /// Validates everything except the view's matrices.
 ///

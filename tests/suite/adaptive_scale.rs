@@ -1,12 +1,12 @@
 //! Compares the error that the scale mode `auto` predicts with the error of the image.
 
 use glam::{UVec2, Vec4, Vec4Swizzles};
-use haze::builtin;
-use haze::formula::color::srgb_from_linear;
-use haze::image::Image;
-use haze::settings::ScaleMode;
+use haze_core::assets::image::Image;
+use haze_core::formula::color::srgb_from_linear;
+use haze_core::settings::ScaleMode;
 use haze_demo::offscreen_renderer::OffscreenRenderer;
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 
 use crate::gpu::gpu;
 use crate::presets::{offscreen_context, without_smoke};

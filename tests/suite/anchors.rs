@@ -1,18 +1,18 @@
 //! Values from the papers, worked out by hand. Both renderers use `formula`, so an error there passes every comparison
 //! of the two.
 
-use haze::formula::diffuse_bake::{
+use haze::glam::{Vec2, Vec3, Vec4, Vec4Swizzles, vec2, vec3};
+use haze_core::formula::diffuse_bake::{
     add_light, cube_coordinate, cube_direction, motif_normal, motif_position, spherical_harmonics, zonal_coefficients,
 };
-use haze::formula::lighting::{
+use haze_core::formula::lighting::{
     coverage, diffuse_coordinate, distance_attenuation, soft_scatter_weight, specular_scatter_fade,
 };
-use haze::formula::normal::{accumulation_from_normal, normal_from_accumulation, rotate_normal};
-use haze::formula::soft_fade::{fade_contrast, fade_exponential, near_fade, soft_fade};
-use haze::formula::technique::{density_amount, depth_sprite_depth, ray_sphere, spherical_billboard_amount};
-use haze::formula::{color, depth};
-use haze::glam::{Vec2, Vec3, Vec4, Vec4Swizzles, vec2, vec3};
-use haze::settings::{FadeCurve, NormalDecode, NormalEncoding};
+use haze_core::formula::normal::{accumulation_from_normal, normal_from_accumulation, rotate_normal};
+use haze_core::formula::soft_fade::{fade_contrast, fade_exponential, near_fade, soft_fade};
+use haze_core::formula::technique::{density_amount, depth_sprite_depth, ray_sphere, spherical_billboard_amount};
+use haze_core::formula::{color, depth};
+use haze_core::settings::{FadeCurve, NormalDecode, NormalEncoding};
 use haze_reference::blend_unit::premultiplied_over;
 
 /// A few roundings of f32.

@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::builtin;
-use haze::image::{read_png, write_baked_png};
-use haze::settings::CoverageMode;
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::detail::bake_detail_frame;
+use haze_core::assets::image::read_png;
+use haze_core::settings::CoverageMode;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
+use haze_preset::{builtin, write_baked_png};
 use image::{Rgba, RgbaImage, imageops};
 
 fn file(folder: &str, name: &str) -> PathBuf {

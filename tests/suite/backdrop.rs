@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec3, Vec4};
-use haze::image::Image;
-use haze::preset::Preset;
-use haze::settings::set_field;
 use haze_author::preset::no_effect_reason;
+use haze_core::assets::image::Image;
+use haze_core::settings::set_field;
 use haze_demo::shot::Shot;
+use haze_preset::Preset;
 
 use crate::gpu::gpu;
 use crate::presets::{render_on_gpu, without_smoke};
@@ -18,7 +18,7 @@ fn shot(size: UVec2) -> Shot {
     let mut preset = Preset::load("column").unwrap();
     preset.environment.scene_file = "court.glb".into();
     preset.environment.sky_file = "dusk.hdr".into();
-    preset.systems[0].settings.path = haze::settings::RenderPath::Raster;
+    preset.systems[0].settings.path = haze_core::settings::RenderPath::Raster;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_scene/my.json");
     let mut shot = Shot::new(preset, &folder, size).unwrap();
     let backdrop = shot.backdrop.clone();

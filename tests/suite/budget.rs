@@ -2,8 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use haze::ScaleBudget;
-use haze::settings::Budget;
+use haze_core::settings::{Budget, ScaleBudget};
 use proptest::prelude::*;
 
 /// Share of the budget that the time at a finer scale must stay below.

@@ -5,13 +5,13 @@ use std::convert::Infallible;
 use std::path::Path;
 
 use glam::{UVec2, Vec2, Vec3, vec3};
-use haze::builtin;
-use haze::image::Image;
-use haze::ramp::Ramp;
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
 use haze_author::ramp::response::{LightResponse, Response};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::image::Image;
+use haze_core::assets::ramp::Ramp;
 use haze_demo::puff_cloud::{CloudShape, LIGHTS, LightImages, PuffCloud, PuffKind, PuffMaterial, ring_of_lights};
+use haze_preset::builtin;
 
 /// Seed of the columns.
 const COLUMN: u32 = 7;
@@ -110,7 +110,7 @@ fn save(folder: &Path, medium: &str, rows: &[&LightImages]) {
         let row = rows[(y / side) as usize];
         let exposure = exposures[(y / side) as usize];
         let texel = row[(x / side) as usize].load(UVec2::new(x % side, y % side).as_ivec2()) * exposure / white;
-        let code = texel.to_array().map(|light| haze::formula::color::srgb_from_linear(light.clamp(0.0, 1.0)));
+        let code = texel.to_array().map(|light| haze_core::formula::color::srgb_from_linear(light.clamp(0.0, 1.0)));
         image::Rgb(code.map(|code| (code * 255.0).round() as u8))
     });
     let (width, height) = picture.dimensions();

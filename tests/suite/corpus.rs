@@ -12,17 +12,18 @@ mod special_paths;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use haze::image::read_png;
-use haze::noise::NoiseVolume;
-use haze::preset::{AssetFolders, Preset};
-use haze::ramp::Ramp;
-use haze::sprite::{Sprite, SpriteLayout};
-use haze::{Error, emitter};
+use haze::Error;
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::particle_files;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::image::read_png;
+use haze_core::assets::noise::NoiseVolume;
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::emitter;
+use haze_preset::{AssetFolders, Preset};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 

@@ -6,14 +6,14 @@ use std::path::Path as File;
 use std::sync::{Mutex, PoisonError};
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::image::Image;
-use haze::preset::{AssetFolders, EndBehaviour, MaterialNames, Preset, PresetSystem};
-use haze::settings::*;
 use haze::{Context, Error, Light, LightKind, MaterialAssets};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::particle_files;
 use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::no_effect_reason;
+use haze_core::assets::image::Image;
+use haze_core::settings::*;
+use haze_preset::{AssetFolders, EndBehaviour, MaterialNames, Preset, PresetSystem};
 
 use crate::every_setting::{OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY, SettingMutator};
 use crate::gpu::{gpu, is_tiled_available, shared_context};
@@ -358,8 +358,8 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
 
 #[test]
 fn lamp_and_brazier_have_an_effect_only_in_the_yard_scene() {
-    use haze::preset::SceneName;
     use haze_demo::shot::Shot;
+    use haze_preset::SceneName;
 
     use crate::presets::render_on_gpu;
 

@@ -4,9 +4,9 @@
 use std::ops::RangeInclusive;
 
 use glam::{UVec2, Vec3, Vec4};
-use haze::builtin;
-use haze::image::Image;
-use haze::settings::*;
+use haze_core::assets::image::Image;
+use haze_core::settings::*;
+use haze_preset::builtin;
 
 use crate::gpu::gpu;
 use crate::psnr::{MIN_PSNR, MIN_PSNR_WITH_STEPS, psnr};

@@ -6,13 +6,13 @@ use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 
 use haze::glam::Vec3;
-use haze::preset::{Preset, PresetSystem};
-use haze::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole};
 use haze::{Light, Settings};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole};
+use haze_preset::{Preset, PresetSystem};
 use serde_json::Value;
 
 /// Paths of all fields that a traversal visits.

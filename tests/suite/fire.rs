@@ -1,10 +1,13 @@
 //! Fire: whole frames on the GPU and on the CPU, and how smoke and fire hide each other.
 
 use glam::{IVec2, UVec2, Vec3, Vec4, vec3};
-use haze::Particle;
-use haze::image::Image;
-use haze::ramp::Ramp;
-use haze::settings::*;
+use haze::{MaterialAssets, Particle};
+use haze_core::assets::image::Image;
+use haze_core::assets::ramp::Ramp;
+use haze_core::emitter::Emitter;
+use haze_core::fire::light;
+use haze_core::settings::*;
+use haze_preset::MaterialNames;
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::psnr;
@@ -202,4 +205,51 @@ fn cold_smoke_gives_no_light_and_strange_ages_are_harmless() {
     let mut without = cold.clone();
     without.settings.fire.intensity = 0.0;
     assert!(psnr(&drawn(&cold), &drawn(&without)) > 70.0);
+}
+
+/// Settings and images of a fire, without flicker.
+fn steady_fire() -> (Settings, MaterialAssets) {
+    let mut settings = Settings::default();
+    (settings.fire.intensity, settings.fire.flicker) = (4.0, 0.0);
+    (settings, MaterialNames::default().load("".as_ref()).unwrap())
+}
+
+#[test]
+fn light_of_a_fire_is_where_it_burns() {
+    let (settings, assets) = steady_fire();
+    let emitter = Emitter { position: Vec3::new(3.0, 1.0, -2.0), ..Emitter::default() };
+    let mut particles = Vec::new();
+    emitter.evaluate(9.0, &mut particles);
+    let found = light(&particles, 1, &settings, &assets, (9.0, 1)).unwrap();
+    assert!(found.position.distance(emitter.position) < 2.0 && found.intensity > 0.1, "{found:?}");
+    assert!(found.color.x > found.color.y && found.color.y > found.color.z, "{found:?}");
+    // Far fewer than half of the particles are hot: it is nearer to the source than their mean.
+    let mean = particles.iter().map(|particle| particle.position.y).sum::<f32>() / particles.len() as f32;
+    assert!(found.position.y < mean, "{} {mean}", found.position.y);
+    // A sample has the same light, but for the chance by which it holds more or fewer of the hottest.
+    let half: Vec<_> = particles.iter().copied().step_by(2).collect();
+    let sampled = light(&half, 2, &settings, &assets, (9.0, 1)).unwrap();
+    assert!((sampled.intensity / found.intensity - 1.0).abs() < 0.15, "{sampled:?} {found:?}");
+    // Cold smoke gives none.
+    let cold: Vec<_> = particles.iter().map(|particle| Particle { age: 1.0, ..*particle }).collect();
+    assert_eq!(light(&cold, 1, &settings, &assets, (9.0, 1)), None);
+    assert_eq!(light(&particles, 1, &Settings::default(), &assets, (9.0, 1)), None);
+}
+
+#[test]
+fn light_of_strange_particles_is_valid_or_none() {
+    let (mut settings, assets) = steady_fire();
+    settings.fire.intensity = 1000.0;
+    let particle = Particle { position: Vec3::splat(1.0e8), ..Particle::default() };
+    for strange in [
+        particle,
+        Particle { radius: 1.0e9, ..particle },
+        Particle { age: f32::NAN, ..particle },
+        Particle { age: -1.0e30, ..particle },
+        Particle { radius: 1.0e-20, ..particle },
+    ] {
+        let Some(light) = light(&[strange], 1, &settings, &assets, (f32::MAX, 3)) else { continue };
+        assert!((0.0..=1.0e9).contains(&light.intensity) && (0.0..=1.0e4).contains(&light.radius), "{light:?}");
+        assert!(light.position.is_finite() && light.color.is_finite() && light.range >= 0.01, "{light:?}");
+    }
 }

@@ -5,12 +5,11 @@
 use std::path::{Path, PathBuf};
 
 use glam::{UVec2, Vec4};
-use haze::builtin;
-use haze::formula::color::srgb_from_linear;
-use haze::image::Image;
-use haze::image::{CompressionEffort, read_png, write_png};
-use haze::settings::{DebugView, Technique};
+use haze_core::assets::image::{Image, read_png};
+use haze_core::formula::color::srgb_from_linear;
+use haze_core::settings::{DebugView, Technique};
 use haze_demo::shot::Shot;
+use haze_preset::{CompressionEffort, builtin, write_png};
 use image::{DynamicImage, Rgb, RgbImage};
 
 use crate::presets::{render_on_gpu, shot};
@@ -108,7 +107,7 @@ fn ramp_shifted_by_a_32nd_exceeds_the_tolerance() {
         let ramp = material.diffuse_ramp.clone();
         let width = ramp.size().x;
         let texels = (0..width).map(|x| ramp.texel(UVec2::new((x + width / 32).min(width - 1), 0)));
-        material.diffuse_ramp = haze::ramp::Ramp::from_linear(ramp.size(), texels);
+        material.diffuse_ramp = haze_core::assets::ramp::Ramp::from_linear(ramp.size(), texels);
     }
     let golden = read_png(&golden("column")).unwrap().to_rgb8();
     let difference = difference(&encode(&mutant.render_on_cpu().unwrap()), &golden);

@@ -1,9 +1,9 @@
 //! Dependence of lighting on other particles, light range and intensity, the world's origin and the up vector.
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::image::Image;
-use haze::settings::{DebugView, DiffuseMode, RenderPath, Technique};
 use haze::{Light, LightKind, Particle};
+use haze_core::assets::image::Image;
+use haze_core::settings::{DebugView, DiffuseMode, RenderPath, Technique};
 use haze_reference::{FrameInput, ParticleSystem};
 
 use crate::gpu::gpu;

@@ -1,9 +1,10 @@
 //! Velocity, tint and heat of single particles: whole frames on the GPU and on the CPU.
 
 use glam::{IVec2, UVec2, Vec3, vec3};
-use haze::frame::particle_bounds;
-use haze::settings::*;
-use haze::{Bounds, Particle, SpriteExtent, builtin};
+use haze::{Bounds, Particle, SpriteExtent};
+use haze_core::frame::particle_bounds;
+use haze_core::settings::*;
+use haze_preset::builtin;
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};

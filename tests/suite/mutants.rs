@@ -5,12 +5,12 @@ use std::cell::LazyCell;
 
 use glam::Vec4;
 use haze::PathModelSource;
-use haze::builtin;
-use haze::image::Image;
-use haze::settings::{LightingResolution, RenderPath};
 use haze::shader::{self, Sources};
+use haze_core::assets::image::Image;
+use haze_core::settings::{LightingResolution, RenderPath};
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 
 use crate::goldens;
 use crate::gpu::{gpu, is_tiled_available, own_context};

@@ -2,10 +2,10 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec4, vec3};
-use haze::formula::color::overdraw_color;
-use haze::image::Image;
-use haze::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze::{Overdraw, Particle, Particles, View, wgpu};
+use haze_core::assets::image::Image;
+use haze_core::formula::color::overdraw_color;
+use haze_core::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze_demo::headless::Headless;
 
 use crate::gpu::{can_test, gpu};

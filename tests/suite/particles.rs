@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use haze::preset::{AssetFolders, Preset, PresetSystem};
 use haze_author::particle_files;
+use haze_preset::{AssetFolders, Preset, PresetSystem};
 
 /// Returns a binary PLY file of moving particles, with columns that are not read.
 fn binary(frame: u32, count: u32) -> Vec<u8> {

@@ -6,11 +6,11 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 use std::thread::ThreadId;
 
 use glam::{UVec2, Vec4};
-use haze::image::Image;
-use haze::preset::{EndBehaviour, Preset, SceneName, UpAxis};
-use haze::settings::*;
+use haze_core::assets::image::Image;
+use haze_core::settings::*;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
+use haze_preset::{EndBehaviour, Preset, SceneName, UpAxis};
 
 use crate::gpu::{gpu, shared_context};
 use crate::psnr::{MIN_PSNR, psnr_over};
@@ -128,7 +128,7 @@ macro_rules! preset_tests {
 
             #[test]
             fn no_preset_is_missing() {
-                let names: Vec<_> = haze::builtin::PRESETS.iter().map(|preset| preset.name).collect();
+                let names: Vec<_> = haze_preset::builtin::PRESETS.iter().map(|preset| preset.name).collect();
                 assert_eq!(names, [$(stringify!($preset)),*]);
             }
         }

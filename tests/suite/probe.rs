@@ -1,15 +1,14 @@
 //! Checks that the pixel probe reports the values that the GPU drew.
 
 use glam::{UVec2, Vec2, Vec2Swizzles, Vec3, Vec4, Vec4Swizzles};
-use haze::Light;
-use haze::builtin;
-use haze::image::Image;
-use haze::ramp::Ramp;
-use haze::settings::*;
-use haze::wgpu;
+use haze::{Light, wgpu};
+use haze_core::assets::image::Image;
+use haze_core::assets::ramp::Ramp;
+use haze_core::settings::*;
 use haze_demo::capture::CapturedFrame;
 use haze_demo::offscreen_renderer::OffscreenRenderer;
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 use haze_reference::{Probe, SystemProbe};
 
 use crate::gpu::{can_test, gpu, is_tiled_available};

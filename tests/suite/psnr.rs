@@ -1,7 +1,7 @@
 //! PSNR of images of smoke, and its limits.
 
 use glam::Vec4;
-use haze::image::Image;
+use haze_core::assets::image::Image;
 
 use crate::test_scene::BACKDROP;
 

@@ -4,13 +4,13 @@
 use std::ops::{Range, RangeInclusive};
 
 use glam::{IVec2, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
-use haze::formula::tonemap::tonemapped;
-use haze::image::Image;
-use haze::noise::{pcg3d, unit};
-use haze::preset::{AssetFolders, Preset};
-use haze::settings::*;
-use haze::{Light, builtin};
+use haze::Light;
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::{pcg3d, unit};
+use haze_core::formula::tonemap::tonemapped;
+use haze_core::settings::*;
 use haze_demo::shot::Shot;
+use haze_preset::{AssetFolders, Preset, builtin};
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::presets::render_on_gpu;

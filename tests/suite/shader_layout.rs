@@ -1,10 +1,11 @@
 //! Compares definitions that exist in both Rust and WGSL: struct layouts, constants, and the numbers of setting enums.
 
-use haze::formula::uniforms::{
+use haze::{Particle, shader};
+use haze_core::formula::uniforms::{
     EmitterUniform, LightUniform, MeasureUniform, SceneShadowUniform, ScreenShadowUniform, ShadowMapUniform,
     ShadowMarchUniform, ShadowVisibilityUniform, SplatUniform, SystemUniform, TilesUniform, UniformField, ViewUniform,
 };
-use haze::{Particle, formula, frame, settings, shader, view_setup};
+use haze_core::{formula, frame, settings, view_setup};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 fn parse(name: &str, source: &str) -> naga::Module {
@@ -249,5 +250,5 @@ fn wgsl_constants_of_setting_enums_match_rust() {
     assert_choices!(accumulate, "SPRITE_ANIMATION", settings::SpriteAnimation);
     assert_choices!(composed("depth_downsample.wgsl"), "DEPTH_DOWNSAMPLE", settings::DepthDownsample);
     assert_choices!(composed("forward.wgsl"), "BLEND_MODE", settings::BlendMode);
-    assert_choices!(composed("lib/emitter.wgsl"), "EMITTER_SHAPE", haze::emitter::EmitterShape);
+    assert_choices!(composed("lib/emitter.wgsl"), "EMITTER_SHAPE", haze_core::emitter::EmitterShape);
 }

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec4};
-use haze::image::Image;
-use haze::settings::{DebugView, Lighting, RenderPath, Settings, SpriteAnimation};
 use haze::shader::{self, Sources};
-use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Context, Error, SceneDepthKind, WarmUp, read_only_depth_is_supported, wgpu};
+use haze_core::assets::image::Image;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::settings::{DebugView, Lighting, RenderPath, Settings, SpriteAnimation};
 use tempfile::TempDir;
 
 use crate::gpu::{gpu, is_tiled_available, shared_context};

@@ -2,9 +2,9 @@
 
 use glam::camera::rh;
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
-use haze::image::Image;
-use haze::settings::*;
 use haze::{AttachmentRole, Bounds, Light, LightKind, Particle, Particles};
+use haze_core::assets::image::Image;
+use haze_core::settings::*;
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::{MIN_PSNR, psnr};
@@ -123,7 +123,8 @@ fn shadow_of_unusual_smoke_is_right_or_none() {
     // A ramp that is white in full light leaves a single particle as it is without shadow.
     let mut scene = shaded();
     keep_one_particle(&mut scene);
-    scene.material.shadow_ramp = haze::builtin::find(haze::builtin::RAMPS, "shadow_neutral").unwrap().ramp().unwrap();
+    scene.material.shadow_ramp =
+        haze_preset::builtin::find(haze_preset::builtin::RAMPS, "shadow_neutral").unwrap().ramp().unwrap();
     let seen = drawn(&scene);
     scene.settings.shadow.strength = 0.0;
     let same = psnr(&seen, &drawn(&scene));

@@ -1,10 +1,10 @@
 //! Six-way lighting: agreement of the renderers wherever it is supported, and errors where it is not.
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::image::Image;
-use haze::settings::*;
-use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Light, LightKind, wgpu};
+use haze_core::assets::image::Image;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::settings::*;
 use haze_demo::headless::Headless;
 
 use crate::gpu::{gpu, is_tiled_available};

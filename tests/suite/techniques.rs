@@ -7,8 +7,8 @@ mod invalid_input;
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, vec3};
-use haze::settings::*;
 use haze::{Bounds, Particle};
+use haze_core::settings::*;
 
 pub use self::flipbook::flipbook;
 use crate::gpu::gpu;

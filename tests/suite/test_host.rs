@@ -3,11 +3,11 @@
 mod textures;
 
 use glam::{UVec2, Vec4};
-use haze::image::Image;
 use haze::{
     Context, Descriptor, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, Renderer, SceneDepth,
     ShadowMap, Timing, wgpu,
 };
+use haze_core::assets::image::Image;
 use haze_demo::headless::Headless;
 
 pub use self::textures::convert_to_rgba16float;

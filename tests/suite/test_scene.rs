@@ -5,15 +5,14 @@ use std::sync::LazyLock;
 
 use glam::camera::rh;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
-use haze::image::Image;
-use haze::noise::NoiseVolume;
-use haze::noise::{pcg3d, unit};
-use haze::ramp::Ramp;
-use haze::settings::{DebugView, RenderPath, Settings};
-use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, ShadowProjection, View};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::sprite::six_way::six_way_layout;
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::{NoiseVolume, pcg3d, unit};
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::settings::{DebugView, RenderPath, Settings};
 
 use crate::gpu::gpu;
 use crate::psnr::{MIN_PSNR, psnr};
@@ -249,7 +248,7 @@ impl TestScene {
     pub fn linear_depth(&self) -> Image<f32> {
         let mut linear = Image::new(self.view.size, 0.0);
         let seen = |at| self.view_depth(at).filter(|_| !self.empty_linear);
-        linear.for_each(|at, texel| *texel = seen(at).unwrap_or(haze::formula::depth::SKY_VIEW_DEPTH));
+        linear.for_each(|at, texel| *texel = seen(at).unwrap_or(haze_core::formula::depth::SKY_VIEW_DEPTH));
         linear
     }
 

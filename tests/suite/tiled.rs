@@ -11,12 +11,12 @@ use std::sync::LazyLock;
 use glam::UVec2;
 use glam::camera::rh::proj::directx;
 use glam::{Vec3, Vec4, vec3};
-use haze::builtin;
-use haze::image::Image;
-use haze::settings::*;
 use haze::{Bounds, Context, Error, Particle, ParticleBuffer, Particles, wgpu};
+use haze_core::assets::image::Image;
+use haze_core::settings::*;
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 
 use crate::gpu::{gpu, is_tiled_available, own_context};
 use crate::psnr::{MIN_PSNR, MIN_PSNR_WITH_STEPS, psnr};

@@ -8,10 +8,10 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use haze::settings::{DiffuseMode, LightingResolution, RenderPath};
 use haze::{
     Context, Error, FrameInput, FrameTimes, ParticleSystem, Particles, SceneDepth, Settings, Timing, TimingDetail, wgpu,
 };
+use haze_core::settings::{DiffuseMode, LightingResolution, RenderPath};
 use haze_demo::headless::Headless;
 
 use crate::gpu::{can_test, gpu, has_independent_devices, is_tiled_available};

@@ -1,8 +1,8 @@
 //! Compares the tonemap on the GPU, for windows, with the tonemap on the CPU, for files.
 
 use glam::{UVec2, Vec2, Vec4};
-use haze::settings::DebugView;
 use haze::wgpu;
+use haze_core::settings::DebugView;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{TonemapPass, TonemapUniform, exposure, tonemap};

@@ -1,11 +1,11 @@
 //! Compares upsampled targets with full-resolution ones, at depth edges of the scene and over the whole image.
 
 use glam::{IVec2, UVec2, Vec4, vec3};
-use haze::builtin;
-use haze::formula::color::srgb_from_linear;
-use haze::image::Image;
-use haze::settings::{DebugView, Grain, LightingResolution, Settings, Upsample};
+use haze_core::assets::image::Image;
+use haze_core::formula::color::srgb_from_linear;
+use haze_core::settings::{DebugView, Grain, LightingResolution, Settings, Upsample};
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 
 use crate::presets::render_on_gpu;
 use crate::psnr::psnr;

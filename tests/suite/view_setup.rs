@@ -3,11 +3,11 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, vec3, vec4};
-use haze::image::Image;
-use haze::ramp::Ramp;
-use haze::settings::{DebugView, DiffuseMode};
-use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Light, LightKind, Particle};
+use haze_core::assets::image::Image;
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::settings::{DebugView, DiffuseMode};
 
 use crate::gpu::gpu;
 use crate::test_host::Host;

@@ -13,9 +13,8 @@ use bevy::light::{AmbientLight, GlobalAmbientLight};
 use bevy::math::Vec3;
 use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight};
 use bevy::transform::components::GlobalTransform;
-use haze::frame::MAX_LIGHTS;
 use haze::settings::Ambient;
-use haze::{Light, LightKind, glam};
+use haze::{Light, LightKind, MAX_LIGHTS, glam};
 
 use crate::convert;
 use crate::environment::HemisphereLight;

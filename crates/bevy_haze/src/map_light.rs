@@ -16,8 +16,7 @@ use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::TextureId;
 use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::texture::GpuImage;
-use haze::formula::ambient::hemisphere_light;
-use haze::wgpu;
+use haze::{hemisphere_light, wgpu};
 
 use crate::convert;
 use crate::environment::{ExtractedEnvironments, HemisphereLight};

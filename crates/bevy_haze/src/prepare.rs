@@ -22,8 +22,7 @@ use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::sync_world::MainEntity;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthStencilTexture, ViewTarget};
-use haze::frame::MAX_LIGHTS;
-use haze::{Error, FrameInput, SceneDepth, View, glam, wgpu};
+use haze::{Error, FrameInput, MAX_LIGHTS, SceneDepth, View, glam, wgpu};
 
 use crate::composite::CompositeResources;
 use crate::convert;

@@ -12,8 +12,7 @@ use bevy::math::{Mat4, Vec3};
 use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight, LightEntity, ViewLightEntities, ViewShadowBindings};
 use bevy::render::render_resource::Texture;
 use bevy::render::view::ExtractedView;
-use haze::formula::shadow_map::MAX_SHADOW_LAYERS;
-use haze::{ShadowMap, ShadowProjection, glam};
+use haze::{MAX_SHADOW_LAYERS, ShadowMap, ShadowProjection, glam};
 
 use crate::convert;
 use crate::lights::SceneLight;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use haze::assets::json;
-use haze::error::Error;
-use haze::settings::validate;
 use haze_author::ramp::gradient::check_not_empty;
 use haze_author::ramp::{HexColor, RampRow, RampStop};
+use haze_core::assets::json;
+use haze_core::error::Error;
+use haze_core::settings::validate;
 
 /// Returns the row as JSON, as in a recipe.
 pub fn to_text(row: &RampRow) -> String {

@@ -7,9 +7,9 @@ use super::handles::{self, GAP, strip_position};
 use super::paint::{borders, color32, gradient as paint_gradient, histogram, readout, ticks};
 use super::selection::Selection;
 use super::stop_operations;
-use haze::formula::color::srgb_from_linear;
 use haze_author::ramp::gradient::add_stop;
 use haze_author::ramp::{Curve, Gradient, HexColor};
+use haze_core::formula::color::srgb_from_linear;
 
 /// Heights of the strip, of the lane for handles below it, and of histograms, points.
 const STRIP: f32 = 30.0;

@@ -1,9 +1,9 @@
 //! Gradients with fewer stops, and the errors of these.
 
 use glam::Vec3;
-use haze::formula::color::srgb_from_linear;
 use haze_author::ramp::fit_stops::fit_row;
 use haze_author::ramp::{Blend, RampStop};
+use haze_core::formula::color::srgb_from_linear;
 
 use super::stop_operations::gradient;
 

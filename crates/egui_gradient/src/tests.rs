@@ -25,7 +25,7 @@ fn a_click_adds_a_stop_with_the_color_at_that_position() {
         let rows = vec![harness.state().row.clone()];
         let recipe = haze_author::ramp::RampRecipe { rows, ..Default::default() };
         let light = recipe.gradient().unwrap().sample(0.25, 0.0).x;
-        (haze::formula::color::srgb_from_linear(light) * 255.0).round() as u8
+        (haze_core::formula::color::srgb_from_linear(light) * 255.0).round() as u8
     };
     click(&mut harness, at, NONE);
     assert_eq!(places(&harness), [0.0, 0.25, 1.0]);

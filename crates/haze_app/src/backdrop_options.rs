@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use haze::preset::{Preset, backdrop_kind};
-use haze::settings::BackdropKind;
 use haze::{Error, FieldError};
 use haze_author::backdrop::Backdrop;
+use haze_core::settings::BackdropKind;
 use haze_demo::shot::Shot;
+use haze_preset::{Preset, backdrop_kind};
 
 /// Scene and sky from files, in place of those of the preset.
 #[derive(Args, Clone, Debug, Default)]

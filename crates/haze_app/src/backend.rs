@@ -4,8 +4,8 @@ use std::cell::RefCell;
 
 use glam::Vec4;
 use haze::Error;
-use haze::image::Image;
 use haze::shader::Sources;
+use haze_core::assets::image::Image;
 use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;

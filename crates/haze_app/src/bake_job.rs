@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clap::Args;
-use haze::image::{is_baked_png, write_baked_png};
 use haze::{Error, FieldError};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_preset::{is_baked_png, write_baked_png};
 use image::DynamicImage;
 
 use super::output::{Failures, FileChecks, print_line};

@@ -10,8 +10,9 @@ use std::process::ExitCode;
 
 use clap::error::{ContextValue, ErrorKind};
 use clap::{CommandFactory as _, Parser, Subcommand};
-use haze::error::is_link_loop;
-use haze::{Error, builtin};
+use haze::Error;
+use haze_core::error::is_link_loop;
+use haze_preset::builtin;
 
 use crate::commands::{export, info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
 use crate::output::{Failures, one_line, print_error, write_text};

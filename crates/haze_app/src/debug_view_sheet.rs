@@ -1,6 +1,6 @@
 //! Labelled sheet of every debug view, as OTEE's slide "Shade tree" shows the stages.
 
-use haze::settings::DebugView;
+use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 
 /// Stages in the order of the frame.

@@ -9,10 +9,11 @@ use exr::prelude::{
 use glam::{UVec2, Vec4, Vec4Swizzles};
 use half::f16;
 use haze::Error;
-use haze::image::{Image, write_file};
+use haze_core::assets::image::Image;
 use haze_demo::particle_scalar::ParticleScalar;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::exposure;
+use haze_preset::write_file;
 
 use crate::backend::Backend;
 use crate::frame_range::FrameNames;
@@ -140,7 +141,7 @@ fn add<T: Copy>(channels: &mut Vec<Channel>, names: &[&str], image: &Image<T>, c
 mod tests {
     use exr::prelude::{ReadChannels as _, ReadLayers as _};
     use glam::UVec2;
-    use haze::preset::{Ease, KeyValue, Keyframe, Preset, Track};
+    use haze_preset::{Ease, KeyValue, Keyframe, Preset, Track};
 
     use super::*;
     use crate::image_format::ImageFormat;

@@ -3,12 +3,12 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use haze::preset::Preset;
 use haze::{Error, FieldError};
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_preset::Preset;
 
 struct FileKind {
     /// Part of the file name: `ramp` in `fire.ramp.json`.

@@ -6,11 +6,11 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use glam::UVec2;
-use haze::image::{CompressionEffort, write_file, write_png};
-#[cfg(not(target_arch = "wasm32"))]
-use haze::preset::{AnimatedPreset, Preset};
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
+#[cfg(not(target_arch = "wasm32"))]
+use haze_preset::{AnimatedPreset, Preset};
+use haze_preset::{CompressionEffort, write_file, write_png};
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, DynamicImage, Frame};
 

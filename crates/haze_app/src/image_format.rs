@@ -2,11 +2,11 @@
 
 use glam::{UVec2, Vec4};
 use haze::Error;
-use haze::image::Image;
-use haze::preset::{KeyValue, Preset, SceneName};
-use haze::settings::DebugView;
+use haze_core::assets::image::Image;
+use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{encoded, exposure, rgba8, tonemap};
+use haze_preset::{KeyValue, Preset, SceneName};
 use image::{DynamicImage, ImageBuffer, imageops};
 
 use super::smoke_alone::{before_two_skies, separated};
@@ -157,7 +157,7 @@ pub fn place(sheet: &mut DynamicImage, picture: &DynamicImage, at: UVec2) {
 
 #[cfg(test)]
 mod tests {
-    use haze::preset::{Ease, Keyframe, Track};
+    use haze_preset::{Ease, Keyframe, Track};
     use image::GenericImageView as _;
 
     use super::*;

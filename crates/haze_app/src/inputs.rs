@@ -4,9 +4,9 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use haze::preset::{AssetFolders, Preset, backdrop_file_path, image_file_path, particle_file_path};
-use haze::settings::{FieldVisitor, Fields, ImageRole};
 use haze_author::backdrop::backdrop_names;
+use haze_core::settings::{FieldVisitor, Fields, ImageRole};
+use haze_preset::{AssetFolders, Preset, backdrop_file_path, image_file_path, particle_file_path};
 
 /// Returns every path where an image that a preset names may lie.
 pub fn image_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
@@ -30,7 +30,7 @@ pub fn backdrop_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathB
 /// Returns every particle file that a preset names, and the next file of each sequence, which may be written later.
 pub fn particle_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
     let files = preset.systems.iter().filter_map(|system| particle_file_path(&system.cache.path));
-    files.flat_map(|file| folders.candidate_paths(file)).flat_map(|place| haze::preset::watched_paths(&place)).collect()
+    files.flat_map(|file| folders.candidate_paths(file)).flat_map(|place| haze_preset::watched_paths(&place)).collect()
 }
 
 struct ImageNames(Vec<String>);

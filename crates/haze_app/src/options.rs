@@ -7,14 +7,13 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::UVec2;
-use haze::image::{CompressionEffort, write_png};
-use haze::preset::{AssetFolders, MAX_TIME, Preset};
-use haze::settings::{Choice, RenderPath, ScaleMode, Technique, UnknownChoice};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_author::preset::no_effect_reason_of_set;
+use haze_core::settings::{Choice, RenderPath, ScaleMode, Technique, UnknownChoice};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
+use haze_preset::{AssetFolders, CompressionEffort, MAX_TIME, Preset, write_png};
 use image::DynamicImage;
 
 use super::backdrop_options::BackdropArguments;

@@ -4,10 +4,10 @@ use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use haze::assets::file_type;
-use haze::error::{alters_line, io_expected, io_problem};
-use haze::image::{FileIdentity, check_writable};
 use haze::{Error, FieldError};
+use haze_core::assets::file_type;
+use haze_core::error::{alters_line, io_expected, io_problem};
+use haze_preset::{FileIdentity, check_writable};
 
 use super::recipe_files::has_extension;
 

@@ -1,9 +1,9 @@
 //! Sheets of smoke puffs, path-traced beside the renderer's.
 
 use glam::{UVec2, Vec3};
-use haze::formula::color::srgb_from_linear;
-use haze::image::Image;
 use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
+use haze_core::assets::image::Image;
+use haze_core::formula::color::srgb_from_linear;
 use image::imageops::{FilterType, resize};
 use image::{Rgb, RgbImage};
 

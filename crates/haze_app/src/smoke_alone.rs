@@ -2,10 +2,10 @@
 //! brightness tell both.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use haze::image::Image;
-use haze::preset::SceneName;
 use haze_author::backdrop::Backdrop;
+use haze_core::assets::image::Image;
 use haze_demo::shot::Shot;
+use haze_preset::SceneName;
 
 /// Brightness of the second sky. Far above 1, so that half floats resolve the opacity of bright smoke too.
 const BRIGHT: f32 = 64.0;

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::{Error, FieldError, builtin};
+use haze::{Error, FieldError};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_preset::builtin;
 
 use super::recipe_files::has_extension;
 

@@ -29,7 +29,7 @@ fn silence_wayland_without_session() {
 fn silence_decoder_panics() {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        if !haze::image::is_decoding() {
+        if !haze_core::assets::image::is_decoding() {
             print(panic);
         }
     }));

@@ -14,10 +14,10 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
-use haze::formula::color::luminance;
-use haze::formula::lighting::sample_light;
-use haze::preset::Preset;
-use haze::{Light, LightKind, LightRole};
+use haze_core::formula::color::luminance;
+use haze_core::formula::lighting::sample_light;
+use haze_core::frame::{Light, LightKind, LightRole};
+use haze_preset::Preset;
 
 use crate::color_temperature::color_of_temperature;
 use crate::light_angles::{Angles, from_angles, to_angles};

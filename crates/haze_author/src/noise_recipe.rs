@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
-use haze::assets::json;
-use haze::error::{Error, FieldError};
-use haze::formula::gradient_noise::tiling_noise;
-use haze::settings::{FieldVisitor, Fields, validate};
+use haze_core::assets::json;
+use haze_core::error::{Error, FieldError};
+use haze_core::formula::gradient_noise::tiling_noise;
+use haze_core::settings::{FieldVisitor, Fields, validate};
 use image::{Rgba, RgbaImage};
 
 /// Recipe format version that this code writes and reads.
@@ -91,7 +91,7 @@ impl NoiseRecipe {
 
 #[cfg(test)]
 mod tests {
-    use haze::noise::NoiseVolume;
+    use haze_core::assets::noise::NoiseVolume;
 
     use super::*;
 

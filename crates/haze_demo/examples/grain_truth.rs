@@ -11,10 +11,10 @@ use std::error::Error;
 
 use glam::{IVec2, UVec2, Vec3, vec3};
 use haze::builtin;
-use haze::formula::color::luminance;
-use haze::image::Image;
 use haze_author::path_trace::{MEDIA, PathTrace};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::image::Image;
+use haze_core::formula::color::luminance;
 use haze_demo::puff_cloud::PuffKind;
 
 /// Texels of the sprite across the puff. With a `SIZE` of 256, each is 4 pixels wide.

@@ -15,12 +15,12 @@ use std::path::Path;
 
 use glam::{UVec2, Vec3};
 use haze::builtin;
-use haze::formula::six_way::henyey_greenstein;
-use haze::image::Image;
-use haze::ramp::Ramp;
-use haze::settings::RenderPath;
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::image::Image;
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::six_way::henyey_greenstein;
+use haze_core::settings::RenderPath;
 use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::puff_cloud::{CloudShape, LightImages, PuffCloud, PuffKind, PuffMaterial, ring_of_lights};

@@ -1,6 +1,6 @@
 //! Choice of an adapter, by speed or by environment variables.
 
-use haze::error::{Error, FieldError};
+use haze_core::error::{Error, FieldError};
 
 use super::address_space::check_address_space;
 

@@ -1,6 +1,6 @@
 //! Limit of the process's address space (`ulimit -v`), for graphics drivers.
 
-use haze::error::Error;
+use haze_core::error::Error;
 
 /// Address space of a driver and its first frames, MiB. Below 950 MiB, Mesa 22.3 crashes while LLVM compiles a shader
 /// (llvmpipe, 2 processors, 1280x720); below 1150 MiB a readback of 1920x1080 pixels aborts the program.

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
-use haze::frame::View;
+use haze_core::frame::View;
 
 /// Rays of a view. Not from the inverse of the projection, which loses all digits if the near plane is close.
 #[derive(Clone, Copy, Debug)]

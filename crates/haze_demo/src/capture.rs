@@ -5,11 +5,11 @@ use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use super::cpu_render::ShadowLayers;
 use super::shot::Shot;
 use super::texture_readback::TextureReadback;
-use haze::assets::image::Image;
-use haze::error::Error;
-use haze::frame::Particle;
-use haze::settings::Settings;
 use haze::{AttachmentSet, TargetViews};
+use haze_core::assets::image::Image;
+use haze_core::error::Error;
+use haze_core::frame::Particle;
+use haze_core::settings::Settings;
 use haze_reference::{AccumulatedTextures, Probe, ProbeTextures, probe};
 
 /// Pending readback of a frame's targets.

@@ -9,13 +9,13 @@ use super::ray_caster;
 use super::scene::Scene;
 use super::shadow_views::ShadowView;
 use super::shot::Shot;
-use haze::assets::image::Image;
-use haze::error::Error;
-use haze::formula::shadow::LIGHTS_PER_BLOCK;
-use haze::frame::{Light, Particle};
-use haze::preset::Environment;
-use haze::settings::Settings;
 use haze_author::backdrop::Backdrop;
+use haze_core::assets::image::Image;
+use haze_core::error::Error;
+use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
+use haze_core::frame::{Light, Particle};
+use haze_core::settings::Settings;
+use haze_preset::Environment;
 use haze_reference::{PreparedFrame, SceneShadow};
 
 impl Shot {

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use glam::{UVec2, Vec4};
 use half::f16;
 
-use haze::error::Error;
+use haze_core::error::Error;
 
 use super::adapter_choice::find_adapter;
 pub use super::address_space::check_address_space;

@@ -3,8 +3,8 @@
 use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
 
 use super::texture_readback::TextureReadback;
-use haze::assets::image::Image;
-use haze::formula::tonemap::tonemapped;
+use haze_core::assets::image::Image;
+use haze_core::formula::tonemap::tonemapped;
 
 /// Peak signal-to-noise ratio of two images in sRGB code, dB. Infinite if the images are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]

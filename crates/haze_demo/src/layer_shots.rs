@@ -1,8 +1,8 @@
 //! Shots that show one layer of the smoke of another: particles' numbers, or the light of fire alone.
 
 use glam::Vec3;
-use haze::preset::{Preset, SceneName};
-use haze::settings::{Settings, SoftScatterMode};
+use haze_core::settings::{Settings, SoftScatterMode};
+use haze_preset::{Preset, SceneName};
 
 use super::particle_scalar::{ParticleScalar, ShownScalar};
 use super::shot::Shot;
@@ -63,7 +63,7 @@ impl Shot {
 #[cfg(test)]
 mod tests {
     use glam::UVec2;
-    use haze::frame::Particle;
+    use haze_core::frame::Particle;
 
     use super::*;
 
@@ -91,7 +91,7 @@ mod tests {
         let mut shot = Shot::load("column", UVec2::new(64, 48)).unwrap();
         let system = &mut shot.preset.systems[0];
         let emitter = &mut system.emitter;
-        *emitter = haze::emitter::Emitter::default();
+        *emitter = haze_core::emitter::Emitter::default();
         (emitter.rate, emitter.lifetime, emitter.lifetime_spread, emitter.duration) = (1.0, 9.0, 0.0, 1.0);
         (emitter.velocity, emitter.velocity_spread) = (velocity, 0.0);
         (emitter.wind, emitter.buoyancy, emitter.turbulence, emitter.drag) = (Vec3::ZERO, 0.0, 0.0, 0.0);

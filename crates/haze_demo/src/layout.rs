@@ -3,7 +3,7 @@
 use glam::{Vec3, vec3};
 
 use super::boxes::{SceneBox, Surface};
-use haze::preset::{Environment, SceneName};
+use haze_preset::{Environment, SceneName};
 
 pub(crate) fn boxes(environment: &Environment) -> Vec<SceneBox> {
     match environment.scene {

@@ -6,10 +6,10 @@ use super::boxes::LIGHT_GAP;
 use super::camera_rays::CameraRays;
 use super::scene::Scene;
 use super::shading::Lit;
-use haze::formula::depth::DepthConvention;
-use haze::formula::lighting::sample_light;
-use haze::frame::View;
 use haze_author::backdrop::{RayHit, SceneMesh};
+use haze_core::formula::depth::DepthConvention;
+use haze_core::formula::lighting::sample_light;
+use haze_core::frame::View;
 
 /// Distance beyond everything, metres. `MESH_SUN_DISTANCE` in scene_mesh.wgsl.
 const SUN_DISTANCE: f32 = 1.0e6;

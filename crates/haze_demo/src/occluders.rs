@@ -8,8 +8,8 @@ use glam::{IVec2, UVec2, UVec3, Vec3};
 use super::boxes::{
     AMBIENT_REACH, MAX_BOXES, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
 };
-use haze::assets::image::Image;
-use haze::formula::uniforms::LightUniform;
+use haze_core::assets::image::Image;
+use haze_core::formula::uniforms::LightUniform;
 
 /// Number of cells along x, y and z. `OCCLUDER_CELLS` in scene.wgsl.
 pub(crate) const CELLS: UVec3 = UVec3::new(40, 8, 40);
@@ -141,9 +141,9 @@ fn can_occlude_sky(b: &SceneBox, centre: Vec3, half: Vec3) -> bool {
 mod tests {
     use super::*;
     use crate::scene::Scene;
-    use haze::assets::noise::{pcg3d, unit};
-    use haze::preset::Preset;
     use haze_author::backdrop::Backdrop;
+    use haze_core::assets::noise::{pcg3d, unit};
+    use haze_preset::Preset;
 
     #[test]
     fn blocks_leave_out_no_occluder_of_their_cells() {

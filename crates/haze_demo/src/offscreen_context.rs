@@ -4,11 +4,10 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::scene_pipeline::LINEAR_FORMAT;
 use super::scene_renderer::SceneRenderer;
-use haze::assets::material_assets::MaterialAssets;
-use haze::error::Error;
-use haze::frame::Material;
 use haze::shader::Sources;
-use haze::{Context, PathModel, Timing, read_only_depth_is_supported};
+use haze::{Context, Material, PathModel, Timing, read_only_depth_is_supported};
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
 
 /// Pipelines and materials that all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a device
 /// share. A clone shares them too.

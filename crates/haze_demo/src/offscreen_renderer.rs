@@ -15,15 +15,17 @@ use super::shot::{ParticleSource, Shot};
 pub use super::texture_readback::PendingImage;
 use super::uploaded_backdrop::UploadedBackdrop;
 use crate::headless::Headless;
-use haze::assets::image::Image;
-use haze::assets::material_assets::MaterialAssets;
-use haze::error::Error;
-use haze::formula::shadow::LIGHTS_PER_BLOCK;
-use haze::frame::{FrameInput, Light, ParticleSystem, Particles, SceneDepth, ShadowMap, View};
-use haze::preset::Environment;
-use haze::settings::DebugView;
-use haze::{Descriptor, LightingChoice, MemoryUse, PathChoice, Renderer, ScaleChoice, SceneDepthKind, Timing, WarmUp};
+use haze::{
+    Descriptor, FrameInput, Light, LightingChoice, MemoryUse, ParticleSystem, Particles, PathChoice, Renderer,
+    ScaleChoice, SceneDepth, SceneDepthKind, ShadowMap, Timing, View, WarmUp,
+};
 use haze_author::backdrop::Backdrop;
+use haze_core::assets::image::Image;
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
+use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
+use haze_core::settings::DebugView;
+use haze_preset::Environment;
 
 /// Off-screen renderer; see the module's documentation.
 #[derive(Debug)]

@@ -5,8 +5,8 @@
 //! divided.
 
 use glam::{Vec2, Vec3, Vec4};
-use haze::assets::image::Image;
-use haze::frame::{Particle, View};
+use haze_core::assets::image::Image;
+use haze_core::frame::{Particle, View};
 
 /// Number that a particle has in a view.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,17 +6,17 @@ use std::path::Path;
 
 use glam::camera::rh::proj::directx::orthographic;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles as _, vec3};
-use haze::image::Image;
-use haze::noise::{pcg3d, unit};
-use haze::preset::MaterialNames;
-use haze::ramp::Ramp;
-use haze::settings::{Backlight, DebugView, Lighting, Settings, Technique};
-use haze::sprite::Sprite;
 use haze::{Error, Light, LightKind, MaterialAssets, Particle, View};
 use haze_author::path_trace::{DensityVolume, Medium, PathTrace};
 use haze_author::ramp::response::{Response, ShadedLight};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::six_way_layout;
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::{pcg3d, unit};
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::Sprite;
+use haze_core::settings::{Backlight, DebugView, Lighting, Settings, Technique};
+use haze_preset::MaterialNames;
 use haze_reference::{FrameInput, ParticleSystem, PreparedFrame};
 
 /// Number of lights in the ring around a cloud.

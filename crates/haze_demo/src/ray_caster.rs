@@ -10,9 +10,9 @@ use super::mesh_caster::MeshCaster;
 use super::occluders::{BoxMask, indices};
 use super::scene::{Scene, coefficients};
 use super::shading::{Lit, albedo};
-use haze::assets::image::Image;
-use haze::formula::depth::{DepthConvention, SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
-use haze::frame::View;
+use haze_core::assets::image::Image;
+use haze_core::formula::depth::{DepthConvention, SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
+use haze_core::frame::View;
 
 /// Renders depth 0..1 at pixel centres.
 pub(crate) fn render_depth(scene: &Scene, view: &View) -> Image<f32> {

@@ -14,11 +14,11 @@ use super::scene::{Scene, SceneUniform};
 use super::scene_pipeline::{COLOR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, ScenePipeline, default_view, texture};
 use super::shadow_views::{ShadowView, casters};
 use super::uploaded_backdrop::UploadedBackdrop;
-use haze::formula::depth::SKY_VIEW_DEPTH;
-use haze::formula::uniforms::LightUniform;
-use haze::frame::{MAX_LIGHTS, View};
 use haze::shader;
 use haze_author::backdrop::Backdrop;
+use haze_core::formula::depth::SKY_VIEW_DEPTH;
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::frame::{MAX_LIGHTS, View};
 use wgpu::util::DeviceExt as _;
 
 /// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a

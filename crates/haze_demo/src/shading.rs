@@ -7,10 +7,10 @@ use super::boxes::{
 };
 use super::occluders::{BoxMask, indices};
 use super::scene::Scene;
-use haze::assets::noise::{pcg3d, unit};
-use haze::formula::lighting::sample_light;
-use haze::formula::saturate;
-use haze::formula::uniforms::LightUniform;
+use haze_core::assets::noise::{pcg3d, unit};
+use haze_core::formula::lighting::sample_light;
+use haze_core::formula::saturate;
+use haze_core::formula::uniforms::LightUniform;
 
 fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     let t = saturate((x - low) / (high - low));

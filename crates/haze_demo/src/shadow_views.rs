@@ -7,8 +7,8 @@ use glam::{Mat4, UVec2, Vec3, vec3};
 
 use super::boxes::{SceneBox, Surface, box_interval};
 use super::scene::Scene;
-use haze::assets::image::Image;
-use haze::frame::{Light, LightKind, ShadowProjection};
+use haze_core::assets::image::Image;
+use haze_core::frame::{Light, LightKind, ShadowProjection};
 
 /// Lights that get a map, from the first on.
 const MAX_MAPS: usize = 8;

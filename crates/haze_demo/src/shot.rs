@@ -8,14 +8,14 @@ use glam::{UVec2, Vec3};
 use super::particle_scalar::ShownScalar;
 use super::scene::Scene;
 use super::shadow_views::{ShadowView, shadow_views};
-use haze::assets::material_assets::MaterialAssets;
-use haze::error::Error;
-use haze::fire;
-use haze::frame::{EmitterSnapshot, Light, MAX_LIGHTS, Particle};
-use haze::preset::{AssetFolders, Preset, PresetSystem};
-use haze::settings::{DebugView, Settings};
 use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::{self, ParticleFrames, load_particle_files};
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
+use haze_core::fire;
+use haze_core::frame::{EmitterSnapshot, Light, MAX_LIGHTS, Particle};
+use haze_core::settings::{DebugView, Settings};
+use haze_preset::{AssetFolders, Preset, PresetSystem};
 
 /// An emitter with more births than this is evaluated on the GPU.
 const MAX_CPU_BIRTHS: u32 = 1 << 14;

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::{UVec2, Vec4};
 use half::f16;
 
-use haze::assets::image::Image;
+use haze_core::assets::image::Image;
 
 /// Pending readback of several textures through one buffer.
 #[derive(Clone, Debug)]

@@ -5,9 +5,9 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use image::{RgbImage, RgbaImage};
 
 use super::shot::Shot;
-use haze::assets::image::Image;
-use haze::formula::tonemap::{dither, tonemapped};
 use haze::shader;
+use haze_core::assets::image::Image;
+use haze_core::formula::tonemap::{dither, tonemapped};
 
 /// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colors, unchanged values for
 /// data.

@@ -8,8 +8,8 @@ use wgpu::util::DeviceExt as _;
 
 use super::mesh_renderer::{MeshPipelines, UploadedMesh};
 use super::scene_pipeline::default_view;
-use haze::assets::image::Image;
 use haze_author::backdrop::Backdrop;
+use haze_core::assets::image::Image;
 
 /// A backdrop, and what was uploaded of it.
 #[derive(Debug)]

@@ -3,10 +3,12 @@
 use glam::{IVec2, Vec2, Vec3, Vec4};
 
 use super::visible_system::VisibleSystem;
-use haze::assets::image::Image;
-use haze::formula::upsample::{GuidedFit, add_texel, bilinear_suffices, fitted_value, guided_weight, upsample_weights};
-use haze::settings::Upsample;
-use haze::view_setup::AttachmentRole;
+use haze_core::assets::image::Image;
+use haze_core::formula::upsample::{
+    GuidedFit, add_texel, bilinear_suffices, fitted_value, guided_weight, upsample_weights,
+};
+use haze_core::settings::Upsample;
+use haze_core::view_setup::AttachmentRole;
 
 /// Textures of the accumulation target, indexed by role; `None` for those that the system does not have.
 pub type AccumulatedTextures = [Option<Image<Vec4>>; AttachmentRole::ALL.len()];

@@ -3,7 +3,7 @@
 use glam::{Vec4, Vec4Swizzles};
 use half::f16;
 
-use haze::settings::{AccumulationFormat, BlendMode};
+use haze_core::settings::{AccumulationFormat, BlendMode};
 
 /// ONE, ONE_MINUS_SRC_ALPHA: rgb' = e·a + rgb·(1 − a) with e·a premultiplied, A' = a + A·(1 − a). (OTEE "AddSmooth")
 pub fn premultiplied_over(source: Vec4, target: Vec4) -> Vec4 {

@@ -2,23 +2,23 @@
 
 use glam::{Mat4, Vec3};
 
-use haze::assets::image::Image;
-use haze::assets::material_assets::MaterialAssets;
-use haze::frame::{Bounds, Light, Particle, ShadowProjection, View};
-use haze::settings::{DebugView, Settings};
+use haze_core::assets::image::Image;
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::frame::{Bounds, Light, Particle, ShadowProjection, View};
+use haze_core::settings::{DebugView, Settings};
 
-/// One frame, like [`haze::FrameInput`], in memory.
+/// One frame, like `haze::FrameInput`, in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameInput<'a> {
     /// The camera.
     pub view: View,
     /// Values of a depth buffer written with the view's projection, 0..1.
     pub scene_depth: &'a Image<f32>,
-    /// At most [`MAX_LIGHTS`](haze::frame::MAX_LIGHTS) lights.
+    /// At most [`MAX_LIGHTS`](haze_core::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
     /// Shadow maps of lights, at most one per light.
     pub shadow_maps: &'a [ShadowMap<'a>],
-    /// As [`haze::FrameInput::scene_ambient`], for [`PreparedFrame::shade_scene`](super::PreparedFrame::shade_scene).
+    /// As `haze::FrameInput::scene_ambient`, for [`PreparedFrame::shade_scene`](super::PreparedFrame::shade_scene).
     pub scene_ambient: Option<Vec3>,
     /// Particle systems, drawn far to near.
     pub systems: &'a [ParticleSystem<'a>],
@@ -51,7 +51,7 @@ impl<'a> FrameInput<'a> {
     }
 }
 
-/// Shadow map of a light, like [`haze::ShadowMap`], in memory.
+/// Shadow map of a light, like `haze::ShadowMap`, in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowMap<'a> {
     /// Depth of each layer.
@@ -60,7 +60,7 @@ pub struct ShadowMap<'a> {
     pub projection: ShadowProjection<'a>,
 }
 
-/// One particle system, like [`haze::ParticleSystem`], in memory.
+/// One particle system, like `haze::ParticleSystem`, in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleSystem<'a> {
     /// The sprites, in any order.

@@ -18,10 +18,10 @@ use std::sync::Arc;
 
 use glam::{UVec2, Vec4};
 
-use haze::assets::image::Image;
-use haze::error::FieldError;
-use haze::settings::DebugView;
-use haze::view_setup::ViewGeometry;
+use haze_core::assets::image::Image;
+use haze_core::error::FieldError;
+use haze_core::settings::DebugView;
+use haze_core::view_setup::ViewGeometry;
 
 pub use accumulated::AccumulatedTextures;
 use accumulated::{AccumulatedTarget, LitTarget};
@@ -63,7 +63,7 @@ impl<'a> PreparedFrame<'a> {
     }
 
     /// Darkens a lit picture of the scene by the shadow of the smoke, as
-    /// [`Renderer::render_scene_shadow`](haze::Renderer::render_scene_shadow) does.
+    /// `Renderer::render_scene_shadow` does.
     pub fn shade_scene(&self, picture: &mut Image<Vec4>) {
         if let (Some(screen), Some(shadow)) = (&self.screen_shadow, &self.scene_shadow) {
             screen.shade(shadow, picture);

@@ -3,8 +3,10 @@
 use glam::{IVec2, Mat4, Vec2, Vec4};
 
 use super::accumulated::AccumulatedTarget;
-use haze::formula::upsample::{carried_value, four_texels_share, guided_weight, surface_weights, upsample_weights};
-use haze::settings::Upsample;
+use haze_core::formula::upsample::{
+    carried_value, four_texels_share, guided_weight, surface_weights, upsample_weights,
+};
+use haze_core::settings::Upsample;
 
 impl AccumulatedTarget<'_> {
     /// Samples the lit smoke at a pixel of the view.

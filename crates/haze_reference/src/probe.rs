@@ -9,20 +9,20 @@ use super::blend_unit::premultiplied_over;
 use super::input::FrameInput;
 use super::shade::Shade;
 use super::visible_system::{VisibleSystem, place_systems};
-use haze::assets::image::Image;
-use haze::error::FieldError;
-use haze::formula::fire::fire_from_moments;
-use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
-use haze::formula::six_way::SixWay;
-use haze::formula::uniforms::LightUniform;
-use haze::settings::{DebugView, SoftScatterMode};
-use haze::view_setup::{ViewGeometry, light_uniforms};
+use haze_core::assets::image::Image;
+use haze_core::error::FieldError;
+use haze_core::formula::fire::fire_from_moments;
+use haze_core::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
+use haze_core::formula::six_way::SixWay;
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::settings::{DebugView, SoftScatterMode};
+use haze_core::view_setup::{ViewGeometry, light_uniforms};
 
-/// Textures that a system was accumulated into, as read back from [`TargetViews`](haze::TargetViews), cropped to the
+/// Textures that a system was accumulated into, as read back from `TargetViews`, cropped to the
 /// part in use.
 #[derive(Clone, Debug)]
 pub struct ProbeTextures {
-    /// Textures of the accumulation target, indexed by [`AttachmentRole`](haze::AttachmentRole); `None` for
+    /// Textures of the accumulation target, indexed by [`AttachmentRole`](haze_core::view_setup::AttachmentRole); `None` for
     /// those that the system does not have.
     pub accumulation: AccumulatedTextures,
     /// Linear view depth, metres; `None` if sprites are compared with the scene's own.
@@ -182,7 +182,7 @@ impl<'a> ProbedSystem<'a> {
         }
         let is_lit = visible.lights_per_texel(DebugView::Final);
         let accumulated = AccumulatedTarget { visible, baked, reduced_depth, textures, is_lit, lit: None };
-        let view = ViewGeometry::new(&haze::View { origin: UVec2::ZERO, ..frame.view })?;
+        let view = ViewGeometry::new(&haze_core::frame::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {
             light_uniforms(&view, std::slice::from_ref(light), frame.exposure, &visible.bounds, None, &mut reached);

@@ -6,14 +6,14 @@ use glam::{Vec2, Vec3};
 
 use super::input::FrameInput;
 use super::optical_depths::OpticalDepths;
-use haze::assets::ramp::Ramp;
-use haze::formula::ramp::sample_ramp_2d;
-use haze::formula::saturate;
-use haze::formula::scene_shadow::{grid_entry, transmitted_light};
-use haze::formula::shadow::LIGHTS_PER_BLOCK;
-use haze::formula::uniforms::SceneShadowUniform;
-use haze::settings::RampFilter;
-use haze::view_setup::SmokeShadow;
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::ramp::sample_ramp_2d;
+use haze_core::formula::saturate;
+use haze_core::formula::scene_shadow::{grid_entry, transmitted_light};
+use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
+use haze_core::formula::uniforms::SceneShadowUniform;
+use haze_core::settings::RampFilter;
+use haze_core::view_setup::SmokeShadow;
 
 /// Shadow of a frame's smoke on the scene.
 pub struct SceneShadow {

@@ -1,7 +1,7 @@
 //! Smoke and scene between a point of the smoke and the light that falls on it. WGSL: `shaders/lib/diffuse.wgsl`.
 
 use glam::{Vec2, Vec3};
-use haze::formula::shadow::LIGHT_BLOCKS;
+use haze_core::formula::shadow::LIGHT_BLOCKS;
 
 /// Smoke and scene between a point of the smoke and the light that falls on it.
 #[derive(Clone, Copy, Debug)]

@@ -3,28 +3,30 @@
 use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::visible_system::VisibleSystem;
-use haze::formula::depth_moments::depth_moments;
-use haze::formula::fire::heat_at;
-use haze::formula::grain::{eroded, sample_grain, tilted_normal};
-use haze::formula::lighting::painted_share;
-use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
-use haze::formula::normal::rotate_normal;
-use haze::formula::order::{optical_depth_in_front, order_weight};
-use haze::formula::shadow::{foreign_optical_depths, own_optical_depth};
-use haze::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel, tilted_six_way};
-use haze::formula::soft_fade::soft_fade;
-use haze::formula::sprite::{
+use haze_core::formula::depth_moments::depth_moments;
+use haze_core::formula::fire::heat_at;
+use haze_core::formula::grain::{eroded, sample_grain, tilted_normal};
+use haze_core::formula::lighting::painted_share;
+use haze_core::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
+use haze_core::formula::normal::rotate_normal;
+use haze_core::formula::order::{optical_depth_in_front, order_weight};
+use haze_core::formula::shadow::{foreign_optical_depths, own_optical_depth};
+use haze_core::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel, tilted_six_way};
+use haze_core::formula::soft_fade::soft_fade;
+use haze_core::formula::sprite::{
     FlipbookFrames, checkerboard, offset_frames, sample_detail, sample_flipbook, sample_sprite, sprite_uv,
     trimmed_corner, unrotate,
 };
-use haze::formula::stretch::{stretched_normal, unstretched};
-use haze::formula::technique::{
+use haze_core::formula::stretch::{stretched_normal, unstretched};
+use haze_core::formula::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, march_boundary, ray_sphere,
     spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
 };
-use haze::frame::Particle;
-use haze::settings::{BlendOrder, Technique, Volumetric};
-use haze::view_setup::{ProjectedSprite, SpriteProjector, TexelGrid, density_radius, erosion_of, sprite_optical_depth};
+use haze_core::frame::Particle;
+use haze_core::settings::{BlendOrder, Technique, Volumetric};
+use haze_core::view_setup::{
+    ProjectedSprite, SpriteProjector, TexelGrid, density_radius, erosion_of, sprite_optical_depth,
+};
 
 /// Sprite in view space.
 pub struct SpriteSetup {
@@ -36,7 +38,7 @@ pub struct SpriteSetup {
     pub radius: f32,
     /// Cosine and sine of the rotation.
     pub rotation: Vec2,
-    /// As in [`sprite_stretch`](haze::formula::stretch::sprite_stretch).
+    /// As in [`sprite_stretch`](haze_core::formula::stretch::sprite_stretch).
     pub stretch: Vec2,
     /// Amount after near fade and opacity.
     pub amount: f32,

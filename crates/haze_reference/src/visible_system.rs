@@ -6,19 +6,19 @@ use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::input::{FrameInput, ParticleSystem};
 use super::optical_depths::OpticalDepths;
-use haze::assets::image::Image;
-use haze::assets::material_assets::{MaterialAssets, MaterialInfo};
-use haze::error::FieldError;
-use haze::formula::depth::view_depth_from_ndc_depth;
-use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
-use haze::frame::validate_input::{
+use haze_core::assets::image::Image;
+use haze_core::assets::material_assets::{MaterialAssets, MaterialInfo};
+use haze_core::error::FieldError;
+use haze_core::formula::depth::view_depth_from_ndc_depth;
+use haze_core::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
+use haze_core::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
+use haze_core::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
     validate_world_from_particles,
 };
-use haze::frame::{Bounds, Particle, View};
-use haze::settings::{BlendOrder, DebugView};
-use haze::view_setup::{
+use haze_core::frame::{Bounds, Particle, View};
+use haze_core::settings::{BlendOrder, DebugView};
+use haze_core::view_setup::{
     ParticleMeasures, ParticleSpace, ResolvedSettings, ScaleChoice, SmokeShadow, SpriteTrim, Support, SystemBoxes,
     SystemInput, SystemSetup, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::path_model::{PathModel, PathModelSource};
 use super::workload::PathWorkload;
-use crate::settings::RenderPath;
+use haze_core::settings::RenderPath;
 
 /// Frames for which the other path must look better before a switch: 0.5 s at 60 frames per second.
 const SWITCH_DELAY_FRAMES: u32 = 30;
@@ -13,7 +13,6 @@ const SWITCH_RATIO: f32 = 0.95;
 
 /// RenderPath that `auto` chose for a system, with the reason. `Display` formats it as one sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub struct PathChoice {
     /// [`RenderPath::Raster`] or [`RenderPath::Tiled`].
     pub path: RenderPath,
@@ -23,7 +22,6 @@ pub struct PathChoice {
 
 /// Reason for a [`PathChoice`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum PathReason {
     /// The path is expected to take less time than the other, or not enough more to justify a switch.
     Expected {
@@ -116,7 +114,7 @@ mod tests {
     use glam::UVec2;
 
     use super::*;
-    use crate::settings::Technique;
+    use haze_core::settings::Technique;
 
     fn workload(layers: f64) -> PathWorkload {
         PathWorkload {

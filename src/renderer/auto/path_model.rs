@@ -3,8 +3,8 @@
 use glam::UVec2;
 
 use super::workload::PathWorkload;
-use crate::error::FieldError;
-use crate::settings::Technique;
+use haze_core::error::FieldError;
+use haze_core::settings::Technique;
 
 /// Side of the squares that [`PathCosts::entry`] counts, texels.
 const BIN: f64 = 32.0;
@@ -75,7 +75,6 @@ pub struct PathCosts {
 
 /// Origin of the figures of a [`PathModel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum PathModelSource {
     /// Defaults, measured on a GPU.
     Gpu,

@@ -2,9 +2,9 @@
 
 use glam::UVec2;
 
-use crate::frame::Particle;
-use crate::settings::{BlendOrder, Layers, Settings, Technique};
-use crate::view_setup::{AttachmentSet, SpriteProjector, TexelGrid, optical_depth};
+use haze_core::frame::Particle;
+use haze_core::settings::{BlendOrder, Layers, Settings, Technique};
+use haze_core::view_setup::{AttachmentSet, SpriteProjector, TexelGrid, optical_depth};
 
 /// Maximum number of sprites sampled; the estimate takes about ten microseconds.
 const SAMPLE: usize = 256;
@@ -14,7 +14,6 @@ const ASSUMED_DEPTH: f64 = 0.05;
 
 /// Accumulation workload of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub struct PathWorkload {
     /// Technique of the sprites.
     pub technique: Technique,

@@ -2,7 +2,7 @@
 
 use super::error_scopes::with_error_scopes;
 use super::pipeline::read_only_depth;
-use crate::error::FieldError;
+use haze_core::error::FieldError;
 
 /// Maximum number of color attachments of a pass.
 pub(crate) const MAX_ATTACHMENTS: usize = 8;

@@ -54,7 +54,6 @@ struct Shared {
 
 /// Extent of what a [`Timing`] measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(not(feature = "exhaustive"), non_exhaustive)]
 pub enum TimingDetail {
     /// Every pass, by its name. Measuring takes time itself: on an NVIDIA H200, 0.01 to 0.07 ms of a frame.
     #[default]

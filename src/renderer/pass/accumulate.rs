@@ -23,8 +23,8 @@ use crate::renderer::gpu::record::{color_attachment, set_viewport_and_scissor, t
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::{attachment_constants, attachments};
-use crate::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
-use crate::view_setup::AttachmentSet;
+use haze_core::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
+use haze_core::view_setup::AttachmentSet;
 
 /// Key of an accumulation pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -6,12 +6,12 @@
 use glam::UVec2;
 
 use super::groups::Groups;
-use crate::formula::uniforms::SplatUniform;
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
+use haze_core::formula::uniforms::SplatUniform;
 
 /// Key of the only pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -8,14 +8,14 @@
 use std::sync::Arc;
 
 use super::groups::Groups;
-use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, color_target, enum_constant};
 use crate::renderer::gpu::record::color_attachment;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
-use crate::settings::{Backlight, DiffuseMode, RampFilter};
+use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::settings::{Backlight, DiffuseMode, RampFilter};
 
 /// Key of a baking pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

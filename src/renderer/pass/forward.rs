@@ -14,7 +14,7 @@ use crate::renderer::gpu::pipeline::{
 };
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use crate::settings::{Backlight, BlendMode, SoftScatterMode};
+use haze_core::settings::{Backlight, BlendMode, SoftScatterMode};
 
 /// Key of a forward pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -11,8 +11,8 @@ use super::texel_pass::TexelKey;
 use crate::renderer::gpu::binding::{LOADED, texture};
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use crate::renderer::targets::{Extent, SystemTextures, Target, attachment_constants};
-use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
-use crate::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
+use haze_core::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
+use haze_core::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 /// Light times amount in rgb, amount in a. Light is HDR, whatever the format of the normals.
 pub(crate) const LIT: Target = Target {

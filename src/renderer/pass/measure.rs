@@ -6,13 +6,12 @@
 use std::mem::offset_of;
 
 use super::groups::Groups;
-use crate::formula::uniforms::MeasureUniform;
-use crate::formula::uniforms::SystemUniform;
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
+use haze_core::formula::uniforms::{MeasureUniform, SystemUniform};
 
 /// Invocations of a workgroup, and the largest number of workgroups: WORKGROUP in `shaders/measure.wgsl`.
 pub(crate) const WORKGROUP: u32 = 256;

@@ -5,11 +5,11 @@
 //! Blend: none.
 
 use super::volume_slices::volume_slice;
-use crate::formula::uniforms::ShadowMarchUniform;
 use crate::renderer::gpu::binding::{texture, uniform};
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant};
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
+use haze_core::formula::uniforms::ShadowMarchUniform;
 
 /// Ends of the marches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -16,7 +16,7 @@ use crate::renderer::gpu::pipeline::{
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{InputGroups, SystemTextures};
-use crate::settings::{DebugView, RampFilter, Upsample};
+use haze_core::settings::{DebugView, RampFilter, Upsample};
 
 /// Key of a specular scatter pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

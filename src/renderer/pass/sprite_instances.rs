@@ -1,9 +1,10 @@
 //! Sprites, shared by accumulate and forward, and the variants of `shaders/lib/sprite_vertex.wgsl` and
 //! `sprite_fragment.wgsl`.
 
-use crate::frame::{Particle, ParticleBuffer};
+use crate::frame::ParticleBuffer;
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
-use crate::settings::{FadeCurve, RampFilter, Settings, SpriteAnimation, Technique, Volumetric};
+use haze_core::frame::Particle;
+use haze_core::settings::{FadeCurve, RampFilter, Settings, SpriteAnimation, Technique, Volumetric};
 
 /// Layout of the instance buffer: one [`Particle`] per sprite.
 pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {

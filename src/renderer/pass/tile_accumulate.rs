@@ -9,14 +9,14 @@ use glam::UVec2;
 use super::groups::Groups;
 use super::sprite_instances::SpriteKey;
 use super::tile_refine;
-use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::binding::{LOADED, READ_BUFFER, uniform, written_texture};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant, enum_constant};
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, attachment_constants, tiled_formats};
-use crate::settings::{AccumulationFormat, NormalEncoding};
-use crate::view_setup::{AttachmentSet, MAX_TARGET_ATTACHMENTS};
+use haze_core::formula::uniforms::TilesUniform;
+use haze_core::settings::{AccumulationFormat, NormalEncoding};
+use haze_core::view_setup::{AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 /// Texels per workgroup of the entry points `cooperative` and `split`, of `split_finely`, and of `per_invocation`, in
 /// `shaders/tile_accumulate.wgsl`.

@@ -15,7 +15,7 @@ use crate::renderer::gpu::pipeline::{
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{InputGroups, SystemTextures};
-use crate::settings::{CoverageMode, DebugView, Upsample};
+use haze_core::settings::{CoverageMode, DebugView, Upsample};
 
 /// Vertices of the box: twelve triangles.
 const BOX_VERTICES: u32 = 36;

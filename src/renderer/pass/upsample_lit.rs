@@ -13,7 +13,7 @@ use super::texel_pass::TexelKey;
 use crate::renderer::gpu::binding::{FILTERED, LOADED};
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use crate::renderer::targets::{AccumulationTarget, Extent, SystemTextures, Target};
-use crate::settings::{CoverageMode, RampFilter, Upsample};
+use haze_core::settings::{CoverageMode, RampFilter, Upsample};
 
 /// Lit smoke at full resolution.
 pub(crate) const PIXELS: Target = Target { label: "haze lit pixels", extent: Extent::Pixels, ..LIT };

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::renderer::pass::upsample_lit::PIXELS;
-use crate::settings::{DiffuseMode, FadeCurve, RenderPath};
+use haze_core::settings::{DiffuseMode, FadeCurve, RenderPath};
 use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
 
 fn inputs() -> PipelineInputs<'static> {

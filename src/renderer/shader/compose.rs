@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::sources::{File, IMPORT_COLUMN, Sources, import, is_inside};
-use crate::error::{Error, one_line};
+use haze_core::error::{Error, one_line};
 
 /// A shader text without imports.
 #[derive(Debug, Default)]

@@ -15,7 +15,7 @@ pub use sources::Sources;
 
 pub(crate) use shader_module::{checked_shader, embedded_shader};
 
-use crate::error::Error;
+use haze_core::error::Error;
 
 /// Replaces every `#import "lib/X.wgsl"` line of `text` by that embedded file, and the imports in it, each file once.
 /// Hosts can use it to call haze's functions from their own shaders.

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use super::embedded::SOURCES;
 use super::naga_messages::find_unclosed_bracket;
-use crate::assets::{bounded_read, builtin};
-use crate::error::{Error, one_line};
+use haze_core::assets::bounded_read;
+use haze_core::error::{Error, builtin_path, one_line};
 
 /// Maximum size of a file, bytes. The longest of haze's own has about 10,000.
 const MAX_BYTES: u64 = 1 << 20;
@@ -118,7 +118,7 @@ impl Sources {
 
 impl File {
     pub fn embedded(name: &'static str, text: impl Into<Cow<'static, str>>) -> Self {
-        Self { name: name.into(), path: builtin::path(name).into(), text: text.into(), is_embedded: true }
+        Self { name: name.into(), path: builtin_path(name).into(), text: text.into(), is_embedded: true }
     }
 
     /// Reads a file of the folder; `None` if it does not exist.

@@ -2,8 +2,8 @@
 
 use std::mem::offset_of;
 
-use crate::formula::uniforms::SystemUniform;
 use crate::frame::{AliveCount, ParticleBuffer, Particles};
+use haze_core::formula::uniforms::SystemUniform;
 
 /// Copy of one number from a host's buffer.
 #[derive(Debug)]

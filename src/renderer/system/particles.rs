@@ -2,7 +2,7 @@
 
 use super::instances::{Instances, ParticleUse, SortedBy};
 use super::passes::ParticlePass;
-use crate::frame::{Particle, ParticleSystem, Particles, SpriteExtent};
+use crate::frame::{ParticleSystem, Particles};
 use crate::renderer::context::Shared;
 use crate::renderer::frame_context::FrameContext;
 use crate::renderer::gpu::idle_counter::IdleCounter;
@@ -13,8 +13,9 @@ use crate::renderer::pass::measure::Measure;
 use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::support::{exceeds_tiled_limits, is_readable_by_compute};
 use crate::renderer::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
-use crate::settings::{BlendOrder, RenderPath, Settings};
-use crate::view_setup::{ParticleMeasures, ParticleSpace, SystemBoxes, ViewGeometry};
+use haze_core::frame::{Particle, SpriteExtent};
+use haze_core::settings::{BlendOrder, RenderPath, Settings};
+use haze_core::view_setup::{ParticleMeasures, ParticleSpace, SystemBoxes, ViewGeometry};
 
 /// Number of particles from which the GPU sorts for a path that draws: the CPU needs 0.2 ms to sort them.
 const MIN_GPU_SORTED: u32 = 32_768;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::formula::smoke_tiles::{tile_counts, tile_side};
 use crate::renderer::auto::PathWorkload;
 use crate::renderer::frame_bindings::DepthBindings;
 use crate::renderer::gpu::Gpu;
@@ -23,8 +22,9 @@ use crate::renderer::pipelines::{DrawnPipelines, Pipelines};
 use crate::renderer::plan::{DeferredPlan, ForwardPlan};
 use crate::renderer::targets::{InputGroups, SystemTextures};
 use crate::renderer::tiled::{TiledInputs, TiledPasses, TiledSystem};
-use crate::settings::DebugView;
-use crate::view_setup::SystemSetup;
+use haze_core::formula::smoke_tiles::{tile_counts, tile_side};
+use haze_core::settings::DebugView;
+use haze_core::view_setup::SystemSetup;
 
 /// Pass that produces a system's particles on the GPU, if their buffer cannot be drawn as is.
 #[derive(Debug)]

@@ -6,9 +6,7 @@ use super::alive_copy::AliveCopy;
 use super::particles::SystemParticles;
 use super::passes::{AccumulatePasses, DeferredInputs, DeferredPasses, ParticlePass, PassBuilder, SystemPasses};
 use super::targets::SystemTargets;
-use crate::assets::material_assets::MaterialInfo;
-use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use crate::frame::{Bounds, Particle, ParticleSystem, Particles};
+use crate::frame::{ParticleSystem, Particles};
 use crate::renderer::auto::{PathChoice, PathChooser, PathWorkload, estimate_workload};
 use crate::renderer::context::Shared;
 use crate::renderer::counts::{FrameCounts, Overdraw};
@@ -26,8 +24,11 @@ use crate::renderer::plan::{Plan, plan};
 use crate::renderer::support::tiled_unavailable_reason;
 use crate::renderer::targets::{SystemTextures, TargetViews};
 use crate::renderer::tiled::{TiledPasses, TiledSystem};
-use crate::settings::{RenderPath, Technique};
-use crate::view_setup::{
+use haze_core::assets::material_assets::MaterialInfo;
+use haze_core::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
+use haze_core::frame::{Bounds, Particle};
+use haze_core::settings::{RenderPath, Technique};
+use haze_core::view_setup::{
     LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
     SystemSetup, TexelGrid, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };

@@ -6,8 +6,8 @@ use crate::renderer::plan::DeferredPlan;
 use crate::renderer::targets::{
     AccumulationKey, AccumulationTarget, BakedDiffuse, Extent, InputGroups, SystemTextures,
 };
-use crate::settings::DepthSource;
-use crate::view_setup::{AttachmentSet, ResolvedSettings};
+use haze_core::settings::DepthSource;
+use haze_core::view_setup::{AttachmentSet, ResolvedSettings};
 
 /// Textures of one system, and their bind groups, which are recreated with the textures.
 #[derive(Debug, Default)]

@@ -9,8 +9,8 @@ use super::attachments::{Attachment, attachments};
 use super::target::{Extent, PlannedTargets, Target};
 use super::texture_allocator::TextureAllocator;
 use crate::renderer::gpu::idle_counter::IdleCounter;
-use crate::settings::AccumulationFormat;
-use crate::view_setup::AttachmentSet;
+use haze_core::settings::AccumulationFormat;
+use haze_core::view_setup::AttachmentSet;
 
 /// Properties that decide, in addition to the size, whether a system's textures can be reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! Textures of the accumulation target by role: formats, blend states and shader constants. Every texture is cleared to
 //! zero.
 
-use crate::error::FieldError;
 use crate::renderer::gpu::pipeline::{ADD_ALL, Constant, PREMULTIPLIED_OVER, WEIGHTED_SUM};
-use crate::settings::{AccumulationFormat, BlendOrder, Settings};
-use crate::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
+use haze_core::error::FieldError;
+use haze_core::settings::{AccumulationFormat, BlendOrder, Settings};
+use haze_core::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 /// Properties of a texture of the accumulation target.
 #[derive(Clone, Copy, Debug)]

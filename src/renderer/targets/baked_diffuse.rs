@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::texture_allocator::TextureAllocator;
-use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::renderer::gpu::capabilities::array_layers;
-use crate::settings::DiffuseMode;
+use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::settings::DiffuseMode;
 
 pub(crate) const BAKED_DIFFUSE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 

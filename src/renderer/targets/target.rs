@@ -2,8 +2,8 @@
 
 use glam::UVec2;
 
-use crate::formula::smoke_tiles::CELL_SIDE;
-use crate::frame::MAX_LIGHTS;
+use haze_core::formula::smoke_tiles::CELL_SIDE;
+use haze_core::frame::MAX_LIGHTS;
 
 /// A texture of a system. The pass that writes it declares it; others read it by this name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

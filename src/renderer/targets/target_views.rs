@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2};
 
-use crate::view_setup::AttachmentSet;
+use haze_core::view_setup::AttachmentSet;
 
 /// Textures of one system. All share one grid: texel (i, j) covers `scale` by `scale` pixels of the view, from `scale`
 /// · (`origin` + (i, j)). The part in use has `size` texels and starts at texel (0, 0) of the textures, which may be

@@ -3,12 +3,12 @@
 use super::storage_buffers::storage;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
-use crate::formula::uniforms::MeasureUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::measure::{Measure, MeasureKey, WORKGROUP};
 use crate::renderer::pass::sprite_instances::Sprites;
+use haze_core::formula::uniforms::MeasureUniform;
 
 /// Bytes of ExtentSums and of MeasuredExtent in `shaders/measure.wgsl`.
 const SUMS_BYTES: u64 = 32;

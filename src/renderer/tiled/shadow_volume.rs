@@ -5,7 +5,6 @@ use glam::UVec2;
 use super::storage_buffers::storage;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
-use crate::formula::uniforms::{ShadowMarchUniform, SplatUniform};
 use crate::frame::ShadowMap;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
@@ -17,7 +16,8 @@ use crate::renderer::pass::shadow_march::{ShadowMarch, ShadowMarchKey};
 use crate::renderer::pass::shadow_visibility::{ShadowVisibility, ShadowVisibilityKey};
 use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::shadow_map_bindings::ShadowMapBindings;
-use crate::view_setup::SmokeShadow;
+use haze_core::formula::uniforms::{ShadowMarchUniform, SplatUniform};
+use haze_core::view_setup::SmokeShadow;
 
 /// Bytes of a cell: two words.
 const CELL_BYTES: u64 = 8;

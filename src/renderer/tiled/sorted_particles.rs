@@ -3,8 +3,6 @@
 use super::sort_buffers::SortBuffers;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
-use crate::formula::uniforms::TilesUniform;
-use crate::frame::Particle;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
@@ -12,6 +10,8 @@ use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
 use crate::renderer::pass::sort::{BLOCK, Sort};
 use crate::renderer::pass::sprite_instances::Sprites;
+use haze_core::formula::uniforms::TilesUniform;
+use haze_core::frame::Particle;
 
 /// Buffers for the sorted particles of one system, kept between frames.
 #[derive(Debug, Default)]

@@ -3,7 +3,6 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::accumulate_variants::AccumulateVariants;
-use crate::error::Error;
 use crate::renderer::gpu::pipeline::{PipelineStore, Shader};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::density_splat::DensitySplatKey;
@@ -19,6 +18,7 @@ use crate::renderer::pass::tile_gather::TileGatherKey;
 use crate::renderer::pass::tile_project::TileProjectKey;
 use crate::renderer::pass::tile_refine::TileRefineKey;
 use crate::renderer::pipeline_variants::pipeline_set;
+use haze_core::error::Error;
 
 pipeline_set! {
     /// Compute passes, but for those over texels and for tile_accumulate.

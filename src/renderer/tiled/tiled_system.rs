@@ -9,8 +9,6 @@ use super::storage_buffers::WORD_BYTES;
 use super::tile_buffers::{Capacity, ParticleRange, TileBuffers};
 use super::tiled_passes::TiledPasses;
 use super::tiled_pipelines::{TiledKeys, TiledPipelines};
-use crate::formula::tiles::{BITS_PER_WORD, run_count};
-use crate::formula::uniforms::TilesUniform;
 use crate::renderer::auto::PathWorkload;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
@@ -23,6 +21,8 @@ use crate::renderer::pass::tile_bin::TileBin;
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::TileRefine;
+use haze_core::formula::tiles::{BITS_PER_WORD, run_count};
+use haze_core::formula::uniforms::TilesUniform;
 
 /// Minimum number of entries of all lists together.
 const MIN_ENTRIES: u32 = 1 << 16;

@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/ambient.wgsl`.
 
-use haze::formula::ambient::{hemisphere_coordinate, openness_position, six_way_hemisphere};
+use haze_core::formula::ambient::{hemisphere_coordinate, openness_position, six_way_hemisphere};
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, random, unit_vectors, v3};

@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/blending.wgsl`.
 
-use haze::formula::blending;
-use haze::settings::BlendMode;
+use haze_core::formula::blending;
+use haze_core::settings::BlendMode;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, count, v3, with_choices};

@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/color.wgsl`.
 
-use haze::formula::color;
+use haze_core::formula::color;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v3};

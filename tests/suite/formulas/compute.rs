@@ -3,11 +3,11 @@
 use std::sync::LazyLock;
 
 use glam::{UVec2, UVec3};
-use haze::noise::NoiseVolume;
-use haze::ramp::Ramp;
-use haze::sprite::Sprite;
-use haze::sprite::alpha_bounds::AlphaBounds;
 use haze::wgpu;
+use haze_core::assets::noise::NoiseVolume;
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::Sprite;
+use haze_core::assets::sprite::alpha_bounds::AlphaBounds;
 use haze_demo::headless::Headless;
 
 use super::fixture::uniform_bytes;

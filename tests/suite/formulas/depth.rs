@@ -1,8 +1,8 @@
 //! Formula tests of `shaders/lib/depth.wgsl`.
 
 use glam::{IVec2, vec4};
-use haze::formula::depth;
-use haze::settings::DepthDownsample;
+use haze_core::formula::depth;
+use haze_core::settings::DepthDownsample;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, count, random, v4, with_choices};

@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/diffuse_bake.wgsl`.
 
 use glam::vec4;
-use haze::formula::diffuse_bake;
+use haze_core::formula::diffuse_bake;
 
 use super::Formula;
 use super::inputs::{

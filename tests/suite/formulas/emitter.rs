@@ -1,11 +1,11 @@
 //! Formula tests of `shaders/lib/emitter.wgsl`.
 
 use glam::{Vec3, vec2, vec3, vec4};
-use haze::emitter::EmitterShape;
-use haze::formula::curve::{self, CurvePoints};
-use haze::formula::emitter;
-use haze::formula::uniforms::EmitterUniform;
-use haze::settings::Curve;
+use haze_core::emitter::EmitterShape;
+use haze_core::formula::curve::{self, CurvePoints};
+use haze_core::formula::emitter;
+use haze_core::formula::uniforms::EmitterUniform;
+use haze_core::settings::Curve;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v3, with_choices};

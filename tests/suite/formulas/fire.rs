@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/fire.wgsl` and `shaders/lib/emission.wgsl`.
 
-use haze::formula::fire::{fire_from_moments, heat_at};
+use haze_core::formula::fire::{fire_from_moments, heat_at};
 
 use super::Formula;
 use super::fixture::{DEFAULTS, visible_system};

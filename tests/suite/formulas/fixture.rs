@@ -4,15 +4,15 @@
 use std::sync::LazyLock;
 
 use glam::{UVec2, Vec2, Vec4, vec3};
-use haze::assets::material_assets::MaterialInfo;
-use haze::assets::ramp_steps::RampSteps;
-use haze::formula::uniforms::LightUniform;
-use haze::frame::MAX_LIGHTS;
-use haze::image::Image;
-use haze::settings::Settings;
-use haze::sprite::{Sprite, SpriteLayout};
-use haze::view_setup::{AttachmentRole, ResolvedSettings, SpriteTrim, Support};
 use haze::{Light, LightKind, MaterialAssets};
+use haze_core::assets::image::Image;
+use haze_core::assets::material_assets::MaterialInfo;
+use haze_core::assets::ramp_steps::RampSteps;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::frame::MAX_LIGHTS;
+use haze_core::settings::Settings;
+use haze_core::view_setup::{AttachmentRole, ResolvedSettings, SpriteTrim, Support};
 use haze_reference::accumulated::{AccumulatedTarget, AccumulatedTextures};
 use haze_reference::visible_system::{VisibleSystem, place_systems};
 use haze_reference::{FrameInput, ParticleSystem};

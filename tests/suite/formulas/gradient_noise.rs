@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/gradient_noise.wgsl`.
 
-use haze::formula::gradient_noise;
+use haze_core::formula::gradient_noise;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, random, v2, v3};

@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/grain.wgsl`.
 
-use haze::formula::grain;
+use haze_core::formula::grain;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, random, test_noise, v2, v3};

@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/hash.wgsl`.
 
 use glam::UVec3;
-use haze::noise::{pcg3d, unit};
+use haze_core::assets::noise::{pcg3d, unit};
 
 use super::Formula;
 use super::inputs::random;

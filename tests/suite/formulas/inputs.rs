@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 
 use glam::{UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
-use haze::formula::texture::Texture2d;
-use haze::noise::{NoiseVolume, pcg3d, unit};
-use haze::ramp::Ramp;
-use haze::sprite::{Sprite, SpriteLayout};
 use haze_author::noise_recipe::NoiseRecipe;
+use haze_core::assets::noise::{NoiseVolume, pcg3d, unit};
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::formula::texture::Texture2d;
 
 /// Tolerance for f32 arithmetic in another order, with fused or separate multiply-add: a few units in the last place.
 pub const ARITHMETIC: f32 = 2e-6;

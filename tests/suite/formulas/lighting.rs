@@ -1,8 +1,8 @@
 //! Formula tests of `shaders/lib/lighting.wgsl`.
 
 use glam::Vec3;
-use haze::formula::lighting;
-use haze::formula::uniforms::LightUniform;
+use haze_core::formula::lighting;
+use haze_core::formula::uniforms::LightUniform;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v3, with_choices};

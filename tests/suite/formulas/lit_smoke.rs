@@ -2,10 +2,10 @@
 //! `shaders/lib/bindings.wgsl` and `shaders/lib/glow.wgsl`.
 
 use glam::{IVec2, Vec2, Vec3, Vec4};
-use haze::formula::six_way::SixWay;
-use haze::formula::uniforms::LightUniform;
-use haze::image::Image;
-use haze::settings::*;
+use haze_core::assets::image::Image;
+use haze_core::formula::six_way::SixWay;
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::settings::*;
 use haze_reference::accumulated::{AccumulatedTarget, LitTarget};
 use haze_reference::pass::transfer::Surface;
 use haze_reference::shade::Shade;

@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/noise_volume.wgsl`.
 
-use haze::formula::noise_volume;
+use haze_core::formula::noise_volume;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, random, test_noise, v3, with_choices};

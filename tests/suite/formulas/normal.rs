@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/normal.wgsl`.
 
-use haze::formula::normal;
-use haze::settings::{NormalDecode, NormalEncoding};
+use haze_core::formula::normal;
+use haze_core::settings::{NormalDecode, NormalEncoding};
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v2, v3, with_choices};

@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/order.wgsl`.
 
-use haze::formula::order;
+use haze_core::formula::order;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v4};

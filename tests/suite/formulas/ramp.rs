@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/ramp.wgsl`.
 
-use haze::formula::ramp;
-use haze::settings::RampFilter;
+use haze_core::formula::ramp;
+use haze_core::settings::RampFilter;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, random, test_ramp, v2};

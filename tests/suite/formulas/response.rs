@@ -1,8 +1,8 @@
 //! Formula tests of `shaders/lib/response.wgsl`.
 
 use glam::Vec3;
-use haze::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
-use haze::settings::{Backlight, RampFilter};
+use haze_core::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
+use haze_core::settings::{Backlight, RampFilter};
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, test_ramp, unit_vectors, v2, v3, with_choices};

@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/density_grid.wgsl`, `shaders/lib/shadow.wgsl`, `shaders/lib/scene_shadow.wgsl` and
 //! `shaders/lib/screen_shadow.wgsl`.
 
-use haze::formula::{density_grid, depth_moments, scene_shadow, screen_shadow, shadow, shadow_map};
+use haze_core::formula::{density_grid, depth_moments, scene_shadow, screen_shadow, shadow, shadow_map};
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v3, with_choices};

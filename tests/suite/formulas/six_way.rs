@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/six_way.wgsl`.
 
 use glam::Vec2;
-use haze::formula::six_way;
+use haze_core::formula::six_way;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v2, v3};

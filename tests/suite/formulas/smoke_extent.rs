@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/smoke_extent.wgsl`.
 
-use haze::formula::smoke_extent;
+use haze_core::formula::smoke_extent;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, random};

@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/smoke_tiles.wgsl`.
 
 use glam::UVec2;
-use haze::formula::smoke_tiles;
+use haze_core::formula::smoke_tiles;
 
 use super::Formula;
 

@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/soft_fade.wgsl`.
 
-use haze::formula::soft_fade;
-use haze::settings::FadeCurve;
+use haze_core::formula::soft_fade;
+use haze_core::settings::FadeCurve;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, with_choices};

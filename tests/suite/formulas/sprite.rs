@@ -1,8 +1,8 @@
 //! Formula tests of `shaders/lib/sprite.wgsl`.
 
 use glam::{Vec2, Vec4};
-use haze::formula::sprite;
-use haze::settings::SpriteAnimation;
+use haze_core::formula::sprite;
+use haze_core::settings::SpriteAnimation;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, test_sprite, v2, v3, with_choices};

@@ -1,11 +1,11 @@
 //! Formula tests of `shaders/lib/sprite_fragment.wgsl`.
 
 use glam::{Vec2, Vec3};
-use haze::formula::depth::{view_depth_from_linear, view_depth_from_ndc_depth};
-use haze::formula::sprite::{animation_frames, flipbook_frames};
-use haze::formula::technique::RayInterval;
-use haze::formula::uniforms::SystemUniform;
-use haze::settings::{FadeCurve, Grain, Lighting, Settings, SpriteAnimation, Technique};
+use haze_core::formula::depth::{view_depth_from_linear, view_depth_from_ndc_depth};
+use haze_core::formula::sprite::{animation_frames, flipbook_frames};
+use haze_core::formula::technique::RayInterval;
+use haze_core::formula::uniforms::SystemUniform;
+use haze_core::settings::{FadeCurve, Grain, Lighting, Settings, SpriteAnimation, Technique};
 use haze_reference::sprite::{SpriteFragment, SpriteSetup};
 
 use super::Formula;

@@ -2,9 +2,9 @@
 
 use glam::{Vec2, Vec3, vec3};
 use haze::Particle;
-use haze::formula::sprite::{animation_frames, flipbook_frames, sprite_uv, trimmed_corner};
-use haze::settings::{Settings, SpriteAnimation, Technique};
-use haze::view_setup::ProjectedSprite;
+use haze_core::formula::sprite::{animation_frames, flipbook_frames, sprite_uv, trimmed_corner};
+use haze_core::settings::{Settings, SpriteAnimation, Technique};
+use haze_core::view_setup::ProjectedSprite;
 use haze_reference::visible_system::VisibleSystem;
 
 use super::Formula;
@@ -228,7 +228,7 @@ fn projection() -> Vec<Formula> {
                 }
                 let reach = projector.trimmed_extent(&sprite);
                 let pixel = projector.corners(&sprite, reach, x[5])[[2, 3, 1, 0][index]];
-                let corner = haze::formula::sprite::sprite_corner(index as u32);
+                let corner = haze_core::formula::sprite::sprite_corner(index as u32);
                 let uv = sprite_uv(trimmed_corner(corner, reach));
                 vec![pixel.x, pixel.y, uv.x, uv.y, -projector.clamped_to_near_plane(sprite.centre).z]
             },

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use haze::Particle;
-use haze::formula::stretch;
+use haze_core::formula::stretch;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v2, v3};

@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/technique.wgsl`.
 
 use glam::vec3;
-use haze::formula::technique;
+use haze_core::formula::technique;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v2, v3};

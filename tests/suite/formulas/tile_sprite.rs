@@ -4,9 +4,9 @@
 mod cells;
 
 use glam::{UVec2, Vec2, Vec4};
-use haze::formula::texture::Texture2d;
-use haze::formula::view::{ndc_from_pixel, pixel_from_ndc};
-use haze::formula::{depth, sprite, tile_sprite};
+use haze_core::formula::texture::Texture2d;
+use haze_core::formula::view::{ndc_from_pixel, pixel_from_ndc};
+use haze_core::formula::{depth, sprite, tile_sprite};
 
 use super::Formula;
 use super::fixture::{DEFAULTS, DEPTHS, visible_system};

@@ -2,8 +2,8 @@
 //! `shaders/tile_gather.wgsl`, `shaders/lib/scan.wgsl` and `shaders/sort.wgsl`.
 
 use glam::{UVec2, uvec2};
-use haze::formula::tiles;
-use haze::formula::uniforms::TilesUniform;
+use haze_core::formula::tiles;
+use haze_core::formula::uniforms::TilesUniform;
 
 use super::Formula;
 use super::inputs::{HALF, flag, halves, random, word};

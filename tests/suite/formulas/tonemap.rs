@@ -1,7 +1,7 @@
 //! Formula tests of `shaders/lib/tonemap.wgsl`.
 
 use glam::UVec2;
-use haze::formula::tonemap;
+use haze_core::formula::tonemap;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v3};

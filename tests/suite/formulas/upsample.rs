@@ -1,8 +1,8 @@
 //! Formula tests of `shaders/lib/upsample.wgsl`.
 
 use glam::{Mat4, Vec4};
-use haze::formula::upsample;
-use haze::settings::Upsample;
+use haze_core::formula::upsample;
+use haze_core::settings::Upsample;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v2, v3, v4, with_choices};

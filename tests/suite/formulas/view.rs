@@ -1,6 +1,6 @@
 //! Formula tests of `shaders/lib/view.wgsl`.
 
-use haze::formula::view;
+use haze_core::formula::view;
 
 use super::Formula;
 use super::inputs::{ARITHMETIC, random, v2, with_choices};

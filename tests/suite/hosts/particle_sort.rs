@@ -2,9 +2,9 @@
 
 use glam::camera::rh;
 use glam::{Mat4, Vec3, vec3};
-use haze::frame::{SpriteExtent, particle_bounds};
-use haze::settings::*;
 use haze::{AliveCount, Bounds, Particle, ParticleBuffer, Particles, wgpu};
+use haze_core::frame::{SpriteExtent, particle_bounds};
+use haze_core::settings::*;
 use haze_demo::headless::Headless;
 
 use super::warm_up::warm_up;

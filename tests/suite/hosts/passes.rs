@@ -1,8 +1,8 @@
 //! Host passes with every supported format and sample count, and the passes and resources that are rejected.
 
 use glam::Vec4;
-use haze::settings::*;
 use haze::{Context, Descriptor, Error, Renderer, wgpu};
+use haze_core::settings::*;
 
 use super::{SIZE, device_with_optional_features, encoder, rejected_field, slice};
 use crate::gpu::{can_test, gpu, has_independent_devices, is_tiled_available};
@@ -209,7 +209,7 @@ fn srgb_view_of_a_gamma_target_blends_smoke_and_glow_in_linear_light() {
         let mut picture = scene.on_gpu(gpu()).picture;
         // The texture is read back as what it stores: code.
         picture.for_each(|_, texel| {
-            *texel = texel.truncate().map(haze::formula::color::linear_from_srgb).extend(texel.w);
+            *texel = texel.truncate().map(haze_core::formula::color::linear_from_srgb).extend(texel.w);
         });
         let psnr = psnr(&picture, &expected);
         assert!(psnr >= 55.0, "{}: {psnr:.1} dB", path.name());

@@ -1,10 +1,10 @@
 //! Particles in host buffers, systems identified by keys, and the GPU resources that are kept for them.
 
 use glam::{Mat4, UVec2, Vec3, vec3};
-use haze::settings::*;
 use haze::{
     Bounds, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, Settings, View, wgpu,
 };
+use haze_core::settings::*;
 use haze_demo::headless::Headless;
 
 use super::{SIZE, encoder, rejected_field};

@@ -2,9 +2,9 @@
 
 use glam::camera::{lh, rh};
 use glam::{EulerRot, Mat4, Quat, UVec2, Vec3, Vec4, vec3};
-use haze::image::Image;
-use haze::settings::*;
 use haze::{Bounds, Particle};
+use haze_core::assets::image::Image;
+use haze_core::settings::*;
 
 use super::{SIZE, rejected_field};
 use crate::gpu::{gpu, is_tiled_available};

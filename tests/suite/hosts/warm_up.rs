@@ -1,9 +1,9 @@
 //! Pipelines that are compiled ahead of time, on another thread, or loaded from a pipeline cache.
 
 use glam::Vec3;
-use haze::formula::hash::{pcg3d, unit};
-use haze::settings::*;
 use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, WarmUp, wgpu};
+use haze_core::formula::hash::{pcg3d, unit};
+use haze_core::settings::*;
 
 use super::{SIZE, device_with_optional_features, rejected_field};
 use crate::gpu::{can_test, gpu};

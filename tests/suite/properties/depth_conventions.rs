@@ -2,8 +2,8 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, Vec3, Vec4, vec3, vec4};
-use haze::settings::{DebugView, DiffuseMode, RenderPath};
 use haze::{Bounds, wgpu};
+use haze_core::settings::{DebugView, DiffuseMode, RenderPath};
 
 use super::SIZE;
 use crate::gpu::gpu;

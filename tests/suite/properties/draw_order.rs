@@ -1,9 +1,9 @@
 //! Results that depend on the draw order of sprites, and results that do not.
 
 use glam::{UVec2, Vec4, vec3};
-use haze::frame::{SpriteExtent, particle_bounds};
-use haze::settings::{AccumulationFormat, BlendOrder, DebugView};
 use haze::{Bounds, Particle};
+use haze_core::frame::{SpriteExtent, particle_bounds};
+use haze_core::settings::{AccumulationFormat, BlendOrder, DebugView};
 use haze_reference::blend_unit::{premultiplied_over, quantise};
 use proptest::prelude::*;
 
@@ -110,7 +110,7 @@ fn rgba8_target_loses_thin_smoke_and_rgba16float_does_not() {
         scene.debug_view = DebugView::Amount;
         scene.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
     };
-    use haze::settings::NormalEncoding;
+    use haze_core::settings::NormalEncoding;
     assert!(stack(AccumulationFormat::Rgba16Float, NormalEncoding::Signed) > 0.97);
     let eight = stack(AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
     assert!((0.8..0.95).contains(&eight), "{eight}");

@@ -1,8 +1,8 @@
 //! Targets and images stay finite for every input.
 
 use glam::{UVec2, Vec3, vec3};
-use haze::settings::RenderPath;
 use haze::{Bounds, Particle};
+use haze_core::settings::RenderPath;
 
 use super::SIZE;
 use crate::gpu::{gpu, non_finite_texels};
@@ -11,8 +11,8 @@ use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
-    for preset in haze::builtin::PRESETS {
-        let preset = haze::preset::Preset::load(preset.name).unwrap();
+    for preset in haze_preset::builtin::PRESETS {
+        let preset = haze_preset::Preset::load(preset.name).unwrap();
         for system in &preset.systems {
             let size = UVec2::new(320, 180);
             let mut scene = TestScene::new(size);
@@ -73,7 +73,7 @@ fn degenerate_sprites_write_no_nan_or_infinity_to_a_target() {
     ]);
     scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     for contrast_power in [0.1, 16.0] {
-        scene.settings.soft_fade.curve = haze::settings::FadeCurve::Contrast;
+        scene.settings.soft_fade.curve = haze_core::settings::FadeCurve::Contrast;
         scene.settings.soft_fade.contrast_power = contrast_power;
         scene.settings.soft_fade.fade_scale = 1000.0;
         assert_all_finite(&scene, &scene.on_gpu(gpu()), "degenerate sprites");

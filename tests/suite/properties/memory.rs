@@ -1,8 +1,8 @@
 //! Memory of the targets, and steady frames that create no GPU resources.
 
 use glam::{UVec2, Vec3, vec3};
-use haze::settings::{DiffuseMode, LightingResolution, Upsample};
 use haze::{Bounds, wgpu};
+use haze_core::settings::{DiffuseMode, LightingResolution, Upsample};
 
 use super::SIZE;
 use crate::gpu::gpu;

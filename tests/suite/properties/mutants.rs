@@ -3,8 +3,8 @@
 
 use glam::{Mat4, UVec2, Vec4, vec3};
 use haze::Bounds;
-use haze::image::Image;
-use haze::settings::DebugView;
+use haze_core::assets::image::Image;
+use haze_core::settings::DebugView;
 
 use super::SIZE;
 use crate::gpu::gpu;
@@ -32,17 +32,17 @@ fn psnr_limit_detects_typical_mistakes_in_a_pass() {
         ("swapped ramp axes", |s| {
             let ramp = s.material.specular_ramp.clone();
             let texels = (0..128).map(|i| ramp.texel(UVec2::new(i / 8, i % 8)));
-            s.material.specular_ramp = haze::ramp::Ramp::from_linear(UVec2::new(8, 16), texels);
+            s.material.specular_ramp = haze_core::assets::ramp::Ramp::from_linear(UVec2::new(8, 16), texels);
         }),
         ("reversed diffuse ramp", |s| {
             let ramp = s.material.diffuse_ramp.clone();
             let texels = (0..16).map(|i| ramp.texel(UVec2::new(15 - i, 0)));
-            s.material.diffuse_ramp = haze::ramp::Ramp::from_linear(UVec2::new(16, 1), texels);
+            s.material.diffuse_ramp = haze_core::assets::ramp::Ramp::from_linear(UVec2::new(16, 1), texels);
         }),
         ("sprites turned the other way", |s| s.particles.iter_mut().for_each(|p| p.rotation = -p.rotation)),
         ("no soft fade", |s| s.settings.soft_fade.fade_scale = 1000.0),
         ("no boost", |s| s.settings.boost = 1.0),
-        ("literal decode", |s| s.settings.accumulate.decode = haze::settings::NormalDecode::Literal),
+        ("literal decode", |s| s.settings.accumulate.decode = haze_core::settings::NormalDecode::Literal),
         ("a light forgotten", |s| s.lights.truncate(1)),
         ("half a texel off", |s| s.view.view_from_world = Mat4::from_translation(vec3(0.03, 0.0, 0.0))),
     ];

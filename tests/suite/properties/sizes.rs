@@ -2,9 +2,8 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{UVec2, Vec3, vec3};
-use haze::read_only_depth_is_supported;
-use haze::settings::{DepthSource, DiffuseMode, RenderPath, Upsample};
-use haze::{Light, Particle};
+use haze::{Light, Particle, read_only_depth_is_supported};
+use haze_core::settings::{DepthSource, DiffuseMode, RenderPath, Upsample};
 
 use super::SIZE;
 use crate::gpu::gpu;
@@ -128,7 +127,7 @@ fn largest_light_count_matches_the_reference_and_one_more_light_is_rejected() {
         specular_scatter: 0.0,
         ..Light::default()
     };
-    scene.lights = (0..haze::frame::MAX_LIGHTS).map(light).collect();
+    scene.lights = (0..haze_core::frame::MAX_LIGHTS).map(light).collect();
     assert!(psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu()) >= MIN_PSNR);
     scene.lights.push(light(0));
     let Err(error) = scene.try_on_gpu(gpu()) else { panic!("129 lights were accepted") };

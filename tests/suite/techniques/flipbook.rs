@@ -3,10 +3,10 @@
 use std::sync::LazyLock;
 
 use glam::{UVec2, Vec2, Vec3Swizzles, Vec4, Vec4Swizzles};
-use haze::formula::sprite::{flipbook_frames, sample_detail, sample_sprite};
-use haze::settings::*;
-use haze::sprite::{Sprite, SpriteLayout};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::formula::sprite::{flipbook_frames, sample_detail, sample_sprite};
+use haze_core::settings::*;
 
 use super::{assert_agreement, scene};
 use crate::gpu::gpu;

@@ -1,7 +1,7 @@
 //! Documented behaviour of each technique where a sprite meets the scene, the near plane or the far plane.
 
 use glam::camera::rh::proj::directx;
-use haze::settings::*;
+use haze_core::settings::*;
 
 use super::{SIZE, assert_agreement, one_sprite, scene};
 use crate::gpu::gpu;

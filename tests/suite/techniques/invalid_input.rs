@@ -1,9 +1,9 @@
 //! Input that is rejected with the name of the field, and degenerate input that must stay finite.
 
 use glam::{Vec3, vec3};
-use haze::settings::*;
-use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Error, Particle};
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::settings::*;
 
 use super::scene;
 use crate::gpu::{gpu, non_finite_texels};

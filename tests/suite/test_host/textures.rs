@@ -1,9 +1,9 @@
 //! Textures of the test host.
 
 use glam::UVec2;
-use haze::image::Image;
 use haze::wgpu;
 use haze::wgpu::util::DeviceExt;
+use haze_core::assets::image::Image;
 use haze_demo::headless::Headless;
 
 use crate::test_scene::TestScene;

@@ -1,8 +1,8 @@
 //! The path `auto`: its choice by cost, the reason that it reports, its hysteresis, and the measurement of costs.
 
 use glam::vec3;
-use haze::settings::*;
 use haze::{Bounds, ParticleBuffer, Particles, PathCosts, PathModel, PathModelSource, PathReason};
+use haze_core::settings::*;
 
 use super::{scene, storage_buffer};
 use crate::gpu::{gpu, is_tiled_available};

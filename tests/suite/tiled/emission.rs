@@ -1,10 +1,10 @@
 //! Emitters that the GPU evaluates.
 
 use glam::{UVec2, Vec3, vec3};
-use haze::emitter::{Emitter, EmitterShape};
-use haze::frame::SpriteExtent;
-use haze::settings::*;
 use haze::{Particles, TiledMemory, wgpu};
+use haze_core::emitter::{Emitter, EmitterShape};
+use haze_core::frame::SpriteExtent;
+use haze_core::settings::*;
 
 use super::{MIN_PSNR_TO_RASTER, scene};
 use crate::gpu::{gpu, is_tiled_available};
@@ -67,7 +67,7 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
     emitter.validate(String::new).unwrap();
     let emission = emitter.snapshot(60.0);
     assert!(
-        (1_000_000..=haze::emitter::MAX_PARTICLES + 2).contains(&emission.count()),
+        (1_000_000..=haze_core::emitter::MAX_PARTICLES + 2).contains(&emission.count()),
         "{} particles",
         emission.count()
     );

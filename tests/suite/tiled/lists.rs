@@ -1,9 +1,9 @@
 //! Sprite lists of the path `tiled`: overflow, sizes beyond 32 bits, sprites out of view, and steady frames.
 
 use glam::{UVec2, vec3};
-use haze::formula::uniforms::TilesUniform;
-use haze::settings::*;
 use haze::{Bounds, Particle, ParticleBuffer, Particles, shader, wgpu};
+use haze_core::formula::uniforms::TilesUniform;
+use haze_core::settings::*;
 
 use super::{scene, storage_buffer};
 use crate::gpu::{gpu, is_tiled_available};

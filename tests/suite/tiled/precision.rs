@@ -2,8 +2,8 @@
 
 use glam::vec3;
 use haze::Particle;
-use haze::settings::*;
-use haze::sprite::{Sprite, SpriteLayout};
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::settings::*;
 
 use super::{render_with, scene};
 use crate::gpu::{gpu, is_tiled_available};

@@ -1,10 +1,10 @@
 //! Figures of GPU time for the docs.
 
 use glam::{Mat4, UVec2, UVec3, Vec3, vec3};
-use haze::image::Image;
-use haze::noise::{pcg3d, unit};
-use haze::settings::{Backlight, Lighting, RenderPath};
 use haze::{Light, LightKind, Particle, Settings, wgpu};
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::{pcg3d, unit};
+use haze_core::settings::{Backlight, Lighting, RenderPath};
 use haze_demo::headless::Headless;
 
 use super::{draw_and_measure, timed_gpu, timed_host};

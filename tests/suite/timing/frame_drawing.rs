@@ -1,10 +1,10 @@
 //! Drawings of the frame in ARCHITECTURE.md and in the docs of the library, against what frames record.
 
 use glam::{Mat4, Vec3};
-use haze::emitter::Emitter;
-use haze::image::Image;
-use haze::settings::{DiffuseMode, LightingResolution, RenderPath};
 use haze::{FrameTimes, Particles, PathModelSource, shader};
+use haze_core::assets::image::Image;
+use haze_core::emitter::Emitter;
+use haze_core::settings::{DiffuseMode, LightingResolution, RenderPath};
 
 use super::{SIZE, draw_and_measure, pass_names, result_after, timed_gpu, timed_host};
 use crate::gpu::is_tiled_available;

@@ -1,7 +1,7 @@
 //! Timestamp queries that are dropped, unused, or too many.
 
-use haze::settings::RenderPath;
 use haze::{Particles, wgpu};
+use haze_core::settings::RenderPath;
 use haze_demo::headless::Headless;
 
 use super::{DEFERRED_PASSES, FEATURES, draw_and_measure, pass_names, result_after, scene, timed_gpu, timed_host};

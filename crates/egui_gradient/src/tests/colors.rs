@@ -100,7 +100,7 @@ fn a_stroke_picks_the_gradient_along_its_path() {
     assert!((3..20).contains(&row.stops.len()), "{row:?}");
     let recipe = haze_author::ramp::RampRecipe { rows: vec![row], ..Default::default() };
     let taken = recipe.gradient().unwrap();
-    let code = |light: f32| haze::formula::color::srgb_from_linear(light) * 255.0;
+    let code = |light: f32| haze_core::formula::color::srgb_from_linear(light) * 255.0;
     for step in 5..=95 {
         let at = step as f32 / 100.0;
         let (taken, wanted) = (code(taken.sample(at, 0.0).x), code(wanted.sample(0.99 - 0.98 * at, 0.0).x));

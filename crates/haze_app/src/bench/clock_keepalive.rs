@@ -6,8 +6,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use glam::UVec2;
-use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
+use haze_core::settings::AccumulationFormat;
 use haze_demo::headless::Headless;
 
 use super::limits::work::{LimitBench, Work};

@@ -1,9 +1,10 @@
 //! Suite `frame`: the passes of each preset's frame at each scale, on the path that `auto` takes.
 
 use glam::UVec2;
-use haze::settings::RenderPath;
-use haze::{Error, builtin};
+use haze::Error;
+use haze_core::settings::RenderPath;
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 
 use super::suite::{Case, Group, Suite, at_scale, changed, full_resolution};
 

@@ -5,8 +5,8 @@ pub mod work;
 use std::collections::HashMap;
 
 use glam::UVec2;
-use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
+use haze_core::settings::AccumulationFormat;
 use haze_demo::headless::Headless;
 
 use super::clock_keepalive::ClockKeepalive;

@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
-use haze::preset::PresetSystem;
-use haze::settings::{AccumulationFormat, DebugView, RenderPath};
 use haze::{Error, FrameTimes, Timing, TimingDetail, wgpu};
 use haze_author::particle_files::{self, ParticleFrames};
+use haze_core::settings::{AccumulationFormat, DebugView, RenderPath};
 use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
+use haze_preset::PresetSystem;
 use image::RgbImage;
 
 use super::clock_keepalive::ClockKeepalive;

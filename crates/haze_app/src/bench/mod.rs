@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use haze::Error;
-use haze::image::write_file;
+use haze_preset::write_file;
 
 use super::output::{Failures, FileChecks, write_text};
 

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use haze::settings::BlendOrder;
 use haze::{Context, Descriptor, Error, FrameInput, ParticleSystem, Particles, Renderer, SceneDepth, wgpu};
 use haze_author::particle_files;
+use haze_core::settings::BlendOrder;
 use haze_demo::headless::Headless;
 
 use super::report::{Clock, Milliseconds, Row};

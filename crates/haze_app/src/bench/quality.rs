@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec4};
 use haze::Error;
-use haze::image::Image;
+use haze_core::assets::image::Image;
 use haze_demo::headless::Headless;
 use haze_demo::image_metrics::PsnrReport;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use haze::Error;
-use haze::assets::json::load;
+use haze_core::assets::json::load;
 
 use super::report::{Report, VERSION};
 

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use glam::UVec2;
-use haze::image::write_file;
 use haze::{Error, wgpu};
 use haze_demo::headless::Headless;
+use haze_preset::write_file;
 
 use super::adapter::adapter;
 use super::clock_keepalive::ClockKeepalive;

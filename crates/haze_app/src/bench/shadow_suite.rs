@@ -1,9 +1,9 @@
 //! Suite `shadow`: smoke that shades smoke, by number of lights, resolution of the grid, and path.
 
 use glam::{UVec2, Vec3};
-use haze::formula::shadow::SHADOWED_LIGHTS;
-use haze::settings::{RenderPath, Settings};
 use haze::{Error, Light, LightKind};
+use haze_core::formula::shadow::SHADOWED_LIGHTS;
+use haze_core::settings::{RenderPath, Settings};
 use haze_demo::shot::Shot;
 
 use super::sprite_shots::crowd;

@@ -5,11 +5,10 @@
 use std::path::Path;
 
 use clap::Args;
-use haze::Error;
-use haze::preset::Preset;
-use haze::read_only_depth_is_supported;
-use haze::settings::{DepthSource, Technique};
+use haze::{Error, read_only_depth_is_supported};
+use haze_core::settings::{DepthSource, Technique};
 use haze_demo::shot::Shot;
+use haze_preset::Preset;
 
 use crate::backend::Backend;
 use crate::frame_timer::{FrameTimer, measure_interleaved, median_of};

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use glam::{UVec2, Vec3};
 use haze::Error;
-use haze::preset::Preset;
-use haze::sprite::Sprite;
+use haze_core::assets::sprite::Sprite;
 use haze_demo::shot::Shot;
+use haze_preset::Preset;
 
 /// A shot of `count` sprites as large as the image, each of this amount, among crates.
 pub fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use haze::Error;
-use haze::settings::{RenderPath, Settings};
+use haze_core::settings::{RenderPath, Settings};
 use haze_demo::shot::Shot;
 
 use super::sprite_shots::crowd;

@@ -1,7 +1,7 @@
 //! A suite of the benchmark, its groups and cases, and changes of a shot that suites share.
 
 use clap::ValueEnum;
-use haze::settings::{RenderPath, Settings};
+use haze_core::settings::{RenderPath, Settings};
 use haze_demo::shot::Shot;
 
 /// A suite of measurements.

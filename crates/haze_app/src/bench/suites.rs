@@ -1,12 +1,13 @@
 //! Suites of the benchmark: groups of shots that are measured in turn and compared with each other.
 
 use glam::{UVec2, Vec3};
-use haze::settings::{
+use haze::{Error, Light};
+use haze_core::settings::{
     AccumulationFormat, BlendOrder, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, RenderPath,
     Settings, Technique, Upsample,
 };
-use haze::{Error, Light, builtin};
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 
 use super::frame_suite;
 use super::shadow_suite;

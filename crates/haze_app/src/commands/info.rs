@@ -1,8 +1,8 @@
 //! `haze info`: prints what this machine renders with.
 
 use glam::UVec2;
-use haze::settings::{RenderPath, Technique};
 use haze::{Context, Error, PathChoice, PathReason, PathWorkload};
+use haze_core::settings::{RenderPath, Technique};
 use haze_demo::headless::Headless;
 
 use crate::output::print_line;

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use glam::UVec2;
-use haze::image::write_file;
-use haze::preset::{Preset, PresetSystem, Track};
-use haze::settings::{FieldValue, field_values};
-use haze::{Error, FieldError, Light, builtin};
+use haze::{Error, FieldError, Light};
 use haze_author::preset::{check_files, no_effect_reason};
+use haze_core::settings::{FieldValue, field_values};
+use haze_preset::{Preset, PresetSystem, Track, builtin, write_file};
 
 use crate::file_kind::explain_wrong_kind;
 use crate::options::AssetsArguments;

@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 
 use clap::Args;
 use glam::UVec2;
-use haze::settings::DebugView;
 use haze::{Error, FieldError};
+use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 use pollster::block_on;
 

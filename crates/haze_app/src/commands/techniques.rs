@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::UVec2;
-use haze::formula::soft_fade::soft_fade;
-use haze::image::write_png;
-use haze::settings::{FadeCurve, Technique};
 use haze::{Error, FieldError};
+use haze_core::formula::soft_fade::soft_fade;
+use haze_core::settings::{FadeCurve, Technique};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
+use haze_preset::write_png;
 use image::{Rgb, RgbImage, imageops};
 
 use crate::backend::Backend;

@@ -4,7 +4,7 @@
 //! outline of smoke, and motion vectors would end at it.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
-use haze::image::Image;
+use haze_core::assets::image::Image;
 
 /// Opacity from which a texel keeps its own value: the least that 8 bits hold.
 const OPAQUE: f32 = 0.5 / 255.0;

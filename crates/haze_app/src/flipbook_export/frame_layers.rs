@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 use haze::Error;
-use haze::image::Image;
+use haze_core::assets::image::Image;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::exposure;
 

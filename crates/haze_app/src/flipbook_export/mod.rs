@@ -10,10 +10,10 @@ mod sheets;
 use std::path::Path;
 
 use glam::UVec2;
-use haze::image::{CompressionEffort, write_file, write_png};
 use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::encoded;
+use haze_preset::{CompressionEffort, write_file, write_png};
 use image::DynamicImage;
 
 use crate::backend::Backend;

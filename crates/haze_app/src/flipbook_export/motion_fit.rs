@@ -4,7 +4,7 @@
 //! was before. Where full vectors would move outline and light along, shorter ones predict the next frame better.
 
 use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
-use haze::image::Image;
+use haze_core::assets::image::Image;
 
 /// Lengths that are tried, as shares of the way of the particles.
 const SHARES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];

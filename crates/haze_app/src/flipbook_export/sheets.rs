@@ -1,8 +1,8 @@
 //! Sheets of the layers of all frames, and their encoding.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
-use haze::formula::six_way::SixWay;
-use haze::image::Image;
+use haze_core::assets::image::Image;
+use haze_core::formula::six_way::SixWay;
 use haze_demo::tonemap_pass::{encoded, rgba8};
 use image::{DynamicImage, Rgb, RgbImage, Rgba, RgbaImage};
 

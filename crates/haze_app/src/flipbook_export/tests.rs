@@ -1,5 +1,5 @@
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
-use haze::image::read_png;
+use haze_core::assets::image::read_png;
 use image::RgbaImage;
 use pollster::block_on;
 

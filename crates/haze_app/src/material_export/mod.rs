@@ -9,12 +9,11 @@ mod translation;
 use std::path::Path;
 
 use glam::UVec2;
-use haze::formula::color::srgb_from_linear;
-use haze::image::{CompressionEffort, write_file, write_png};
-use haze::preset::PresetSystem;
-use haze::ramp::Ramp;
-use haze::settings::DiffuseMode;
 use haze::{Error, FieldError, MaterialAssets};
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::color::srgb_from_linear;
+use haze_core::settings::DiffuseMode;
+use haze_preset::{CompressionEffort, PresetSystem, write_file, write_png};
 use image::{Rgb, RgbImage};
 
 use crate::engine::Engine;

@@ -1,7 +1,7 @@
 //! Page that goes with a material: its files, and how to use them.
 
-use haze::preset::PresetSystem;
-use haze::settings::RampFilter;
+use haze_core::settings::RampFilter;
+use haze_preset::PresetSystem;
 
 use super::snippet::{Function, Snippet};
 use crate::engine::Engine;

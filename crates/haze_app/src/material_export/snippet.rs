@@ -1,9 +1,9 @@
 //! WGSL of a material, assembled from the functions of the transfer pass.
 
 use glam::Vec3;
-use haze::ramp::Ramp;
-use haze::settings::{Backlight, Choice as _, CoverageMode, Settings, SoftScatterMode};
 use haze::{Error, MaterialAssets, shader};
+use haze_core::assets::ramp::Ramp;
+use haze_core::settings::{Backlight, Choice as _, CoverageMode, Settings, SoftScatterMode};
 
 use super::translation::untranslated;
 

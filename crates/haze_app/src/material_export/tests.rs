@@ -2,14 +2,14 @@ use std::io::Write as _;
 use std::process::{Command, Stdio};
 
 use glam::{Vec2, Vec3, Vec4, vec3};
-use haze::formula::lighting::{backlight_weight, coverage, painted_share};
-use haze::formula::ramp::sample_ramp;
-use haze::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
-use haze::settings::{Backlight, CoverageMode, RampFilter, SoftScatterMode};
 use haze::{Settings, wgpu};
+use haze_core::formula::lighting::{backlight_weight, coverage, painted_share};
+use haze_core::formula::ramp::sample_ramp;
+use haze_core::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
+use haze_core::settings::{Backlight, CoverageMode, RampFilter, SoftScatterMode};
 use haze_demo::headless::Headless;
 
-use haze::preset::Preset;
+use haze_preset::Preset;
 
 use super::*;
 
@@ -36,10 +36,10 @@ fn all_settings() -> [Settings; 3] {
 }
 
 fn assets() -> MaterialAssets {
-    let names = haze::preset::MaterialNames {
+    let names = haze_preset::MaterialNames {
         diffuse_ramp: "diffuse_soft_toon".into(),
         backlight_ramp: "backlight_traced_steam".into(),
-        ..haze::preset::MaterialNames::default()
+        ..haze_preset::MaterialNames::default()
     };
     names.load("".as_ref()).unwrap()
 }
@@ -53,7 +53,9 @@ struct Case {
 
 fn cases() -> Vec<Case> {
     let case = |index: u32| {
-        let random = |channel: u32| haze::noise::unit(haze::noise::pcg3d(glam::UVec3::new(index, channel, 5)).x);
+        let random = |channel: u32| {
+            haze_core::assets::noise::unit(haze_core::assets::noise::pcg3d(glam::UVec3::new(index, channel, 5)).x)
+        };
         let vector = |first| vec3(random(first), random(first + 1), random(first + 2)) * 2.0 - 1.0;
         let vectors = [0, 3, 6].map(|first| vector(first).normalize_or(Vec3::Z));
         Case { vectors, amount: random(9), heat: random(10) }
@@ -383,6 +385,6 @@ fn light_that_comes_from_no_ramp_is_refused() {
     };
     preset.systems[0].settings.diffuse.mode = DiffuseMode::PaintedMotif;
     assert!(refused(&preset).starts_with("systems[0].settings.diffuse.mode: \"painted_motif\" is not valid; expected"));
-    preset.systems[0].settings.lighting = haze::settings::Lighting::SixWay;
+    preset.systems[0].settings.lighting = haze_core::settings::Lighting::SixWay;
     assert!(refused(&preset).contains("`haze sprite export` writes the six-way maps"));
 }

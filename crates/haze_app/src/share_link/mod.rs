@@ -10,9 +10,9 @@ mod packed_text;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use haze::preset::Preset;
-use haze::{Error, FieldError, builtin};
+use haze::{Error, FieldError};
 use haze_author::ramp::RampRecipe;
+use haze_preset::{Preset, builtin};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

@@ -1,9 +1,9 @@
 //! Tests of links: looks are restored, old links open for ever, hostile ones are refused.
 
 use haze::Light;
-use haze::preset::{Ease, KeyValue, Keyframe, Track};
-use haze::settings::set_field;
 use haze_author::ramp::{HexColor, RampRow, RampStop};
+use haze_core::settings::set_field;
+use haze_preset::{Ease, KeyValue, Keyframe, Track};
 
 use super::*;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze::assets::memory_files;
+use haze_core::assets::memory_files;
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
 

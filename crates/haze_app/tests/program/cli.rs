@@ -85,7 +85,7 @@ fn render(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 fn size_of(path: &Path) -> (u32, u32) {
-    let picture = haze::image::read_png(path).unwrap();
+    let picture = haze_core::assets::image::read_png(path).unwrap();
     (picture.width(), picture.height())
 }
 

@@ -10,7 +10,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use haze::preset::Preset;
+use haze_preset::Preset;
 use image::RgbImage;
 use tempfile::TempDir;
 use x11::{Display, Key};
@@ -56,7 +56,7 @@ fn picture(display: &Display, variables: &[(&str, &str)], arguments: &[&str]) ->
     let output = haze(folder.path(), &display.name, variables, &all).output().unwrap();
     let taken = start.elapsed();
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
-    (haze::image::read_png(&folder.path().join("a.png")).unwrap().into_rgb8(), taken)
+    (haze_core::assets::image::read_png(&folder.path().join("a.png")).unwrap().into_rgb8(), taken)
 }
 
 fn brightness(picture: &RgbImage) -> f64 {
@@ -99,7 +99,7 @@ fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
 #[test]
 fn without_a_display_the_first_command_renders_an_image() {
     let folder = folder();
-    let column = |file: &str| haze::image::read_png(&folder.path().join(file)).unwrap();
+    let column = |file: &str| haze_core::assets::image::read_png(&folder.path().join(file)).unwrap();
     // Neither run replaces a file.
     for file in ["column.png", "column_2.png"] {
         let output = haze(folder.path(), "", &[], &[]).output().unwrap();

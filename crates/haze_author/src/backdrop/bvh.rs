@@ -236,7 +236,7 @@ fn intersect(triangle: &RayTriangle, index: u32, origin: Vec3, direction: Vec3) 
 #[cfg(test)]
 mod tests {
     use glam::UVec3;
-    use haze::assets::noise::{pcg3d, unit};
+    use haze_core::assets::noise::{pcg3d, unit};
 
     use super::*;
 

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
-use haze::assets::image::Image;
-use haze::formula::color::{linear_from_srgb, srgb_from_linear};
+use haze_core::assets::image::Image;
+use haze_core::formula::color::{linear_from_srgb, srgb_from_linear};
 
 /// Continuation of a texture past its edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -4,8 +4,8 @@ use std::path::{Component, Path, PathBuf};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use haze::assets::bounded_read;
-use haze::error::{Error, one_line};
+use haze_core::assets::bounded_read;
+use haze_core::error::{Error, one_line};
 
 use super::file_limits::MAX_SCENE_FILE_BYTES;
 

@@ -10,10 +10,10 @@ use glam::{Affine3A, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4};
 use gltf::khr_lights_punctual::Kind;
 use gltf::material::AlphaMode;
 use gltf::mesh::Mode;
-use haze::assets::image::{Image, catch_decoder_panic};
-use haze::error::{Error, one_line};
-use haze::frame::{Light, LightKind};
-use haze::preset::Camera;
+use haze_core::assets::image::{Image, catch_decoder_panic};
+use haze_core::error::{Error, one_line};
+use haze_core::frame::{Light, LightKind};
+use haze_preset::Camera;
 use image::{ImageDecoder as _, ImageReader, Limits};
 
 use super::bvh::Bvh;

@@ -18,13 +18,13 @@ mod tests;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use haze::error::Error;
+use haze_core::error::Error;
 #[cfg(not(target_arch = "wasm32"))]
-use haze::error::{FieldError, display_path};
+use haze_core::error::{FieldError, display_path};
+use haze_core::settings::BackdropKind;
 #[cfg(not(target_arch = "wasm32"))]
-use haze::preset::backdrop_file_path;
-use haze::preset::{AssetFolders, Camera, Environment, Preset};
-use haze::settings::BackdropKind;
+use haze_preset::backdrop_file_path;
+use haze_preset::{AssetFolders, Camera, Environment, Preset};
 
 pub use bvh::{Bvh, BvhNode, RayHit, RayTriangle};
 pub use color_texture::{ColorTexture, Wrap};
@@ -151,7 +151,7 @@ impl PartialEq for Backdrop {
 /// Files beside a scene file that it names: buffers and images. None for other files.
 pub fn companion_files(file: &Path) -> Vec<PathBuf> {
     #[cfg(not(target_arch = "wasm32"))]
-    if haze::preset::backdrop_kind(file) == Some(BackdropKind::Scene) {
+    if haze_preset::backdrop_kind(file) == Some(BackdropKind::Scene) {
         return gltf_files::companion_files(file);
     }
     let _ = file;

@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use glam::{UVec2, Vec2, Vec3};
-use haze::assets::image::Image;
-use haze::frame::{Light, MAX_LIGHTS};
-use haze::preset::Camera;
+use haze_core::assets::image::Image;
+use haze_core::frame::{Light, MAX_LIGHTS};
+use haze_preset::Camera;
 
 use super::bvh::{Bvh, RayHit, RayTriangle};
 use super::color_texture::ColorTexture;

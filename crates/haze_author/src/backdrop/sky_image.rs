@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{IVec2, UVec2, Vec2, Vec3};
 use half::f16;
-use haze::assets::image::Image;
+use haze_core::assets::image::Image;
 
 use super::sky_light::SkyLight;
 

@@ -4,9 +4,9 @@ use std::io::Cursor;
 use std::path::Path;
 
 use glam::{UVec2, Vec3};
-use haze::assets::bounded_read;
-use haze::assets::image::catch_decoder_panic;
-use haze::error::{Error, one_line};
+use haze_core::assets::bounded_read;
+use haze_core::assets::image::catch_decoder_panic;
+use haze_core::error::{Error, one_line};
 use image::codecs::hdr::HdrDecoder;
 use image::codecs::openexr::OpenExrDecoder;
 use image::{DynamicImage, ImageDecoder};

@@ -3,7 +3,7 @@
 //! Source: Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment maps", 2001.
 
 use glam::Vec3;
-use haze::formula::ambient::hemisphere_light;
+use haze_core::formula::ambient::hemisphere_light;
 
 /// Light that a white matte surface shows, by its normal. A shader evaluates the same polynomial.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use glam::{Quat, UVec2, Vec2, Vec3};
-use haze::frame::LightKind;
-use haze::preset::{AssetFolders, Preset};
+use haze_core::frame::LightKind;
+use haze_preset::{AssetFolders, Preset};
 use image::{ImageEncoder as _, Rgb};
 
 use super::*;
@@ -165,7 +165,7 @@ fn sphere() -> (Vec<(Vec3, Vec3, Vec2)>, Vec<u16>) {
 
 /// Noise of a texture, 0 to 1.
 fn noise(x: u32, y: u32, salt: u32) -> f32 {
-    haze::assets::noise::unit(haze::assets::noise::pcg3d(glam::UVec3::new(x, y, salt)).x)
+    haze_core::assets::noise::unit(haze_core::assets::noise::pcg3d(glam::UVec3::new(x, y, salt)).x)
 }
 
 /// The example of the documents: a court with an arch, crates, a sphere and a fence that is cut out.

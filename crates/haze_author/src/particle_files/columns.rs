@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::column_role::{ColumnRole, ROLE_COUNT, column_role};
 use super::particle_frame::{FileParticle, ProvidedAttributes};
-use haze::error::one_line;
+use haze_core::error::one_line;
 
 /// Maximum number of columns in a file.
 pub const MAX_COLUMNS: usize = 1024;

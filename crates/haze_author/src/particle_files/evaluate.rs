@@ -1,9 +1,9 @@
 //! Evaluates the particles at a time from the frames of files.
 
 use glam::{UVec3, Vec3};
-use haze::Particle;
-use haze::noise::{pcg3d, unit};
-use haze::preset::{EndBehaviour, ParticleFiles, UpAxis};
+use haze_core::assets::noise::{pcg3d, unit};
+use haze_core::frame::Particle;
+use haze_preset::{EndBehaviour, ParticleFiles, UpAxis};
 
 use super::particle_frames::{FramePair, ParticleFrames};
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze::error::Error;
+use haze_core::error::Error;
 
 /// A parse error and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,8 +4,8 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
-use haze::assets::bounded_read;
-use haze::error::Error;
+use haze_core::assets::bounded_read;
+use haze_core::error::Error;
 
 use super::parse_error::ParseError;
 use super::particle_frame::ParticleFrame;
@@ -46,7 +46,7 @@ impl ParticleFrames {
     /// everything else, with vertex and byte offset for binary PLY.
     pub fn load(path: &Path, limits: Limits) -> Result<Self, Error> {
         let (mut frames, mut bytes) = (Vec::new(), 0);
-        for (number, file) in haze::preset::frame_files(path)? {
+        for (number, file) in haze_preset::frame_files(path)? {
             let content = bounded_read::read(&file, "CSV or PLY file", MAX_FILE_BYTES)?;
             let frame = parse(&file, &content, limits.particles).map_err(|error| error.into_error(&file))?;
             bytes += frame.bytes();

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::particle_frames::{Limits, ParticleFrames};
-use haze::emitter::MAX_PARTICLES;
-use haze::error::{Error, FieldError, one_line};
-use haze::preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};
-use haze::{EmitterSnapshot, Particle};
+use haze_core::emitter::MAX_PARTICLES;
+use haze_core::error::{Error, FieldError, one_line};
+use haze_core::frame::{EmitterSnapshot, Particle};
+use haze_preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};
 
 /// Maximum memory of the particle files of a preset, bytes.
 pub const MAX_PARTICLE_FILE_BYTES: u64 = 1 << 30;

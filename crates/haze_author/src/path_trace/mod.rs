@@ -18,7 +18,7 @@ pub use medium::{MEDIA, Medium, NamedMedium};
 
 use glam::{UVec2, Vec3};
 
-use haze::image::Image;
+use haze_core::assets::image::Image;
 use path::{Pixel, Tracer};
 
 /// Parameters of a path trace.

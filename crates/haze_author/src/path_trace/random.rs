@@ -2,7 +2,7 @@
 
 use glam::{UVec3, Vec2};
 
-use haze::formula::hash::{pcg3d, unit};
+use haze_core::formula::hash::{pcg3d, unit};
 
 pub(super) struct Random {
     key: UVec3,

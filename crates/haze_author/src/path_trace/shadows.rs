@@ -3,7 +3,7 @@
 use glam::{UVec2, UVec3, Vec3};
 
 use super::density_volume::{DensityVolume, exit_distance, trilinear_corners, voxel_centre};
-use haze::assets::image::Image;
+use haze_core::assets::image::Image;
 
 /// Integrated density from each voxel towards each light. The entries of a voxel are adjacent.
 pub(super) struct ShadowVolume {

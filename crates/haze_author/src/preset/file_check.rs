@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use haze::preset::{AssetFolders, ImageCache, ImageSource, MaterialNames, Preset, with_system_context};
+use haze_preset::{AssetFolders, ImageCache, ImageSource, MaterialNames, Preset, with_system_context};
 
 use super::role_check::role_warnings;
 use crate::backdrop::Backdrop;
 use crate::particle_files::check_particle_files;
-use haze::error::Error;
+use haze_core::error::Error;
 
 /// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
 /// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
@@ -48,8 +48,8 @@ mod tests {
     use image::{Rgb, RgbImage};
 
     use super::*;
-    use haze::preset::PresetSystem;
-    use haze::settings::Technique;
+    use haze_core::settings::Technique;
+    use haze_preset::PresetSystem;
 
     #[test]
     fn an_error_hides_no_other_error_or_warning() {

@@ -6,9 +6,9 @@ mod system_rules;
 
 use glam::UVec2;
 
-use haze::frame::{Light, LightKind};
-use haze::preset::{Environment, Preset, SceneName};
-use haze::settings::{field_values, is_field_named};
+use haze_core::frame::{Light, LightKind};
+use haze_core::settings::{field_values, is_field_named};
+use haze_preset::{Environment, Preset, SceneName};
 use rule::{NoEffectRule, find_reason, rule};
 use system_rules::SYSTEM_RULES;
 
@@ -60,7 +60,7 @@ fn is_lit_by_sky(environment: &Environment, _: UVec2) -> bool {
 }
 
 /// Returns the reason why a field has no effect with the other values as they are; `None` if it has an effect. `path` is
-/// formatted as by [`field_path`](haze::settings::field_path); `size` is the picture's, in pixels.
+/// formatted as by [`field_path`](haze_core::settings::field_path); `size` is the picture's, in pixels.
 pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'static str> {
     let item = |list: &str| {
         let (index, field) = path.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
@@ -86,7 +86,7 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
     find_reason(ENVIRONMENT_RULES, &preset.environment, path.strip_prefix("environment.")?, size)
 }
 
-/// Returns the reason why none of the fields that [`set_field`](haze::settings::set_field) has set has an effect; `None` if
+/// Returns the reason why none of the fields that [`set_field`](haze_core::settings::set_field) has set has an effect; `None` if
 /// one has. `path`: as it was given; `name`: as it was returned.
 pub fn no_effect_reason_of_set(preset: &Preset, path: &str, name: &str, size: UVec2) -> Option<&'static str> {
     let fields = field_values(preset).into_iter().map(|(field, _)| field);
@@ -114,8 +114,8 @@ pub(super) fn effect_conditions(path: &str) -> impl Iterator<Item = &'static str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haze::preset::PresetSystem;
-    use haze::settings::ScaleMode;
+    use haze_core::settings::ScaleMode;
+    use haze_preset::PresetSystem;
 
     #[test]
     fn every_row_names_existing_fields() {

@@ -3,9 +3,9 @@
 use glam::{UVec2, Vec2, Vec3Swizzles as _};
 
 use crate::sprite::lint::{EMPTY_MESSAGE, describe_non_normals, is_clear};
-use haze::assets::material_assets::MaterialAssets;
-use haze::assets::ramp::Ramp;
-use haze::preset::MaterialNames;
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::assets::ramp::Ramp;
+use haze_preset::MaterialNames;
 
 /// Largest difference between channels of linear colors that count as equal.
 const SAME: f32 = 1.0 / 64.0;
@@ -141,7 +141,7 @@ mod tests {
     use image::{Rgb, RgbImage};
 
     use super::*;
-    use haze::assets::builtin;
+    use haze_preset::builtin;
 
     #[test]
     fn images_in_the_wrong_role_are_reported() {

@@ -5,9 +5,9 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 use serde_json::{Value, json};
 
-use haze::frame::Light;
-use haze::preset::{Camera, Flicker, Preset, PresetSystem};
-use haze::settings::{Curve, FieldVisitor, Fields, MAX_CURVE_POINTS};
+use haze_core::frame::Light;
+use haze_core::settings::{Curve, FieldVisitor, Fields, MAX_CURVE_POINTS};
+use haze_preset::{Camera, Flicker, Preset, PresetSystem};
 
 /// Returns the JSON schema of preset files.
 pub fn schema() -> String {

@@ -9,12 +9,11 @@ use glam::Vec3;
 use super::no_effect::effect_conditions;
 use super::schema::preset_with_widest_ranges;
 use super::tooltips::Tooltips;
-use haze::assets::builtin;
-use haze::frame::Light;
-use haze::preset::{Ease, Flicker, MAX_KEYFRAMES, Preset, PresetSystem};
-use haze::settings::{
+use haze_core::frame::Light;
+use haze_core::settings::{
     BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, MAX_CURVE_POINTS, field_values,
 };
+use haze_preset::{Ease, Flicker, MAX_KEYFRAMES, Preset, PresetSystem, builtin};
 
 const HEAD: &str = "\
 # Settings

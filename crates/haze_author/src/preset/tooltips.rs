@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// Doc comments of a settings struct, by the dotted paths of [`FieldVisitor`](haze::settings::FieldVisitor), such as
+/// Doc comments of a settings struct, by the dotted paths of [`FieldVisitor`](haze_core::settings::FieldVisitor), such as
 /// `soft_fade.fade_scale`. Fields in lists have no index: `lights.range`.
 #[derive(Clone, Debug)]
 pub struct Tooltips {
@@ -47,8 +47,8 @@ impl Tooltips {
 mod tests {
     use super::*;
     use glam::Vec3;
-    use haze::preset::{Preset, PresetSystem};
-    use haze::settings::{BackdropKind, Choice, FieldVisitor, Fields, ImageRole};
+    use haze_core::settings::{BackdropKind, Choice, FieldVisitor, Fields, ImageRole};
+    use haze_preset::{Preset, PresetSystem};
     use std::ops::RangeInclusive;
 
     /// Visits a preset as a user interface would, and asks for every tooltip.
@@ -121,7 +121,7 @@ mod tests {
     fn every_field_and_choice_of_a_preset_has_its_tooltip() {
         let tooltips = Tooltips::of::<Preset>();
         let mut preset = Preset {
-            lights: vec![haze::Light::default()],
+            lights: vec![haze_core::frame::Light::default()],
             systems: vec![PresetSystem::default()],
             ..Preset::default()
         };
@@ -134,7 +134,7 @@ mod tests {
         );
         assert_eq!(tooltips.field("systems.settings.boots"), None);
         assert_eq!(tooltips.choice("lights.kind", "laser"), None);
-        let stages = Tooltips::of::<haze::settings::DebugView>();
+        let stages = Tooltips::of::<haze_core::settings::DebugView>();
         assert_eq!(stages.choice("", "amount"), Some("Accumulated amount, as grey."));
     }
 }

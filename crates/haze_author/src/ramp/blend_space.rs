@@ -4,8 +4,8 @@
 use glam::Vec3;
 
 use crate::deterministic_math::{power, power_f64};
-use haze::error::one_line;
-use haze::settings::choice;
+use haze_core::error::one_line;
+use haze_core::settings::choice;
 
 choice! {
     /// Color space in which a gradient is blended.
@@ -121,12 +121,12 @@ pub(super) fn srgb16_from_linear(color: Vec3) -> [u16; 3] {
     color.to_array().map(|channel| (srgb_from_linear(channel.clamp(0.0, 1.0)) * 65535.0).round() as u16)
 }
 
-/// Same as [`haze::formula::color::linear_from_srgb`], but bit-identical on every machine.
+/// Same as [`haze_core::formula::color::linear_from_srgb`], but bit-identical on every machine.
 fn linear_from_srgb(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { power((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// Same as [`haze::formula::color::srgb_from_linear`], but bit-identical on every machine.
+/// Same as [`haze_core::formula::color::srgb_from_linear`], but bit-identical on every machine.
 pub(super) fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * power(linear, 1.0 / 2.4) - 0.055 }
 }

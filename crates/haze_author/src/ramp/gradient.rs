@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::blend_space::{Blend, HexColor, oklab_from_linear};
-use haze::error::FieldError;
-use haze::settings::{FieldVisitor, Fields, choice};
+use haze_core::error::FieldError;
+use haze_core::settings::{FieldVisitor, Fields, choice};
 
 choice! {
     /// Interpolation from one stop to the next, or from one row to the next.

@@ -9,9 +9,9 @@ use super::fit_stops::{RampFit, fit_image, validate_max_error};
 use super::gimp;
 use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
 use super::ramp_recipe::{Blend, Curve, HexColor, RampStop};
-use haze::assets::bounded_read;
-use haze::assets::image::read_color_png;
-use haze::error::{Error, FieldError, one_line};
+use haze_core::assets::bounded_read;
+use haze_core::assets::image::read_color_png;
+use haze_core::error::{Error, FieldError, one_line};
 
 /// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;

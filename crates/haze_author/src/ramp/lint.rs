@@ -4,8 +4,8 @@ use glam::Vec3;
 use image::DynamicImage;
 
 use crate::finding::Finding;
-use haze::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
-use haze::ramp::RampRole;
+use haze_core::assets::ramp::RampRole;
+use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 
 /// Minimum jump in luminance that counts as a step or a seam, of 255: a twentieth of white.
 const JUMP: f32 = 12.0;
@@ -142,8 +142,8 @@ mod tests {
     use super::super::ramp_recipe::{Curve, HexColor, RampRecipe, RampRow, RampStop};
     use super::super::template::TEMPLATES;
     use super::*;
-    use haze::assets::builtin;
-    use haze::assets::image::decode_png;
+    use haze_core::assets::image::decode_png;
+    use haze_preset::builtin;
     use image::{ImageBuffer, Rgb};
     use std::collections::BTreeSet;
     use std::path::Path;

@@ -1,8 +1,8 @@
 //! Painting on a ramp: colors near a place are multiplied.
 
 use glam::{Vec2, Vec3};
-use haze::FieldError;
-use haze::formula::color::srgb_from_linear;
+use haze_core::error::FieldError;
+use haze_core::formula::color::srgb_from_linear;
 
 use super::gradient::add_stop;
 use super::{HexColor, RampRecipe, RampRow};

@@ -10,10 +10,10 @@ pub use super::blend_space::{Blend, HexColor};
 pub use super::gradient::{Curve, RampRow, RampStop};
 use super::gradient::{PreparedRows, check_not_empty};
 use super::place_formula::Formula;
-use haze::assets::image::{Image, MAX_BYTES, MAX_SIDE};
-use haze::assets::json;
-use haze::error::{Error, FieldError};
-use haze::settings::{FieldVisitor, Fields, validate};
+use haze_core::assets::image::{Image, MAX_BYTES, MAX_SIDE};
+use haze_core::assets::json;
+use haze_core::error::{Error, FieldError};
+use haze_core::settings::{FieldVisitor, Fields, validate};
 
 /// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;

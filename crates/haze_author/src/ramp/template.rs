@@ -1,7 +1,7 @@
 //! Templates for new ramps.
 
 use super::ramp_recipe::{Curve, HexColor, RampRecipe, RampRow, RampStop};
-use haze::ramp::RampRole;
+use haze_core::assets::ramp::RampRole;
 
 /// A position, 0 to 1, and an sRGB color, `0xrrggbb`.
 type Stop = (f32, u32);

@@ -9,9 +9,9 @@ use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
 use image::Rgba;
 
 use crate::deterministic_math::exp;
-use haze::assets::image::Image;
-use haze::formula::sprite::MOTION_RANGE;
-use haze::sprite::Sprite;
+use haze_core::assets::image::Image;
+use haze_core::assets::sprite::Sprite;
+use haze_core::formula::sprite::MOTION_RANGE;
 
 /// Mip level of the sprite with the size of the detail map. Depth and motion are smooth enough for a quarter of the
 /// size.
@@ -139,7 +139,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haze::assets::sprite::SpriteLayout;
+    use haze_core::assets::sprite::SpriteLayout;
     use image::RgbaImage;
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2, Vec3};
 
-use haze::assets::image::Image;
+use haze_core::assets::image::Image;
 
 pub fn map_pixels(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Image<f32> {
     let mut picture = Image::new(size, 0.0);

@@ -9,11 +9,11 @@ use super::height::{dome_heights, map_pixels, normal_of};
 use super::lint::{clear_borders, describe_non_normals};
 use super::six_way::{Packing, pack};
 use super::y_direction::{MIN_CONFIDENCE, YDirection, y_direction};
-use haze::error::Error;
-use haze::formula::saturate;
-use haze::formula::six_way::SixWay;
-use haze::settings::choice;
-use haze::sprite::{Sprite, SpriteLayout};
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
+use haze_core::formula::saturate;
+use haze_core::formula::six_way::SixWay;
+use haze_core::settings::choice;
 
 choice! {
     /// Contents of an imported image.

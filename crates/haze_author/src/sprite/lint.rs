@@ -7,8 +7,8 @@ use image::RgbaImage;
 
 use super::y_direction::{MIN_CONFIDENCE, normal, y_direction};
 use crate::finding::Finding;
-use haze::error::Error;
-use haze::sprite::{Sprite, SpriteLayout};
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
 
 /// Minimum amount of a texel that is examined.
 const MIN_AMOUNT: f32 = 0.1;
@@ -193,8 +193,8 @@ fn loop_seam(sprite: &Sprite) -> Option<(f32, f32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haze::assets::builtin;
-    use haze::assets::image::decode_png;
+    use haze_core::assets::image::decode_png;
+    use haze_preset::builtin;
     use image::Rgba;
 
     const LAYOUT: SpriteLayout = SpriteLayout { columns: 4, rows: 2, y_down: false };

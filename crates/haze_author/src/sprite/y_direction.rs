@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use haze::sprite::Sprite;
+use haze_core::assets::sprite::Sprite;
 
 /// Detected direction of green.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,9 +3,9 @@
 use glam::IVec2;
 
 use crate::visible_system::VisibleSystem;
-use haze::assets::image::Image;
-use haze::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
-use haze::settings::{DepthDownsample, DepthSource};
+use haze_core::assets::image::Image;
+use haze_core::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
+use haze_core::settings::{DepthDownsample, DepthSource};
 
 impl VisibleSystem<'_> {
     /// Returns the scene's view depth at the resolution of the target, metres.

@@ -6,22 +6,22 @@ use half::f16;
 use crate::optical_depths::OpticalDepths;
 use crate::shade::Shade;
 use crate::visible_system::VisibleSystem;
-use haze::assets::image::Image;
-use haze::assets::ramp::Ramp;
-use haze::formula::ambient::{hemisphere_coordinate, openness_position, six_way_hemisphere};
-use haze::formula::color::bounded_light;
-use haze::formula::depth_moments::{DEPTH_SAMPLES, depth_of_sample};
-use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
-use haze::formula::lighting::{backlight_weight, coverage, direction_to_viewer, sample_light};
-use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
-use haze::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
-use haze::formula::saturate;
-use haze::formula::shadow::{
+use haze_core::assets::image::Image;
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::ambient::{hemisphere_coordinate, openness_position, six_way_hemisphere};
+use haze_core::formula::color::bounded_light;
+use haze_core::formula::depth_moments::{DEPTH_SAMPLES, depth_of_sample};
+use haze_core::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
+use haze_core::formula::lighting::{backlight_weight, coverage, direction_to_viewer, sample_light};
+use haze_core::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze_core::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
+use haze_core::formula::saturate;
+use haze_core::formula::shadow::{
     LIGHT_BLOCKS, block_of_slot, foreign_optical_depths, of_slot, own_at_mean_depth, shadow_position,
 };
-use haze::formula::six_way::{SixWay, six_way_response};
-use haze::formula::uniforms::LightUniform;
-use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
+use haze_core::formula::six_way::{SixWay, six_way_response};
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::settings::{Backlight, DiffuseMode, SoftScatterMode};
 
 impl VisibleSystem<'_> {
     /// Smoke and scene before a pixel of the smoke. `accumulated`: optical depths that its sprites found towards the lights of
@@ -177,13 +177,13 @@ impl VisibleSystem<'_> {
         light.color * (response * sample.attenuation) * self.system.six_way_color * shadow
     }
 
-    /// Place on the fire ramp. `fire`: as from [`fire_from_moments`](haze::formula::fire::fire_from_moments).
+    /// Place on the fire ramp. `fire`: as from [`fire_from_moments`](haze_core::formula::fire::fire_from_moments).
     pub fn fire_place(&self, fire: Vec2, amount: f32) -> Vec2 {
         Vec2::new(fire.x, coverage(amount * fire.y, self.system.boost))
     }
 
     /// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from
-    /// [`fire_from_moments`](haze::formula::fire::fire_from_moments).
+    /// [`fire_from_moments`](haze_core::formula::fire::fire_from_moments).
     pub fn emission(&self, fire: Vec2, amount: f32) -> Vec3 {
         let (system, ramp) = (&self.system, &self.material.fire_ramp);
         fire_response(ramp, self.settings.ramp_filter, fire, amount, system.boost) * system.fire_intensity

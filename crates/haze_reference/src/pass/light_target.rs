@@ -4,9 +4,9 @@ use glam::{IVec2, Vec4};
 
 use crate::accumulated::AccumulatedTarget;
 use crate::blend_unit::quantise;
-use haze::assets::image::Image;
-use haze::formula::color::bounded_light;
-use haze::settings::AccumulationFormat;
+use haze_core::assets::image::Image;
+use haze_core::formula::color::bounded_light;
+use haze_core::settings::AccumulationFormat;
 
 impl AccumulatedTarget<'_> {
     /// Lit target: light times amount, and amount.

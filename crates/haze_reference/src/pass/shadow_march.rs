@@ -4,9 +4,9 @@ use glam::{UVec3, Vec3, Vec4};
 use half::f16;
 
 use crate::optical_depths::trilinear;
-use haze::formula::ambient::{SKY_DIRECTIONS, SKY_STEPS};
-use haze::formula::shadow::{LIGHTS_PER_BLOCK, MAX_OPTICAL_DEPTH, SHADOW_STEPS, light_disc_offset, shadow_ray};
-use haze::view_setup::SmokeShadow;
+use haze_core::formula::ambient::{SKY_DIRECTIONS, SKY_STEPS};
+use haze_core::formula::shadow::{LIGHTS_PER_BLOCK, MAX_OPTICAL_DEPTH, SHADOW_STEPS, light_disc_offset, shadow_ray};
+use haze_core::view_setup::SmokeShadow;
 
 /// Marches from every cell of a density grid to the lights of a block. `density`: optical depths across the cells.
 pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow, block: u32) -> Vec<Vec3> {

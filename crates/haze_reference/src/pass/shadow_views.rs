@@ -3,10 +3,10 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::visible_system::VisibleSystem;
-use haze::formula::saturate;
-use haze::formula::shadow::channel_of_slot;
-use haze::formula::view::pixels_per_metre;
-use haze::view_setup::AttachmentRole;
+use haze_core::formula::saturate;
+use haze_core::formula::shadow::channel_of_slot;
+use haze_core::formula::view::pixels_per_metre;
+use haze_core::view_setup::AttachmentRole;
 
 /// Brightness of the borders between the cells of the grid.
 const CELL_BORDER: f32 = 0.7;

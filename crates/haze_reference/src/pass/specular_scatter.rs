@@ -3,13 +3,13 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::accumulated::AccumulatedTarget;
-use haze::assets::image::Image;
-use haze::formula::color::bounded_light;
-use haze::formula::depth::SKY_VIEW_DEPTH;
-use haze::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
-use haze::formula::ramp::sample_ramp_2d;
-use haze::formula::uniforms::LightUniform;
-use haze::formula::view::{pixel_from_ndc, pixels_per_metre};
+use haze_core::assets::image::Image;
+use haze_core::formula::color::bounded_light;
+use haze_core::formula::depth::SKY_VIEW_DEPTH;
+use haze_core::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
+use haze_core::formula::ramp::sample_ramp_2d;
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::formula::view::{pixel_from_ndc, pixels_per_metre};
 
 /// Quad of a light that glows.
 pub struct GlowQuad<'a> {

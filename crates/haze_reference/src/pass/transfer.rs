@@ -5,18 +5,18 @@ use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use crate::accumulated::{AccumulatedTarget, Attachments};
 use crate::blend_unit::premultiplied_over;
 use crate::shade::Shade;
-use haze::assets::image::Image;
-use haze::formula::color::{bounded_light, overdraw_color};
-use haze::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
-use haze::formula::fire::fire_from_moments;
-use haze::formula::lighting::{coverage, painted_share};
-use haze::formula::normal::normal_from_accumulation;
-use haze::formula::ramp::sample_ramp_2d;
-use haze::formula::saturate;
-use haze::formula::six_way::{SixWay, normal_from_six_way};
-use haze::formula::uniforms::LightUniform;
-use haze::settings::{CoverageMode, DebugView, DiffuseMode};
-use haze::view_setup::AttachmentRole;
+use haze_core::assets::image::Image;
+use haze_core::formula::color::{bounded_light, overdraw_color};
+use haze_core::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
+use haze_core::formula::fire::fire_from_moments;
+use haze_core::formula::lighting::{coverage, painted_share};
+use haze_core::formula::normal::normal_from_accumulation;
+use haze_core::formula::ramp::sample_ramp_2d;
+use haze_core::formula::saturate;
+use haze_core::formula::six_way::{SixWay, normal_from_six_way};
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::settings::{CoverageMode, DebugView, DiffuseMode};
+use haze_core::view_setup::AttachmentRole;
 
 /// Surface that light falls on.
 pub struct Surface {

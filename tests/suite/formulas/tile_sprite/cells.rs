@@ -1,7 +1,7 @@
 //! Formula tests of the filled cells of a sprite.
 
 use glam::{UVec2, uvec2};
-use haze::formula::{sprite, tile_sprite};
+use haze_core::formula::{sprite, tile_sprite};
 
 use super::super::Formula;
 use super::super::inputs::{HALF, flag, halves, random, test_sprite, v2, word};

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use glam::UVec2;
-use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
+use haze_core::settings::AccumulationFormat;
 use haze_demo::headless::Headless;
 
 pub enum Work {

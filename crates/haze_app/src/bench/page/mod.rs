@@ -5,7 +5,7 @@ mod chart;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use haze::settings::{Layers, RenderPath};
+use haze_core::settings::{Layers, RenderPath};
 
 use self::chart::{Axis, COLORS, Chart, Series, escaped, number};
 use super::recommendation::{break_even, recommendation};

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::preset::Preset;
 use haze::{Error, FieldError};
+use haze_preset::Preset;
 
 use crate::engine::Engine;
 use crate::inputs::image_paths;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
-use haze::image::color_conversion_notes;
-use haze::ramp::{Ramp, RampRole};
 use haze_author::finding::Finding;
 use haze_author::ramp::lint::lint_ramp;
 use haze_author::ramp::response::{DiffuseRamps, Puff};
+use haze_core::assets::image::color_conversion_notes;
+use haze_core::assets::ramp::{Ramp, RampRole};
 
 use super::ramp_io::{load_ramp_image, refuse_gradient};
 use crate::file_kind::explain_wrong_kind;

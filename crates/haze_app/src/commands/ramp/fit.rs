@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::image::{CompressionEffort, write_baked_png, write_png};
-use haze::ramp::Ramp;
-use haze::{Error, builtin};
+use haze::Error;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
+use haze_core::assets::ramp::Ramp;
+use haze_preset::{CompressionEffort, builtin, write_baked_png, write_png};
 
 use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::bake_job::{PaintedPng, check_not_painted};

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze::image::write_baked_png;
-use haze::ramp::Ramp;
-use haze::settings::Lighting;
 use haze_author::ramp::response::{FitShape, Puff, Response, ShadowShape, fit_shadow_ramp};
+use haze_core::assets::ramp::Ramp;
+use haze_core::settings::Lighting;
 use haze_demo::puff_cloud::{CloudShape, PuffKind, ring_of_lights};
+use haze_preset::write_baked_png;
 
 use super::ramp_io::{check_recipe_output, write_recipe};
 use crate::bake_job::{PaintedPng, check_not_painted};

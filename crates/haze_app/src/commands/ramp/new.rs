@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use glam::{UVec2, Vec2, Vec3};
-use haze::formula::texture::Texture2d as _;
-use haze::image::{CompressionEffort, write_png};
-use haze::ramp::{Ramp, RampRole};
 use haze::{Error, FieldError};
 use haze_author::ramp::lint::lint_ramp;
 use haze_author::ramp::template::{TEMPLATES, Template};
+use haze_core::assets::ramp::{Ramp, RampRole};
+use haze_core::formula::texture::Texture2d as _;
+use haze_preset::{CompressionEffort, write_png};
 use image::{DynamicImage, ImageBuffer, Rgb, RgbImage};
 
 use super::ramp_image::{fraction, srgb_code_at};

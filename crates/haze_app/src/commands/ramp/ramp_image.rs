@@ -1,9 +1,9 @@
 //! Draws a ramp as an image.
 
 use glam::{UVec2, Vec3};
-use haze::formula::color::srgb_from_linear;
-use haze::formula::texture::Texture2d as _;
-use haze::ramp::Ramp;
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::color::srgb_from_linear;
+use haze_core::formula::texture::Texture2d as _;
 use image::{Rgb, RgbImage};
 
 /// Returns the sRGB code, 0 to 1, of the texel nearest to `u` and `v`, both 0 to 1.

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use haze::image::{read_color_png, write_file};
 use haze::{Error, FieldError};
 use haze_author::ramp::RampRecipe;
+use haze_core::assets::image::read_color_png;
+use haze_preset::write_file;
 use image::DynamicImage;
 
 use crate::output::FileChecks;

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::UVec2;
-use haze::ramp::{Ramp, RampRole};
-use haze::settings::{Backlight, CoverageMode, DiffuseMode, RenderPath, SoftScatterMode};
-use haze::{Error, FieldError, MaterialAssets, builtin};
+use haze::{Error, FieldError, MaterialAssets};
+use haze_core::assets::ramp::{Ramp, RampRole};
+use haze_core::settings::{Backlight, CoverageMode, DiffuseMode, RenderPath, SoftScatterMode};
 use haze_demo::shot::Shot;
+use haze_preset::builtin;
 use pollster::block_on;
 
 use super::ramp_image::ramp_image;

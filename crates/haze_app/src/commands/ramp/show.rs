@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::{UVec2, Vec3};
 use haze::Error;
-use haze::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
-use haze::image::{CompressionEffort, write_png};
-use haze::ramp::Ramp;
 use haze_author::ramp::RampRecipe;
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
+use haze_preset::{CompressionEffort, write_png};
 use image::{Rgb, RgbImage, imageops};
 
 use super::ramp_image::{fraction, ramp_image, srgb_code_at};

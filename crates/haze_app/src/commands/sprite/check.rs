@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
-use haze::image::read_png;
-use haze::sprite::SpriteLayout;
 use haze_author::finding::Finding;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::lint::lint_sprite;
+use haze_core::assets::image::read_png;
+use haze_core::assets::sprite::SpriteLayout;
 
 use crate::file_kind::explain_wrong_kind;
 use crate::findings::report_findings;

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze::image::{CompressionEffort, read_png, write_png};
 use haze_author::sprite::six_way::{Packing, unpack};
+use haze_core::assets::image::read_png;
+use haze_preset::{CompressionEffort, write_png};
 
 use crate::options::choices;
 use crate::output::{FileChecks, print_line};

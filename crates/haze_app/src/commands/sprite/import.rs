@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::UVec2;
-use haze::image::{CompressionEffort, read_png, write_png};
-use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::finding::Finding;
 use haze_author::sprite::import_sprite::{ImportSource, ImportedSprite, arrange_sheet, import_sprite};
 use haze_author::sprite::lint::lint_sprite;
 use haze_author::sprite::y_direction::MIN_CONFIDENCE;
+use haze_core::assets::image::read_png;
+use haze_core::assets::sprite::SpriteLayout;
+use haze_preset::{CompressionEffort, write_png};
 
 use crate::options::{choices, number, whole_number};
 use crate::output::{FileChecks, print_line};

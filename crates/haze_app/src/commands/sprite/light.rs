@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
-use haze::formula::color::luminance;
-use haze::image::{CompressionEffort, write_file, write_png};
 use haze_author::path_trace::PathTrace;
 use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::formula::color::luminance;
+use haze_preset::{CompressionEffort, write_file, write_png};
 
 use crate::medium_options::{MediumArguments, PathTraceArguments};
 use crate::output::{FileChecks, print_line};

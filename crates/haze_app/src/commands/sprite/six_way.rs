@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clap::Args;
-use haze::image::write_baked_png;
-use haze::{Error, FieldError, builtin};
+use haze::{Error, FieldError};
 use haze_author::sprite::six_way::BakedSixWay;
+use haze_preset::{builtin, write_baked_png};
 
 use crate::bake_job::{PaintedPng, check_not_painted};
 use crate::medium_options::{MediumNumbers, medium_names};

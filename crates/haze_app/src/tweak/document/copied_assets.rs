@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use haze::Error;
-use haze::preset::{AssetFolders, Preset, backdrop_file_path};
 use haze_author::backdrop::{backdrop_names, companion_files};
+use haze_preset::{AssetFolders, Preset, backdrop_file_path};
 
 use crate::inputs::relative_image_paths;
 use crate::recipe_files::recipe_paths;

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use haze::preset::{Ease, KeyValue, Keyframe, Preset, Track};
-use haze::settings::{FieldValue, field_path, field_values, for_each_field};
+use haze_core::settings::{FieldValue, field_path, field_values, for_each_field};
+use haze_preset::{Ease, KeyValue, Keyframe, Preset, Track};
 
 use super::light_roles::light_of;
 
@@ -209,7 +209,7 @@ fn with_light(setting: &str, index: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use haze::preset::Flicker;
+    use haze_preset::Flicker;
 
     use super::*;
 

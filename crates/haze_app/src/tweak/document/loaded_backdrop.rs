@@ -1,8 +1,8 @@
 //! Scene and sky of the preset, as last loaded without error.
 
-use haze::preset::Preset;
-use haze::settings::BackdropKind;
 use haze_author::backdrop::{Backdrop, backdrop_names};
+use haze_core::settings::BackdropKind;
+use haze_preset::Preset;
 
 /// Scene and sky with the names that they were loaded by. Clones share them.
 #[derive(Clone)]

@@ -1,7 +1,7 @@
 //! Ramps and sprites of the systems, as last loaded without error.
 
 use haze::MaterialAssets;
-use haze::preset::{MaterialNames, Preset};
+use haze_preset::{MaterialNames, Preset};
 
 /// Images, and the names they were loaded by. Clones share the images.
 #[derive(Clone)]
@@ -17,7 +17,7 @@ impl LoadedMaterials {
     /// loaded, gets those that were loaded for its index before.
     pub fn of(&self, preset: &Preset) -> Vec<MaterialAssets> {
         let systems = preset.systems.iter().enumerate();
-        let find = |(index, system): (usize, &haze::preset::PresetSystem)| {
+        let find = |(index, system): (usize, &haze_preset::PresetSystem)| {
             let own = self.0.iter().find(|(names, _)| *names == system.material);
             own.or(self.0.get(index)).or(self.0.last()).map(|(_, assets)| assets.clone())
         };

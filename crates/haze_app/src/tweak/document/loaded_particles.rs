@@ -1,7 +1,7 @@
 //! Particle files of the systems, as last loaded without error.
 
-use haze::preset::Preset;
 use haze_author::particle_files::ParticleFrames;
+use haze_preset::Preset;
 
 /// Particles of each system with the path they were loaded from; `None` for a system without particle files.
 #[derive(Clone)]

@@ -18,8 +18,8 @@ pub mod sprite_edits;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 
-use haze::preset::{AssetFolders, Preset};
-use haze::{Error, FieldError, builtin};
+use haze::{Error, FieldError};
+use haze_preset::{AssetFolders, Preset, builtin};
 
 use crate::inputs::{backdrop_file_paths, image_paths};
 use crate::tweak::platform::asset_loading::particle_file_paths;

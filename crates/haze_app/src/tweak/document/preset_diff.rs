@@ -2,8 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use haze::preset::{Preset, Track};
-use haze::settings::{FieldValue, field_path, field_values, for_each_field};
+use haze_core::settings::{FieldValue, field_path, field_values, for_each_field};
+use haze_preset::{Preset, Track};
 
 use super::display_names::{display_name, sentence_case};
 use super::keyframes::track;
@@ -132,8 +132,8 @@ fn singular(list: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use haze::preset::PresetSystem;
     use haze::{Light, Settings};
+    use haze_preset::PresetSystem;
 
     use super::*;
     use crate::tweak::document::keyframes::add_key;

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use egui_gradient::GradientEditor;
-use haze::preset::{AssetFolders, MaterialNames, Preset};
-use haze::ramp::Ramp;
-use haze::settings::{FieldValue, field_values, set_field};
-use haze::{Error, MaterialAssets, builtin};
+use haze::{Error, MaterialAssets};
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, fit_image};
+use haze_core::assets::ramp::Ramp;
+use haze_core::error::builtin_path;
+use haze_core::settings::{FieldValue, field_values, set_field};
+use haze_preset::{AssetFolders, MaterialNames, Preset, builtin};
 
 use super::Document;
 use crate::tweak::platform::file_io::{Stamp, read_color_png, write_baked_png};
@@ -245,7 +246,7 @@ pub fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -
 fn copy_of(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
     let Some(builtin) = builtin::find(builtin::RAMPS, name) else { return Ok(name.into()) };
-    let recipe = RampRecipe::parse(&builtin::path(name), builtin.recipe)?;
+    let recipe = RampRecipe::parse(&builtin_path(name), builtin.recipe)?;
     let file = file_io::free_copy_name(name, |file| {
         let picture = folder.join(file);
         !file_io::is_taken(&picture) && !file_io::is_taken(&recipe_of(&picture))

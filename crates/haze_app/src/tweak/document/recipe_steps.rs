@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use haze::preset::Preset;
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_preset::Preset;
 
 use super::display_names::sentence_case;
 use super::preset_diff::step_name;

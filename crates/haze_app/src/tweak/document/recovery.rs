@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use haze::Error;
-use haze::preset::Preset;
+use haze_preset::Preset;
 
 use super::Document;
 use crate::tweak::platform::clock::{Duration, Instant};

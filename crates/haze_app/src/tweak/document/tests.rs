@@ -2,7 +2,7 @@ use std::fs;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use haze::settings::set_field;
+use haze_core::settings::set_field;
 
 use super::*;
 

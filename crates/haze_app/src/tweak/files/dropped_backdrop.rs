@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::preset::AssetFolders;
-use haze::settings::BackdropKind;
 use haze::{Error, FieldError};
 use haze_author::backdrop::Backdrop;
+use haze_core::settings::BackdropKind;
+use haze_preset::AssetFolders;
 
 use super::dropped_image::place_of;
 use crate::tweak::platform::{IS_PAGE, asset_loading, file_io};

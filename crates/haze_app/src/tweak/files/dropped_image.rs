@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::preset::{AssetFolders, MaterialNames, Preset};
-use haze::ramp::RampRole;
-use haze::settings::{FieldRef, for_each_field, set_field};
-use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::preset::{no_effect_reason, role_warnings};
+use haze_core::assets::ramp::RampRole;
+use haze_core::assets::sprite::SpriteLayout;
+use haze_core::settings::{FieldRef, for_each_field, set_field};
+use haze_preset::{AssetFolders, MaterialNames, Preset};
 
 use crate::recipe_files::six_way_path;
 use crate::tweak::document::sprite_edits::sprite_source::{detail_of, recipe_of};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 use haze::Error;
-use haze::preset::{AssetFolders, backdrop_kind};
+use haze_preset::{AssetFolders, backdrop_kind};
 
 use super::dropped_backdrop::DroppedBackdrop;
 use super::dropped_image::DroppedImage;

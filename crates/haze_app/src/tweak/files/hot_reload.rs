@@ -6,13 +6,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use haze::preset::{MaterialNames, Preset};
 use haze::shader::{self, Sources};
 use haze::{Error, MaterialAssets};
 use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::ParticleFrames;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
+use haze_preset::{MaterialNames, Preset};
 
 use crate::inputs::{backdrop_file_paths, relative_image_paths};
 use crate::recipe_files::recipe_paths;

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::preset::AssetFolders;
-use haze::{Error, builtin};
+use haze::Error;
 use haze_demo::tonemap_pass::tonemap;
+use haze_preset::{AssetFolders, builtin};
 use image::RgbImage;
 
 use crate::tweak::platform::file_io::Stamp;

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use haze::{Error, FieldError, builtin};
+use haze::{Error, FieldError};
 use haze_author::backdrop::backdrop_names;
+use haze_preset::builtin;
 
 use crate::inputs::relative_image_paths;
 use crate::share_link::Look;

@@ -9,11 +9,11 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use glam::UVec2;
-use haze::preset::Preset;
 use haze::{Error, FieldError};
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_demo::shot::Shot;
+use haze_preset::Preset;
 
 use super::persistence::Layout;
 use super::window_screenshot;

@@ -3,8 +3,8 @@
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
-use haze::preset::Preset;
-use haze::settings::{Choice, FieldVisitor, Fields, field_path};
+use haze_core::settings::{Choice, FieldVisitor, Fields, field_path};
+use haze_preset::Preset;
 
 use crate::tweak::session::macro_param::MacroParam;
 use crate::tweak::session::slider_range::{needs_log_slider, slider_range};

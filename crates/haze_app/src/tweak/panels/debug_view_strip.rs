@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Sense, Ui, Vec2};
 use glam::UVec2;
-use haze::settings::DebugView;
+use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 
 use crate::debug_view_sheet::STAGES;

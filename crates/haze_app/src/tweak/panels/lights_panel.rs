@@ -2,10 +2,10 @@
 
 use eframe::egui::{self, Ui};
 use glam::UVec2;
-use haze::formula::color::luminance;
-use haze::frame::MAX_LIGHTS;
-use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind, LightRole};
+use haze_core::formula::color::luminance;
+use haze_core::frame::MAX_LIGHTS;
+use haze_preset::{Camera, Preset};
 
 use super::comparison_bar::width;
 use super::rows::color_popup::swatch;

@@ -1,8 +1,8 @@
 //! The present smoke with every ramp of a role, side by side. A click takes one.
 
 use eframe::egui::{self, Sense, Ui, Vec2};
-use haze::ramp::RampRole;
-use haze::settings::{ImageRole, set_field};
+use haze_core::assets::ramp::RampRole;
+use haze_core::settings::{ImageRole, set_field};
 
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::document::ramp_edits::ramp_name;

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 use haze::LightRole;
-use haze::preset::{Preset, PresetSystem};
+use haze_preset::{Preset, PresetSystem};
 
 use super::rows::setting_rows::{FIVE_VALUES, RowContext, show_named};
 use super::rows::{self, Row, RowRequest, setting_rows, value_control};

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
-use haze::settings::ScaleMode;
+use haze_core::settings::ScaleMode;
 
 use super::rows::setting_rows::{self, RowContext};
 use super::rows::value_text::grouped;
@@ -290,7 +290,7 @@ mod tests {
         let before = harness.state_mut().session_mut().document.preset.clone();
         let session = harness.state_mut().session_mut();
         session.view.tab = crate::tweak::session::view_options::Tab::Performance;
-        session.timings.budget = haze::settings::Budget { milliseconds: 0.05, ..Default::default() };
+        session.timings.budget = haze_core::settings::Budget { milliseconds: 0.05, ..Default::default() };
         harness.run_steps(2);
         assert_eq!(scale(&mut harness), None);
         harness.get_by_label("Keep GPU time under 0.05 ms").click();

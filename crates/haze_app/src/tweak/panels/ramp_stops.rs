@@ -5,9 +5,8 @@ use std::path::Path;
 use eframe::egui::{self, Color32, Ui};
 use egui_gradient::DisplayOptions;
 use glam::Vec2;
-use haze::builtin;
-use haze::preset::AssetFolders;
 use haze_author::ramp::{Blend, RampRecipe, RampRow};
+use haze_preset::{AssetFolders, builtin};
 
 use super::gradient_drag::{self, DraggedGradient};
 use super::rows::value_control;

@@ -3,10 +3,10 @@
 use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
 use glam::UVec2;
 use haze::MaterialAssets;
-use haze::formula::color::luminance;
-use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
-use haze::ramp::Ramp;
-use haze::settings::{ImageRole, RampFilter, set_field};
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::color::luminance;
+use haze_core::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze_core::settings::{ImageRole, RampFilter, set_field};
 use haze_reference::SystemProbe;
 
 use super::look_browser;

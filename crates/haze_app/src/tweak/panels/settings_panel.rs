@@ -1,9 +1,9 @@
 //! Settings panel at the right of the window: the look first, then the parts of the preset.
 
 use eframe::egui::{self, Ui};
-use haze::preset::Preset;
-use haze::settings::{Fields, field_path};
 use haze_author::backdrop::Backdrop;
+use haze_core::settings::{Fields, field_path};
+use haze_preset::Preset;
 
 use super::rows::key_mark::KeyMarks;
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
@@ -231,7 +231,7 @@ mod tests {
     use eframe::egui::{Role, Theme, Vec2};
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
     use egui_kittest::{Harness, Node};
-    use haze::settings::FieldValue;
+    use haze_core::settings::FieldValue;
 
     use crate::tweak::document::display_names::display_name;
     use crate::tweak::panels::rows::value_text::shown_value;

@@ -2,11 +2,11 @@
 
 use eframe::egui::Ui;
 use glam::Vec3;
-use haze::frame::MAX_LIGHTS;
-use haze::preset::Preset;
 use haze::{Light, LightKind, LightRole};
 use haze_author::daylight::{Body, SUN_ELEVATION, TIMES_OF_DAY, body_of, set_time, sun_of};
 use haze_author::light_angles::{Angles, MAX_ELEVATION, to_angles};
+use haze_core::frame::MAX_LIGHTS;
+use haze_preset::Preset;
 
 use super::rows::setting_rows::RowContext;
 use super::rows::{Row, value_control};
@@ -103,8 +103,8 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
     use haze::LightRole;
-    use haze::preset::Preset;
     use haze_author::daylight::Daylight;
+    use haze_preset::Preset;
 
     use super::*;
     use crate::tweak::window::Window;

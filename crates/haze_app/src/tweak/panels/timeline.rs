@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, Ui};
 use glam::UVec2;
-use haze::preset::{MAX_TIME, Preset};
 use haze_author::preset::no_effect_reason;
+use haze_preset::{MAX_TIME, Preset};
 
 use super::narrow;
 use super::rows::icon_button::{self, Icon};

@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::preset::{AssetFolders, MaterialNames, Preset, image_file_path};
-use haze::ramp::Ramp;
-use haze::settings::BackdropKind;
 use haze::shader::Sources;
 use haze::{Error, MaterialAssets};
 use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::{ParticleFrames, load_particle_files};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::ramp::Ramp;
+use haze_core::settings::BackdropKind;
 use haze_demo::shot::Shot;
+use haze_preset::{AssetFolders, MaterialNames, Preset, image_file_path};
 
 pub use crate::inputs::particle_file_paths;
 

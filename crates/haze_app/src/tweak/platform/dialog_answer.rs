@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use haze::settings::BackdropKind;
+use haze_core::settings::BackdropKind;
 
 /// Purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 use haze::Error;
-use haze::image::FileIdentity;
+use haze_preset::FileIdentity;
 
 use crate::file_kind::files_to_open;
 

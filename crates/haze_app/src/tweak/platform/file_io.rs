@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use haze::Error;
-use haze::assets::{bounded_read, json};
-pub use haze::image::{CompressionEffort, read_color_png, read_png, write_baked_png, write_png, write_state_file};
-use haze::image::{MAX_BYTES, write_file};
-use haze::preset::Preset;
 use haze_author::backdrop::MAX_BACKDROP_FILE_BYTES;
 use haze_author::particle_files;
+use haze_core::assets::image::MAX_BYTES;
+pub use haze_core::assets::image::{read_color_png, read_png};
+use haze_core::assets::{bounded_read, json};
+pub use haze_preset::{CompressionEffort, write_baked_png, write_png, write_state_file};
+use haze_preset::{Preset, write_file};
 
 pub use super::disk::{
     Stamp, Watcher, absolute, dropped_file, exists, is_same, is_taken, link_address, list, make_folder, offer_download,

@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use haze::Error;
-use haze::assets::json;
+use haze_core::assets::json;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 

@@ -6,10 +6,10 @@ use glam::UVec2;
 use haze::Error;
 #[cfg(not(target_arch = "wasm32"))]
 use haze::FieldError;
-#[cfg(not(target_arch = "wasm32"))]
-use haze::image::CompressionEffort;
 use haze::shader::Sources;
 use haze_demo::shot::Shot;
+#[cfg(not(target_arch = "wasm32"))]
+use haze_preset::CompressionEffort;
 
 use super::IS_PAGE;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,8 +1,8 @@
 //! Comparison of the image with a second one, to show the image error that a saving costs.
 
-use haze::preset::{Camera, Preset};
-use haze::settings::RenderPath;
+use haze_core::settings::RenderPath;
 use haze_demo::shot::Shot;
+use haze_preset::{Camera, Preset};
 
 use super::light_view::LightView;
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;

@@ -2,7 +2,7 @@
 
 use eframe::egui::Rect;
 use glam::Vec3;
-use haze::preset::{Preset, PresetSystem};
+use haze_preset::{Preset, PresetSystem};
 
 /// One hint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use eframe::egui::{Response, Vec2};
 use glam::{UVec2, Vec3};
-use haze::formula::tonemap::tonemapped;
+use haze_core::formula::tonemap::tonemapped;
 use haze_reference::Probe;
 
 use super::ramp_survey::{RampPlace, RampSurvey};

@@ -3,9 +3,9 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
-use haze::frame::MAX_LIGHTS;
-use haze::preset::Preset;
 use haze::{Light, LightRole};
+use haze_core::frame::MAX_LIGHTS;
+use haze_preset::Preset;
 
 use crate::tweak::document::keyframes::{copy_light_tracks, renumber_lights};
 use crate::tweak::document::light_defaults::light_name;
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn the_key_light_is_the_one_with_the_role_or_else_the_brightest_in_the_image() {
-        let systems = vec![haze::preset::PresetSystem::default()];
+        let systems = vec![haze_preset::PresetSystem::default()];
         let mut preset = Preset { lights: lights(&[1.0, 2.0, 3.0]), systems, ..Preset::default() };
         let mut shown = LightView::default();
         shown.follow(&preset.lights);
@@ -268,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_held_slider_stays_with_its_light() {
-        let systems = vec![haze::preset::PresetSystem::default()];
+        let systems = vec![haze_preset::PresetSystem::default()];
         let mut preset = Preset { lights: lights(&[1.0, 2.0]), systems, ..Preset::default() };
         let mut shown = LightView::default();
         shown.follow(&preset.lights);

@@ -2,11 +2,11 @@
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 use glam::UVec2;
-use haze::preset::AssetFolders;
-use haze::ramp::Ramp;
-use haze::{Error, builtin};
+use haze::Error;
+use haze_core::assets::ramp::Ramp;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
+use haze_preset::{AssetFolders, builtin};
 use image::RgbImage;
 
 use crate::tweak::document::ramp_edits::ramp_slots;
@@ -148,7 +148,7 @@ fn with_ramp(shot: &Shot, system: usize, field: &str, name: &str, ramp: Ramp) ->
         });
     }
     // An unknown field has no slot either.
-    _ = haze::settings::set_field(&mut shot.preset, &path, name);
+    _ = haze_core::settings::set_field(&mut shot.preset, &path, name);
     shot
 }
 

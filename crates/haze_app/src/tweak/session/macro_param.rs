@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
-use haze::preset::PresetSystem;
+use haze_preset::PresetSystem;
 
 /// Computed value of a system.
 pub struct MacroParam {

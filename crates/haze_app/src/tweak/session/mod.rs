@@ -25,13 +25,13 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::preset::{AssetFolders, Preset};
-use haze::settings::{BackdropKind, DebugView, FieldValue, field_values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::{Tooltips, no_effect_reason};
+use haze_core::settings::{BackdropKind, DebugView, FieldValue, field_values};
 use haze_demo::shot::Shot;
+use haze_preset::{AssetFolders, Preset};
 
 use crate::tweak::document::Document;
 use crate::tweak::document::keyframes::{self, KeyframeEdit};

@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use glam::{UVec3, Vec3, Vec4Swizzles};
-use haze::builtin::{self, Builtin};
-use haze::image::{decode_color_png, decode_png};
-use haze::settings::ImageRole;
-use haze::sprite::Sprite;
-use haze::{Error, noise};
+use haze::Error;
+use haze_core::assets::image::{decode_color_png, decode_png};
+use haze_core::assets::noise;
+use haze_core::assets::sprite::Sprite;
+use haze_core::error::builtin_path;
+use haze_core::settings::ImageRole;
+use haze_preset::builtin::{self, Builtin};
 use image::imageops::{self, FilterType};
 
 use crate::tweak::platform::file_io::{self, Stamp};
@@ -131,7 +133,7 @@ fn thumbnail(role: ImageRole, source: &ImageSource) -> Result<ColorImage, Error>
     match (role, source) {
         (ImageRole::Sprite, ImageSource::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
         (ImageRole::Noise, ImageSource::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
-        (_, ImageSource::Builtin(builtin)) => decoded(role, &builtin::path(builtin.name), builtin.bytes),
+        (_, ImageSource::Builtin(builtin)) => decoded(role, &builtin_path(builtin.name), builtin.bytes),
         (_, ImageSource::File(path)) => decoded(role, path, &file_io::read_picture(path)?),
     }
 }

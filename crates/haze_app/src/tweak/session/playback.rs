@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use haze::preset::Preset;
+use haze_preset::Preset;
 
 /// Clock that can be paused, stepped and looped. Times are in seconds since the emission began.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +61,7 @@ impl Playback {
 
 #[cfg(test)]
 mod tests {
-    use haze::preset::KeyValue;
+    use haze_preset::KeyValue;
 
     use super::*;
     use crate::tweak::document::keyframes::set_key;

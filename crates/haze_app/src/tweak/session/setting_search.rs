@@ -1,8 +1,8 @@
 //! Search for settings by name or tooltip.
 
-use haze::preset::Preset;
-use haze::settings::{field_path, for_each_field};
 use haze_author::preset::Tooltips;
+use haze_core::settings::{field_path, for_each_field};
+use haze_preset::Preset;
 
 use super::light_view::LightView;
 use super::look_controls::{ControlTarget, LOOK_CONTROLS};
@@ -216,7 +216,7 @@ fn tab_of(path: &str) -> Tab {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haze::settings::field_values;
+    use haze_core::settings::field_values;
 
     fn first(text: &str) -> String {
         let preset = Preset::load("column").unwrap();

@@ -1,10 +1,10 @@
 //! Extent of the smoke at the shown time.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
-use haze::frame::{SpriteExtent, particle_bounds};
-use haze::preset::{Camera, Preset, PresetSystem};
 use haze::{Bounds, Light, LightKind, Particle};
 use haze_author::particle_files::{self, ParticleFrames};
+use haze_core::frame::{SpriteExtent, particle_bounds};
+use haze_preset::{Camera, Preset, PresetSystem};
 
 /// Particles and bounds of a preset's systems, cached until the systems or the time change.
 #[derive(Default)]

@@ -3,13 +3,13 @@
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _, Vec4Swizzles as _};
 use haze::MaterialAssets;
-use haze::formula::color::srgb_color;
-use haze::formula::lighting::diffuse_coordinate;
-use haze::formula::normal::normal_from_accumulation;
-use haze::formula::ramp::sample_ramp;
-use haze::formula::sprite::{MOTION_RANGE, flipbook_frames, sample_detail, sample_sprite, sprite_lod};
-use haze::image::Image;
-use haze::settings::{NormalDecode, NormalEncoding, RampFilter};
+use haze_core::assets::image::Image;
+use haze_core::formula::color::srgb_color;
+use haze_core::formula::lighting::diffuse_coordinate;
+use haze_core::formula::normal::normal_from_accumulation;
+use haze_core::formula::ramp::sample_ramp;
+use haze_core::formula::sprite::{MOTION_RANGE, flipbook_frames, sample_detail, sample_sprite, sprite_lod};
+use haze_core::settings::{NormalDecode, NormalEncoding, RampFilter};
 
 use super::sprite_view::SpriteChannel;
 
@@ -97,8 +97,8 @@ fn code(material: &MaterialAssets, view: &View, uv: Vec2) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
-    use haze::preset::MaterialNames;
-    use haze::settings::SpriteSettings;
+    use haze_core::settings::SpriteSettings;
+    use haze_preset::MaterialNames;
 
     use super::*;
 

@@ -1,6 +1,6 @@
 //! View options of the sprite preview.
 
-use haze::sprite::Sprite;
+use haze_core::assets::sprite::Sprite;
 
 use haze_author::light_angles::Angles;
 

@@ -1,6 +1,6 @@
 //! View state of tracks: the open list, the selected track, copied keyframes. It is not part of the preset.
 
-use haze::preset::Keyframe;
+use haze_preset::Keyframe;
 
 /// View state of the list of tracks.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! View options of the preset.
 
 use glam::UVec2;
-use haze::settings::DebugView;
+use haze_core::settings::DebugView;
 
 use super::light_view::LightView;
 use super::sprite_view::SpriteView;

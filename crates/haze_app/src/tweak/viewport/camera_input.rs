@@ -3,7 +3,7 @@
 
 use eframe::egui::{self, Key, Modifiers, PointerButton, Response, Ui};
 use glam::Vec3;
-use haze::preset::Camera;
+use haze_preset::Camera;
 
 use super::camera_moves::{dolly, fly, look, orbit, pan};
 use super::screen_projection::ScreenProjection;

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec2, Vec3};
 use haze::Bounds;
-use haze::preset::Camera;
+use haze_preset::Camera;
 
 /// Least distance between the camera and its target, metres.
 const MIN_DISTANCE: f32 = 0.05;

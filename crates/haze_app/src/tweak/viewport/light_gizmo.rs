@@ -2,8 +2,8 @@
 
 use eframe::egui::{Color32, CursorIcon, Key, Pos2, Response, Ui};
 use glam::Vec3;
-use haze::preset::Track;
 use haze::{Light, LightKind};
+use haze_preset::Track;
 
 use super::handle_drag::HandleDrag;
 use super::light_handle::{Cone, Handle, SQUARE, Shape, handles, hovered};

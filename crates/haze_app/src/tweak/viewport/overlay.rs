@@ -146,7 +146,7 @@ fn label(painter: &Painter, rect: Rect, at: Pos2, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haze::preset::Camera;
+    use haze_preset::Camera;
 
     #[test]
     fn a_box_has_twelve_edges_and_its_section_lies_on_the_plane() {

@@ -5,12 +5,12 @@ use std::f32::consts::TAU;
 
 use eframe::egui::{self, Align2, Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use glam::{UVec2, Vec3, vec3};
-use haze::settings::{Backlight, Settings};
 use haze::{Error, Light, LightKind, MaterialAssets};
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
 use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::BakedSixWay;
+use haze_core::settings::{Backlight, Settings};
 use serde::{Deserialize, Serialize};
 
 use crate::puff_sheet::{ComparedImages, image_pairs};

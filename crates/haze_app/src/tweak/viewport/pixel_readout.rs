@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use haze::formula::color::luminance;
+use haze_core::formula::color::luminance;
 use haze_reference::{LightProbe, ShadowProbe, SystemProbe};
 
 use crate::tweak::session::Session;

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Pos2, Rect, Vec2, vec2};
 use glam::Vec3;
-use haze::preset::Camera;
+use haze_preset::Camera;
 
 use super::camera_moves::sides;
 use super::ray::Ray;

@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, PointerButton, Response, Ui};
 use glam::{Vec2, Vec3};
-use haze::formula::color::luminance;
 use haze_author::ramp::RampRecipe;
+use haze_core::formula::color::luminance;
 use haze_reference::SystemProbe;
 
 use crate::tweak::document::ramp_edits::{RampOrigin, ramp_name};

@@ -8,8 +8,8 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, vec2
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
-use haze::preset::Camera;
 use haze::{Light, LightKind, LightRole};
+use haze_preset::Camera;
 
 use super::light_handle::{Handle, Shape, handles};
 use super::screen_projection::ScreenProjection;

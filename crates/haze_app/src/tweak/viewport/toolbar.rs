@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, PopupCloseBehavior, Rect, Ui};
 use glam::Vec3;
-use haze::settings::{Choice, FieldVisitor, Fields};
 use haze_author::preset::Tooltips;
+use haze_core::settings::{Choice, FieldVisitor, Fields};
 
 use crate::tweak::document::display_names::display_name;
 use crate::tweak::panels::narrow::is_narrow;

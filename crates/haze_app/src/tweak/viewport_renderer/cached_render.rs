@@ -4,11 +4,11 @@ use eframe::egui::epaint::ViewportInPixels;
 use eframe::wgpu;
 use glam::{UVec2, Vec2};
 use haze::Error;
-use haze::preset::Preset;
-use haze::settings::{DebugView, DepthSource};
+use haze_core::settings::{DebugView, DepthSource};
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{TonemapBindGroup, TonemapUniform};
+use haze_preset::Preset;
 
 /// Encoder, device and rectangle that egui gives for drawing.
 pub struct Target<'a> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use eframe::wgpu;
 use glam::Vec4;
-use haze::image::Image;
+use haze_core::assets::image::Image;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::exposure;
 

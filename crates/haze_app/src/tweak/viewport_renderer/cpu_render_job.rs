@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec4;
 use haze::Error;
-use haze::image::Image;
+use haze_core::assets::image::Image;
 use haze_demo::shot::Shot;
 
 use crate::tweak::platform::clock::{self, Duration, Instant};

@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use haze::preset::Preset;
-use haze::settings::Budget;
-use haze::{FrameTimes, ScaleBudget};
+use haze::FrameTimes;
 use haze_author::preset::Tooltips;
+use haze_core::settings::{Budget, ScaleBudget};
+use haze_preset::Preset;
 
 use super::{RenderStats, ViewportRenderer};
 

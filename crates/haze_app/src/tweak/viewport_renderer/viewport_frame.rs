@@ -2,8 +2,8 @@
 
 use eframe::wgpu;
 use glam::{IVec2, UVec2, Vec2};
-use haze::settings::DebugView;
 use haze::{Error, FrameCounts, FrameTimes, LightingChoice, Overdraw, PathChoice, ScaleChoice, Timing};
+use haze_core::settings::DebugView;
 use haze_demo::capture::Capture;
 use haze_demo::image_metrics::Comparison;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenMemory};

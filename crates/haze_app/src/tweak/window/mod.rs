@@ -17,7 +17,7 @@ use std::path::Path;
 
 use eframe::egui::{self, Ui};
 use haze::Error;
-use haze::settings::DebugView;
+use haze_core::settings::DebugView;
 
 use crate::tweak::files::export_job::{ExportJob, ExportKind};
 use crate::tweak::files::file_actions::FileActions;

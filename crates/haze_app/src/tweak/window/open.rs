@@ -2,7 +2,7 @@
 
 use eframe::{egui, egui_wgpu};
 use haze::Error;
-use haze::error::one_line;
+use haze_core::error::one_line;
 use haze_demo::headless::check_address_space;
 
 use super::device::setup;

@@ -6,7 +6,7 @@ mod task_script;
 use eframe::egui::{Key, Modifiers, Pos2, Rect, Role, Theme, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, SnapshotOptions};
-use haze::settings::DebugView;
+use haze_core::settings::DebugView;
 
 use super::Window;
 use super::testing::{brightness, picture, window};

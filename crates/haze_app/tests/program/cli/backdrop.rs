@@ -17,7 +17,7 @@ fn a_scene_and_a_sky_are_rendered_from_any_folder() {
         let arguments = [&["render", "--size", "48x27", "--backend", "cpu", "-o", "out.png"], more].concat();
         let output = haze(folder.path(), &arguments);
         assert!(output.status.success(), "{more:?}: {}", stderr(&output));
-        haze::image::read_png(&folder.path().join("out.png")).unwrap()
+        haze_core::assets::image::read_png(&folder.path().join("out.png")).unwrap()
     };
     let images = [
         picture(&[]),

@@ -91,7 +91,7 @@ fn pixels_of_images_are_as_asked_for() {
     let picture = |arguments: &[&str]| {
         let output = render(folder.path(), arguments);
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
-        haze::image::read_png(&folder.path().join("out.png")).unwrap()
+        haze_core::assets::image::read_png(&folder.path().join("out.png")).unwrap()
     };
     let color = |arguments: &[&str]| picture(arguments).color();
     let empty = "environment.scene=empty";

@@ -47,7 +47,7 @@ fn a_sheet_has_one_image_per_value() {
         let arguments = ["sheet", "fence", "--vary", vary, "--size", "96x54", "--backend", "cpu", "-o", "sheet.png"];
         let output = haze(folder.path(), &arguments);
         assert!(output.status.success(), "{}", stderr(&output));
-        haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
+        haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
     // Two images per row, the last cell empty.
     let picture = sheet("accumulate.scale=1,4,16");
@@ -79,7 +79,7 @@ fn each_frame_is_written_to_its_own_file() {
     // The same frames on one sheet, row by row.
     run(&["flipbook.png", "--frames", "9..11", "--rate", "2", "--time", "4", "--sheet", "2x2"]);
     assert_eq!(size_of(&folder.path().join("flipbook.png")), (64, 36));
-    let picture = |name: &str| haze::image::read_png(&folder.path().join(name)).unwrap().to_rgb8();
+    let picture = |name: &str| haze_core::assets::image::read_png(&folder.path().join(name)).unwrap().to_rgb8();
     let flipbook = picture("flipbook.png");
     assert_eq!(image::imageops::crop_imm(&flipbook, 0, 18, 32, 18).to_image(), picture("f_011.png"));
 
@@ -105,7 +105,7 @@ fn smoke_is_written_alone() {
         let output = haze(folder.path(), &[&SMALL[..], arguments, &["--transparent"]].concat());
         assert!(output.status.success(), "{}", stderr(&output));
     };
-    let picture = |name: &str| haze::image::read_png(&folder.path().join(name)).unwrap();
+    let picture = |name: &str| haze_core::assets::image::read_png(&folder.path().join(name)).unwrap();
     run(&["one.png", "--time", "9"]);
     let one = picture("one.png");
     assert!(one.color().has_alpha());

@@ -146,7 +146,7 @@ fn a_failed_write_keeps_the_old_file() {
 #[test]
 #[ignore = "started by a_program_killed_during_a_write_keeps_the_old_file"]
 fn write_new_contents() {
-    haze::image::write_file(Path::new(&std::env::var_os("FILE").unwrap()), &[b'n'; 8192]).unwrap();
+    haze_preset::write_file(Path::new(&std::env::var_os("FILE").unwrap()), &[b'n'; 8192]).unwrap();
 }
 
 #[cfg(target_os = "linux")]

@@ -63,7 +63,7 @@ fn presets_are_listed_checked_and_described() {
     };
     let list = text(&["preset", "list"]);
     let names: Vec<&str> = list.lines().map(|line| line.split_once("  ").unwrap_or_default().0).collect();
-    assert_eq!(names, haze::assets::builtin::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>());
+    assert_eq!(names, haze_preset::builtin::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>());
     assert_eq!(text(&["preset", "check", "column", "inside"]), "column: good\ninside: good\n");
     let idle = r#"{"version": 1, "name": "x", "systems": [{"name": "s", "settings": {"blend_mode": "additive", "boost": 2}}]}"#;
     std::fs::write(folder.path().join("idle.json"), idle).unwrap();

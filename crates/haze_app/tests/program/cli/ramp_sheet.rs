@@ -22,7 +22,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     let sheet = |arguments: &[&str]| {
         let fixed = ["ramp", "sheet", "fence", "--backend", "cpu", "-o", "sheet.png"];
         stdout_of(folder.path(), &[&fixed[..], arguments].concat());
-        haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
+        haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
     // The image above the strip of the ramp.
     let above = |picture: &image::RgbImage, x, y| image::imageops::crop_imm(picture, x, y, 48, 25).to_image();
@@ -30,7 +30,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
         let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
         let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
         stdout_of(folder.path(), &[&fixed[..], &sets].concat());
-        above(&haze::image::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
+        above(&haze_core::assets::image::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
     };
     let cell = |sheet: &image::RgbImage, x: u32| above(sheet, 12 + x * 60, 40);
     // Two images per row, sorted by name.
@@ -59,7 +59,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     let output = haze(folder.path(), &[&arguments[..], &["--size", "96x54", "-o", "sheet.png"]].concat());
     assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(1), 1), "{}", stderr(&output));
     assert!(stderr(&output).contains("diffuse_broken.png: not a PNG"), "{}", stderr(&output));
-    let left = haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
+    let left = haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
     assert!(cell(&left, 0) == cell(&diffuse, 0) && cell(&left, 1) == cell(&diffuse, 1));
 
     let line = |arguments: &[&str]| refusal(folder.path(), &[&["ramp", "sheet", "fence"], arguments].concat());

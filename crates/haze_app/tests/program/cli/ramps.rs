@@ -7,8 +7,8 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use haze::ramp::RampRole;
 use haze_author::ramp::template::TEMPLATES;
+use haze_core::assets::ramp::RampRole;
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA};
 
 use super::{folder, haze, refusal, stderr};
@@ -76,7 +76,7 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
         let stated: f32 = line.rsplit("at most ").next().unwrap().split('/').next().unwrap().parse().unwrap();
         assert!(line.starts_with("mine.ramp.json: ") && stated <= error, "{line}");
         stdout_of(folder.path(), &["ramp", "bake", "mine.ramp.json"]);
-        let read = |path: &Path| haze::image::read_png(path).unwrap().into_rgb16();
+        let read = |path: &Path| haze_core::assets::image::read_png(path).unwrap().into_rgb16();
         let (before, after) = (read(source.as_ref()), read(&folder.path().join("mine.png")));
         let off = before.iter().zip(after.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
         assert!((f32::from(off) / 257.0 - stated).abs() < 0.06, "{line}: {off}");
@@ -136,7 +136,7 @@ fn a_ramp_is_shown_as_text_and_as_an_image() {
     assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
     assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
     stdout_of(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
-    let picture = haze::image::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
+    let picture = haze_core::assets::image::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
     assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
     assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
     let line = refusal(folder.path(), &["ramp", "show", "toon.png", "-o", "toon.png"]);
@@ -179,7 +179,7 @@ fn a_blank_of_every_role_has_labelled_axes() {
         };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
         // Text at both ends: without it, a ramp changes by less than a code from one line to the next. The check allows 12.
-        let picture = haze::image::read_png(&folder.path().join(&name)).unwrap().to_luma8();
+        let picture = haze_core::assets::image::read_png(&folder.path().join(&name)).unwrap().to_luma8();
         let middle = picture.height() / 2;
         for end in [0..150, 362..512] {
             let is_edge = |x: &u32, y| picture[(*x, y)].0[0].abs_diff(picture[(*x, y + 1)].0[0]) > 6;
@@ -225,7 +225,7 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     assert_eq!(told.lines().filter(|line| line.contains('°')).count(), 32, "{told}");
     for name in ["lit", "against"] {
         let picture = folder.path().join(name).with_extension("png");
-        assert_eq!(haze::image::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
+        assert_eq!(haze_core::assets::image::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
         assert!(haze_author::ramp::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5);
     }
     assert!(folder.path().join("sheet.png").is_file());
@@ -258,7 +258,7 @@ fn sprite_light_path_traces_a_sprite() {
     let light = ["sprite", "light", "ball", "--medium", "milk", "--size", "16", "--samples", "4", "-o", "a.png"];
     let told = stdout_of(folder.path(), &[&light[..], &["--volume", "ball.vol"]].concat());
     assert_eq!(told.lines().count(), 17, "{told}");
-    assert_eq!(haze::image::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
+    assert_eq!(haze_core::assets::image::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
     let grid = fs::read(folder.path().join("ball.vol")).unwrap();
     let refused = |option: &str, text: &str| refusal(folder.path(), &["sprite", "light", "-o", "b.png", option, text]);
     for (option, text, range) in [
@@ -284,7 +284,7 @@ fn a_file_of_another_kind_is_refused_with_the_right_command() {
     write("recipe.json", &TEMPLATES[0].recipe().to_text());
     // Recognized by its name, although its content is broken.
     write("broken.sprite.json", "{");
-    write("a.json", &haze::preset::Preset::load(Path::new("column")).unwrap().to_text(""));
+    write("a.json", &haze_preset::Preset::load(Path::new("column")).unwrap().to_text(""));
     for (command, file, is, other) in [
         ("preset", "a.ramp.json", "a ramp recipe", "haze ramp check"),
         ("preset", "recipe.json", "a ramp recipe", "haze ramp check"),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use haze::settings::DebugView;
+use haze_core::settings::DebugView;
 
 use super::{folder, haze, refusal, render, size_of, stderr};
 
@@ -11,13 +11,13 @@ fn shade_tree_sheet_shows_every_stage() {
     let folder = folder();
     let output = haze(folder.path(), &["shade-tree", "--size", "256x144", "--backend", "cpu", "-o", "sheet.png"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    let sheet = haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
+    let sheet = haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
     // Every stage is on the sheet as `haze render --view` renders it, in three rows of four.
     let mut corners = BTreeSet::new();
     for stage in DebugView::ALL {
         let output = render(folder.path(), &["--view", stage.name()]);
         assert!(output.status.success(), "{}", stderr(&output));
-        let alone = haze::image::read_png(&folder.path().join("out.png")).unwrap().to_rgb8();
+        let alone = haze_core::assets::image::read_png(&folder.path().join("out.png")).unwrap().to_rgb8();
         let is_at =
             |x: u32, y: u32| alone.enumerate_pixels().all(|(dx, dy, pixel)| sheet.get_pixel(x + dx, y + dy) == pixel);
         let (right, bottom) = (sheet.width() - alone.width(), sheet.height() - alone.height());
@@ -57,7 +57,7 @@ fn without_visible_smoke_costs_are_left_out() {
             ["techniques", "colored_lights", "--size", "400x40", "--backend", "cpu", "--time", time, "-o", "t.png"];
         let output = haze(folder.path(), &arguments);
         assert!(output.status.success(), "{}", stderr(&output));
-        let sheet = haze::image::read_png(&folder.path().join("t.png")).unwrap().to_rgb8();
+        let sheet = haze_core::assets::image::read_png(&folder.path().join("t.png")).unwrap().to_rgb8();
         // Right of the name of the first cell, `hard`, and above its image.
         let costs = image::imageops::crop_imm(&sheet, 70, 12, 130, 28).to_image();
         let paper = *sheet.get_pixel(0, 0);

@@ -65,7 +65,7 @@ fn recipe(color: u32) -> String {
 }
 
 fn color(path: &Path) -> u32 {
-    let [r, g, b] = haze::image::read_png(path).unwrap().to_rgb8()[(0, 0)].0;
+    let [r, g, b] = haze_core::assets::image::read_png(path).unwrap().to_rgb8()[(0, 0)].0;
     u32::from_be_bytes([0, r, g, b])
 }
 

@@ -2,12 +2,11 @@
 
 use glam::UVec2;
 
-use haze::assets::builtin;
-use haze::emitter::EmitterShape;
-use haze::preset::PresetSystem;
-use haze::settings::{
+use haze_core::emitter::EmitterShape;
+use haze_core::settings::{
     CoverageMode, DiffuseMode, FadeCurve, ScaleMode, SoftScatterMode, SpriteAnimation, Technique, Upsample,
 };
+use haze_preset::{PresetSystem, builtin};
 
 pub fn technique(system: &PresetSystem) -> Technique {
     system.settings.technique

@@ -8,12 +8,11 @@ use super::condition::{
     uses_painted_motif,
 };
 use super::rule::{NoEffectRule, rule};
-use haze::assets::builtin;
-use haze::preset::PresetSystem;
-use haze::settings::{
+use haze_core::settings::{
     Backlight, BlendOrder, CoverageMode, DepthSource, Grain, RenderPath, ScaleMode, SoftScatterMode, SpriteAnimation,
     Technique,
 };
+use haze_preset::{PresetSystem, builtin};
 
 /// The first row that holds gives the reason.
 pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[

@@ -1,6 +1,6 @@
 use super::*;
-use haze::assets::builtin;
-use haze::assets::image::decode_png;
+use haze_core::assets::image::decode_png;
+use haze_preset::builtin;
 use image::{ImageBuffer, Rgb};
 use std::path::Path;
 

@@ -88,7 +88,7 @@ fn the_largest_baked_image_can_be_read() {
     let mut png = Vec::new();
     let baked = large.bake().unwrap();
     baked.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
-    assert_eq!(haze::assets::image::decode_png(Path::new("large.png"), &png).unwrap().height(), 2730);
+    assert_eq!(haze_core::assets::image::decode_png(Path::new("large.png"), &png).unwrap().height(), 2730);
 }
 
 #[test]

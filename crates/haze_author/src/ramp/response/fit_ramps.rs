@@ -6,8 +6,8 @@ use super::normal_equations::{NormalEquations, knots};
 use super::traced_puff::{Puff, Texel};
 use crate::ramp::blend_space::srgb_from_linear;
 use crate::ramp::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
-use haze::formula::color::luminance;
-use haze::formula::lighting::backlight_weight;
+use haze_core::formula::color::luminance;
+use haze_core::formula::lighting::backlight_weight;
 
 /// Number of free parameters of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

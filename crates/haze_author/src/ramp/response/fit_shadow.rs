@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use super::fit_ramps::{BRIGHTNESS, STEPS, STIFFNESS, recipe};
 use super::normal_equations::{NormalEquations, knots};
 use crate::ramp::ramp_recipe::RampRecipe;
-use haze::formula::color::luminance;
+use haze_core::formula::color::luminance;
 
 /// Number of free parameters of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@ use crate::path_trace::MEDIA;
 use crate::path_trace::{Medium, PathTrace};
 use crate::ramp::ramp_recipe::RampRecipe;
 use crate::sprite::bake::SpriteRecipe;
-use haze::assets::builtin;
-use haze::assets::ramp::Ramp;
+use haze_core::assets::ramp::Ramp;
+use haze_preset::builtin;
 
 const PATH_TRACE: PathTrace = PathTrace { size: 32, samples: 16, seed: 1 };
 

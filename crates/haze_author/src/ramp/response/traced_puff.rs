@@ -7,13 +7,13 @@ use crate::deterministic_math::cos_sin;
 use crate::path_trace::{Medium, PathTrace, PathTraceResult};
 use crate::sprite::bake::SpriteRecipe;
 use crate::sprite::six_way::BakedSixWay;
-use haze::assets::image::Image;
-use haze::assets::ramp::Ramp;
-use haze::formula::color::luminance;
-use haze::formula::lighting::{backlight_weight, diffuse_coordinate};
-use haze::formula::ramp::sample_ramp_2d;
-use haze::formula::six_way::{six_way_from_texel, six_way_response};
-use haze::settings::RampFilter;
+use haze_core::assets::image::Image;
+use haze_core::assets::ramp::Ramp;
+use haze_core::formula::color::luminance;
+use haze_core::formula::lighting::{backlight_weight, diffuse_coordinate};
+use haze_core::formula::ramp::sample_ramp_2d;
+use haze_core::formula::six_way::{six_way_from_texel, six_way_response};
+use haze_core::settings::RampFilter;
 
 /// Number of lights in the ring around a puff.
 pub const LIGHTS: u32 = 16;

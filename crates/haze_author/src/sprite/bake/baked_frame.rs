@@ -3,8 +3,8 @@
 use glam::{UVec2, Vec2, Vec3};
 use image::Rgba;
 
-use haze::assets::image::Image;
-use haze::formula::saturate;
+use haze_core::assets::image::Image;
+use haze_core::formula::saturate;
 
 /// One baked frame of a sprite.
 #[derive(Clone, Debug)]

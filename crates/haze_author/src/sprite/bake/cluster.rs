@@ -4,7 +4,7 @@ use glam::{UVec3, Vec3};
 
 use super::sprite_recipe::SpriteRecipe;
 use crate::deterministic_math::cos_sin;
-use haze::assets::noise::{pcg3d, unit};
+use haze_core::assets::noise::{pcg3d, unit};
 
 #[derive(Clone, Copy)]
 pub(super) struct Metaball {

@@ -6,8 +6,8 @@ use glam::{UVec2, UVec3, Vec2, Vec3};
 
 use super::sprite_recipe::SpriteRecipe;
 use super::voxel_grid::{LANES, VoxelGrid};
-use haze::assets::image::Image;
-use haze::assets::noise::CachedGradientNoise;
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::CachedGradientNoise;
 
 /// Scale of noise values stored in 16 bits; the range is ±4.
 const NOISE_SCALE: f32 = 8192.0;

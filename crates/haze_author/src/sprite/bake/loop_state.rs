@@ -6,8 +6,8 @@ use super::cluster::{Metaball, balls};
 use super::sprite_recipe::SpriteRecipe;
 use super::voxel_grid::{LANES, VoxelGrid};
 use crate::deterministic_math::cos_sin;
-use haze::assets::image::Image;
-use haze::assets::noise::curl_noise;
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::curl_noise;
 
 /// Displacement of a position by the flow alone, and by flow and warp together.
 #[derive(Clone, Copy)]

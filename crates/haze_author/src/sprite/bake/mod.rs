@@ -18,10 +18,10 @@ use image::{Rgba, RgbaImage};
 
 use crate::path_trace::DensityVolume;
 use crate::sprite::detail::{bake_detail_frame, detail_size};
-use haze::assets::parallel::parallel_for_each;
-use haze::error::FieldError;
-use haze::settings::validate;
-use haze::sprite::Sprite;
+use haze_core::assets::parallel::parallel_for_each;
+use haze_core::assets::sprite::Sprite;
+use haze_core::error::FieldError;
+use haze_core::settings::validate;
 
 pub use baked_frame::BakedFrame;
 use near_lossless::{quantise_detail, quantise_frame};

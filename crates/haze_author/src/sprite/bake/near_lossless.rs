@@ -4,7 +4,7 @@
 use glam::{IVec2, UVec2};
 use image::Rgba;
 
-use haze::assets::image::Image;
+use haze_core::assets::image::Image;
 
 /// Maximum movement of a normal in thin smoke, in multiples of the tolerance.
 const MAX_NORMAL_FACTOR: i32 = 4;
@@ -74,7 +74,7 @@ mod tests {
 
     use super::*;
     use crate::sprite::bake::SpriteRecipe;
-    use haze::assets::json;
+    use haze_core::assets::json;
 
     #[test]
     fn no_texel_moves_further_than_the_tolerance() {

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use haze::assets::image::MAX_SIDE;
-use haze::assets::json;
-use haze::assets::sprite::SpriteLayout;
-use haze::builtin::{self, Builtin};
-use haze::error::Error;
-use haze::settings::{FieldHeading, FieldVisitor, Fields, validate};
+use haze_core::assets::image::MAX_SIDE;
+use haze_core::assets::json;
+use haze_core::assets::sprite::SpriteLayout;
+use haze_core::error::{Error, builtin_path};
+use haze_core::settings::{FieldHeading, FieldVisitor, Fields, validate};
+use haze_preset::builtin::Builtin;
 
 /// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
@@ -159,7 +159,7 @@ impl SpriteRecipe {
     /// # Errors
     /// [`Error::Json`] if `builtin` is not a sprite.
     pub fn of_builtin(builtin: &Builtin) -> Result<Self, Error> {
-        json::parse(&builtin::path(builtin.name), builtin.recipe)
+        json::parse(&builtin_path(builtin.name), builtin.recipe)
     }
 
     /// Returns the layout of frames on the sheet.

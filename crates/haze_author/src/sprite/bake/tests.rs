@@ -4,8 +4,8 @@ use glam::UVec3;
 
 use super::*;
 use crate::deterministic_math::tests::hash;
-use haze::assets::json;
-use haze::settings::{Fields as _, field_path, for_each_field};
+use haze_core::assets::json;
+use haze_core::settings::{Fields as _, field_path, for_each_field};
 
 fn puff() -> SpriteRecipe {
     let recipe = include_str!("../../../../../tests/corpus/sprite/good_first");

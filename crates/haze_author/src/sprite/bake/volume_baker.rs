@@ -14,8 +14,8 @@ use super::sprite_recipe::SpriteRecipe;
 use super::voxel_grid::{LANES, VoxelGrid};
 use crate::deterministic_math::fast_exp_neg;
 use crate::path_trace::DensityVolume;
-use haze::assets::image::Image;
-use haze::formula::saturate;
+use haze_core::assets::image::Image;
+use haze_core::formula::saturate;
 
 const CLEAR: Rgba<u8> = Rgba([128, 128, 255, 0]);
 

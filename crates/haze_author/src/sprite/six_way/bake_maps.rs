@@ -11,8 +11,8 @@ use crate::deterministic_math::exp;
 use crate::path_trace::{Medium, PathTrace};
 use crate::sprite::bake::SpriteRecipe;
 use crate::sprite::bake::near_lossless::quantise_frame;
-use haze::assets::image::Image;
-use haze::formula::six_way::SixWay;
+use haze_core::assets::image::Image;
+use haze_core::formula::six_way::SixWay;
 
 /// Baked six-way maps, with settings that go with them.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 //!
 //! A sheet has the layout of its sprite and twice its height. The upper half holds light from the right, the top and
 //! the front in red, green and blue; the lower half from the left, the bottom and the back. A texel holds the square
-//! root of the light ([`six_way_from_texel`](haze::formula::six_way::six_way_from_texel)). Alpha is the amount in both
+//! root of the light ([`six_way_from_texel`](haze_core::formula::six_way::six_way_from_texel)). Alpha is the amount in both
 //! halves.
 
 mod bake_maps;
@@ -11,6 +11,6 @@ mod packing;
 mod trace;
 
 pub use bake_maps::BakedSixWay;
-pub use haze::sprite::six_way_layout;
+pub use haze_core::assets::sprite::six_way_layout;
 pub use packing::{Packing, pack, unpack};
 pub use trace::{SixWayMix, TracedSixWay};

@@ -6,9 +6,9 @@ use std::path::Path;
 use glam::Vec3;
 use image::{Rgba, RgbaImage};
 
-use haze::error::Error;
-use haze::formula::six_way::{SixWay, six_way_from_texel};
-use haze::settings::choice;
+use haze_core::error::Error;
+use haze_core::formula::six_way::{SixWay, six_way_from_texel};
+use haze_core::settings::choice;
 
 choice! {
     /// Assignment of sides to the red, green and blue of two light maps. Alpha of the first map is the amount.

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use crate::deterministic_math::cos_sin;
 use crate::path_trace::{DensityVolume, Medium, PathTrace, PathTraceResult};
-use haze::assets::image::Image;
-use haze::formula::color::luminance;
-use haze::formula::six_way::{SixWay, six_way_axis_weights};
+use haze_core::assets::image::Image;
+use haze_core::formula::color::luminance;
+use haze_core::formula::six_way::{SixWay, six_way_axis_weights};
 
 /// Six-way light of a puff of a medium.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ pub struct SixWayMix {
 
 impl TracedSixWay {
     /// Path-traces a volume of a medium under light from all sides. Fits the six images for which
-    /// [`six_way_response`](haze::formula::six_way::six_way_response) is closest to the result. `mix` is the mix of
+    /// [`six_way_response`](haze_core::formula::six_way::six_way_response) is closest to the result. `mix` is the mix of
     /// another frame of the same sprite, if both must share it. `progress` as in [`PathTrace::run`].
     pub fn trace<E>(
         volume: &DensityVolume,

@@ -8,12 +8,12 @@ use std::time::Duration;
 use eframe::egui::{Event, Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use haze::image::{CompressionEffort, read_color_png, write_png};
-use haze::preset::{AssetFolders, Preset};
-use haze::ramp::Ramp;
-use haze::settings::DebugView;
 use haze_author::ramp::template::Template;
 use haze_author::ramp::{Blend, Curve, RampRecipe};
+use haze_core::assets::image::read_color_png;
+use haze_core::assets::ramp::Ramp;
+use haze_core::settings::DebugView;
+use haze_preset::{AssetFolders, CompressionEffort, Preset, write_png};
 
 use super::{RampEdits, RampOrigin};
 use crate::tweak::document::Document;
@@ -285,7 +285,8 @@ fn one_click_turns_on_a_ramp_that_is_not_used() {
 fn a_gradient_is_dragged_from_one_ramp_onto_another() {
     let folder = Folder::new();
     let mut harness = folder.open();
-    harness.state_mut().session.document.preset.systems[0].settings.diffuse.backlight = haze::settings::Backlight::Ramp;
+    harness.state_mut().session.document.preset.systems[0].settings.diffuse.backlight =
+        haze_core::settings::Backlight::Ramp;
     harness.run_steps(5);
     let name = harness.state().session.document.preset.systems[0].material.backlight_ramp.clone();
     let from = harness.get_by_label(&format!("Drag to copy: {name}")).rect().center();
@@ -301,7 +302,7 @@ fn a_gradient_is_dragged_from_one_ramp_onto_another() {
     }
     harness.drop_at(to);
     harness.run_steps(5);
-    let source = haze::builtin::find(haze::builtin::RAMPS, &name).unwrap();
+    let source = haze_preset::builtin::find(haze_preset::builtin::RAMPS, &name).unwrap();
     let source = RampRecipe::parse(Path::new(""), source.recipe).unwrap();
     assert_eq!(folder.recipe().rows[0].stops, source.rows[0].stops);
     assert!(folder.is_baked());

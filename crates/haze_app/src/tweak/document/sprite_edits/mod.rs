@@ -6,10 +6,10 @@ pub mod sprite_source;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use haze::preset::{AssetFolders, MaterialNames, Preset};
-use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, MaterialAssets};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_preset::{AssetFolders, MaterialNames, Preset};
 
 use super::Document;
 use crate::tweak::platform::asset_loading::place_of;

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use haze::image::decode_png;
-use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, FieldError};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::assets::image::decode_png;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use image::DynamicImage;
 
 use super::sprite_source::{BakeSprite, BakedFiles, NotBaked, ReadSprite, SpriteState, Stamps, stamps, write};

@@ -10,10 +10,9 @@ use eframe::egui::{Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use haze::FieldError;
-use haze::image::{CompressionEffort, write_png};
-use haze::preset::Preset;
-use haze::sprite::Sprite;
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
+use haze_core::assets::sprite::Sprite;
+use haze_preset::{CompressionEffort, Preset, write_png};
 
 use super::sprite_source::recipe_of_built_in;
 use crate::tweak::window::Window;

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Key, Modifiers, PointerButton, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use haze::preset::{Preset, SceneName};
+use haze_preset::{Preset, SceneName};
 use tempfile::TempDir;
 
 use super::*;
@@ -88,7 +88,7 @@ fn an_image_is_saved_beside_the_preset_without_replacing_files() {
     let names = bench.names();
     assert_eq!(names.len(), 2, "{names:?}");
     assert!(names.iter().all(|name| name.ends_with("s.png") || name.ends_with("s_2.png")), "{names:?}");
-    let picture = haze::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
+    let picture = haze_core::assets::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
     let seen = 36.0 * bench.window.state().session.view.aspect;
     assert_eq!((picture.width(), picture.height()), (seen.round() as u32, 36));
 }
@@ -103,7 +103,7 @@ fn frames_are_written_as_sequence_flipbook_and_gif() {
     assert!(names.iter().any(|name| name.ends_with(".gif")), "{names:?}");
     let names = bench.make(ExportKind::Flipbook);
     let name = names.iter().find(|name| name.contains("flipbook")).unwrap();
-    let picture = haze::image::read_png(&bench.folder.path().join(name)).unwrap();
+    let picture = haze_core::assets::image::read_png(&bench.folder.path().join(name)).unwrap();
     assert_eq!((picture.width(), picture.height()), (8 * 64, 4 * 36));
 }
 
@@ -127,7 +127,7 @@ fn files_and_alpha_are_chosen_in_the_dialog() {
     choose(&mut bench, "Premultiplied");
     choose(&mut bench, "PNG 16");
     let names = bench.make(ExportKind::Image);
-    let picture = haze::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
+    let picture = haze_core::assets::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
     assert_eq!(picture.color(), image::ColorType::Rgba16);
     let format = bench.window.state().export_job.options.format;
     assert_eq!(format.alpha, render_job::Alpha::Premultiplied);

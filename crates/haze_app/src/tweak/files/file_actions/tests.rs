@@ -9,7 +9,7 @@ use eframe::egui::{Event, Key, Modifiers, Theme, Vec2, ViewportEvent, ViewportId
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use haze::FieldError;
-use haze::preset::Preset;
+use haze_preset::Preset;
 use tempfile::TempDir;
 
 use super::*;
@@ -192,7 +192,7 @@ fn a_dropped_preset_is_opened_and_a_dropped_ramp_is_used() {
     let mut bench = bench();
     let ramp = bench.path("mine.png");
     let grey = image::RgbImage::from_pixel(64, 1, image::Rgb([20; 3]));
-    haze::image::write_png(&ramp, &grey.into(), haze::image::CompressionEffort::Quick).unwrap();
+    haze_preset::write_png(&ramp, &grey.into(), haze_preset::CompressionEffort::Quick).unwrap();
     bench.drop_file(&ramp);
     bench.until(|bench| bench.session().document.preset.systems[0].material.diffuse_ramp == "mine.png");
     assert_eq!(bench.said(), "mine.png is now the diffuse ramp of smoke");

@@ -93,7 +93,7 @@ type Way<'a> = (&'a str, &'a dyn Fn(&Path));
 /// Writes a ramp of a single grey.
 fn write_ramp(folder: &Path, grey: u8) {
     let picture = RgbImage::from_pixel(64, 1, Rgb([grey; 3]));
-    haze::image::write_png(&folder.join("mine.png"), &picture.into(), haze::image::CompressionEffort::Quick).unwrap();
+    haze_preset::write_png(&folder.join("mine.png"), &picture.into(), haze_preset::CompressionEffort::Quick).unwrap();
 }
 
 const SIZE: Vec2 = Vec2::new(640.0, 400.0);
@@ -256,7 +256,7 @@ fn exports_use_the_shaders_of_the_watched_folder() {
         bench.until(|bench| bench.window.state().export_job.progress().is_none());
         bench.window.run_steps(2);
         let said = bench.session().messages.latest().unwrap().text.clone();
-        let picture = haze::image::read_png(Path::new(said.strip_prefix("Exported ").unwrap())).unwrap();
+        let picture = haze_core::assets::image::read_png(Path::new(said.strip_prefix("Exported ").unwrap())).unwrap();
         picture.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
     };
     let before = export(&mut bench);

@@ -8,9 +8,9 @@ use eframe::egui::ecolor::Hsva;
 use eframe::egui::{self, Popup, PopupCloseBehavior, Response, Rgba, Sense, Ui};
 use egui_gradient::ColorEyedropper;
 use glam::Vec3;
-use haze::formula::color::srgb_from_linear;
 use haze_author::color_temperature::{KELVIN, color_of_temperature, temperature_of_color};
 use haze_author::ramp::HexColor;
+use haze_core::formula::color::srgb_from_linear;
 
 /// Range of the brightness, stops.
 const STOPS: RangeInclusive<f32> = -10.0..=10.0;

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Pos2, Response, Sense, Stroke, Ui, Vec2, pos2};
-use haze::settings::{Curve, MAX_CURVE_POINTS};
+use haze_core::settings::{Curve, MAX_CURVE_POINTS};
 
 const HEIGHT: f32 = 64.0;
 /// Distance at which the pointer is on a point, points of the screen.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use eframe::egui::{self, Color32, Rect, Sense, Shape, Stroke, Ui, Vec2};
-use haze::preset::Preset;
+use haze_preset::Preset;
 
 use crate::tweak::document::keyframes::key_at;
 

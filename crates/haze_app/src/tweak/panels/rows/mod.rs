@@ -13,7 +13,7 @@ pub mod value_text;
 
 use eframe::egui::{self, Response, Ui};
 
-use haze::settings::BackdropKind;
+use haze_core::settings::BackdropKind;
 
 use crate::tweak::document::display_names::display_name;
 use icon_button::Icon;

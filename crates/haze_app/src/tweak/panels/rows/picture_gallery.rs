@@ -1,8 +1,8 @@
 //! Field that names an image, chosen by thumbnail.
 
 use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, Vec2};
-use haze::ramp::RampRole;
-use haze::settings::ImageRole;
+use haze_core::assets::ramp::RampRole;
+use haze_core::settings::ImageRole;
 
 use crate::tweak::session::picture_thumbnails::{PictureThumbnails, SIZE};
 
@@ -96,7 +96,7 @@ mod tests {
 
     /// Opens a window that shows the images of its smoke, in a temporary folder.
     fn opened(folder: &std::path::Path) -> Harness<'static, Window> {
-        let preset = haze::preset::Preset::load("column").unwrap();
+        let preset = haze_preset::Preset::load("column").unwrap();
         let path = folder.join("own.json");
         std::fs::write(&path, serde_json::to_string(&preset).unwrap()).unwrap();
         image::RgbaImage::from_pixel(8, 1, image::Rgba([250, 20, 20, 255])).save(folder.join("red.png")).unwrap();

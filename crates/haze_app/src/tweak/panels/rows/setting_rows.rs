@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Ui};
 use glam::Vec3;
-use haze::settings::{BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
 use haze_author::preset::Tooltips;
+use haze_core::settings::{BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
 
 use super::curve_editor;
 use super::key_mark::KeyMarks;

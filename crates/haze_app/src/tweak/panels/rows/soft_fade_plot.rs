@@ -1,8 +1,8 @@
 //! Plot of the soft fade over the distance to a surface.
 
 use eframe::egui::{self, Align2, Sense, Ui, Vec2, pos2};
-use haze::formula::soft_fade::soft_fade;
-use haze::settings::SoftFade;
+use haze_core::formula::soft_fade::soft_fade;
+use haze_core::settings::SoftFade;
 
 const HEIGHT: f32 = 84.0;
 /// Height of the labels below the plot, points.

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Response, Ui};
 use glam::Vec3;
-use haze::settings::Choice;
+use haze_core::settings::Choice;
 
 use super::color_popup::swatch;
 use super::value_text::{parse, shown, suffix};

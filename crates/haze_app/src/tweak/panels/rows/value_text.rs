@@ -1,7 +1,7 @@
 //! Values as text for display and input.
 
 use glam::Vec3;
-use haze::settings::FieldValue;
+use haze_core::settings::FieldValue;
 
 use crate::tweak::document::display_names::display_name;
 

@@ -6,11 +6,10 @@ use std::sync::LazyLock;
 
 use eframe::egui::{ProgressBar, Ui};
 use glam::Vec3;
-use haze::builtin;
-use haze::preset::MaterialNames;
-use haze::settings::{FieldVisitor, Fields};
 use haze_author::preset::Tooltips;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::settings::{FieldVisitor, Fields};
+use haze_preset::{MaterialNames, builtin};
 
 use crate::tweak::document::sprite_edits::set_recipe;
 use crate::tweak::document::sprite_edits::sprite_source::SpriteOrigin;

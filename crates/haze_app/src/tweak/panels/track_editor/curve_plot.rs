@@ -3,8 +3,8 @@
 use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, pos2};
-use haze::preset::{KeyValue, Track};
-use haze::settings::{FieldValue, field_values};
+use haze_core::settings::{FieldValue, field_values};
+use haze_preset::{KeyValue, Track};
 
 use super::time_axis::TimeAxis;
 use crate::tweak::document::keyframes::{self, clamped, move_key, track_mut};
@@ -98,7 +98,7 @@ fn drag(session: &mut Session, setting: &str, (index, component): (usize, usize)
 }
 
 /// Names of the choices of a setting; empty for other settings.
-fn choices(preset: &haze::preset::Preset, setting: &str) -> Vec<String> {
+fn choices(preset: &haze_preset::Preset, setting: &str) -> Vec<String> {
     let value = field_values(preset).into_iter().find(|(path, _)| path == setting);
     let Some((_, FieldValue::Choice(_))) = value else { return Vec::new() };
     let track = keyframes::track(preset, setting);

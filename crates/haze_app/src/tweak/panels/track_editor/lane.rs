@@ -1,7 +1,7 @@
 //! Row of keyframes: diamonds that are dragged in time, with a menu for each and for the row.
 
 use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, pos2};
-use haze::preset::{Ease, Track};
+use haze_preset::{Ease, Track};
 
 use super::time_axis::TimeAxis;
 use crate::tweak::document::display_names::display_name;

@@ -1,7 +1,7 @@
 use eframe::egui::{Key, Modifiers, PointerButton, Pos2, Rect, Role, Theme, Vec2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use haze::preset::{Ease, KeyValue, Preset, Track};
+use haze_preset::{Ease, KeyValue, Preset, Track};
 
 use crate::tweak::document::keyframes::set_key;
 use crate::tweak::session::view_options::Tab;

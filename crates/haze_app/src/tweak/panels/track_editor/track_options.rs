@@ -1,7 +1,7 @@
 //! Loop and flicker of the selected track.
 
 use eframe::egui::{self, Ui};
-use haze::preset::Flicker;
+use haze_preset::Flicker;
 
 use crate::tweak::document::keyframes::{track, track_mut};
 use crate::tweak::session::Session;

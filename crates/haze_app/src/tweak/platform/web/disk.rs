@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use eframe::egui;
 use haze::Error;
-use haze::assets::memory_files;
+use haze_core::assets::memory_files;
 use wasm_bindgen_futures::spawn_local;
 
 use super::page;

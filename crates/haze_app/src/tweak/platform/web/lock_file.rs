@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use haze::assets::{bounded_read, memory_files};
+use haze_core::assets::{bounded_read, memory_files};
 
 /// Longer than any path.
 const MAX_BYTES: u64 = 1 << 16;

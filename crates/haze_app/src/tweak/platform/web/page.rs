@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use haze::assets::{bounded_read, memory_files};
+use haze_core::assets::{bounded_read, memory_files};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{Document, HtmlCanvasElement, HtmlInputElement};

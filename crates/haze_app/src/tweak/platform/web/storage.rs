@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze::assets::{bounded_read, memory_files};
+use haze_core::assets::{bounded_read, memory_files};
 use web_sys::Storage;
 
 /// Prefix of the keys.

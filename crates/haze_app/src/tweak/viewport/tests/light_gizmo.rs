@@ -3,8 +3,8 @@
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use glam::Vec3;
-use haze::preset::KeyValue;
 use haze::{Light, LightKind};
+use haze_preset::KeyValue;
 
 use super::{camera, drag, flick, handle, light, lit, projection, undo_name};
 use crate::tweak::document::keyframes::set_key;

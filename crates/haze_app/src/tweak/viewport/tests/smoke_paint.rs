@@ -4,10 +4,9 @@ use std::time::Duration;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use haze::image::{CompressionEffort, write_png};
-use haze::preset::Preset;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::template::Template;
+use haze_preset::{CompressionEffort, Preset, write_png};
 
 use crate::tweak::session::{CopiedImage, CopyRequest};
 use crate::tweak::window::Window;

@@ -6,12 +6,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use haze::image::{CompressionEffort, write_png};
-use haze::preset::Preset;
-use haze::settings::CoverageMode;
 use haze::{LightKind, LightRole};
 use haze_author::daylight::sun_of;
 use haze_author::ramp::template::Template;
+use haze_core::settings::CoverageMode;
+use haze_preset::{CompressionEffort, Preset, write_png};
 use image::RgbaImage;
 
 use crate::tweak::window::Window;

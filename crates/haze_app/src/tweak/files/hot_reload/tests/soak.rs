@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use haze::preset::Preset;
+use haze_preset::Preset;
 
 use super::{Bench, COLOR, SIZE, write_ramp};
 use crate::tweak::document::history::MAX_STEPS;
@@ -86,7 +86,7 @@ fn write_sheet(folder: &Path, alpha: u8) {
     let inside = |x, y| (1..31).contains(&x) && (1..31).contains(&y);
     let texel = |x, y| image::Rgba([128, 128, 255, if inside(x, y) { alpha } else { 0 }]);
     let picture = image::RgbaImage::from_fn(32, 32, texel);
-    haze::image::write_png(&folder.join("sheet.png"), &picture.into(), haze::image::CompressionEffort::Quick).unwrap();
+    haze_preset::write_png(&folder.join("sheet.png"), &picture.into(), haze_preset::CompressionEffort::Quick).unwrap();
 }
 
 /// Saves broken and valid files of every kind alternately.

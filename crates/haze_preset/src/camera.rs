@@ -1,0 +1,42 @@
+//! Camera of a preset.
+
+use glam::camera::rh;
+use glam::{UVec2, Vec3};
+
+use haze_core::frame::View;
+use haze_core::settings::settings;
+
+settings! {
+    /// Perspective camera.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Camera {
+        /// Position in world space, metres. Inside the smoke, sprites fade before they reach the camera.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        position: Vec3 = Vec3::new(0.0, 2.0, 8.0), vector(-1.0e5..=1.0e5, "m");
+        /// Point in the middle of the picture, metres.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        target: Vec3 = Vec3::new(0.0, 1.5, 0.0), vector(-1.0e5..=1.0e5, "m");
+        /// Vertical field of view, degrees. Lower: brings the smoke near and flattens it. Higher: shows more of the
+        /// scene around it.
+        fov: f32 = 45.0, number(1.0..=150.0, "degrees");
+        /// Near plane, metres. Anything nearer is cut off.
+        near: f32 = 0.1, number(0.001..=100.0, "m");
+        /// Far plane, metres. Anything beyond is cut off.
+        far: f32 = 200.0, number(|this| this.near * 1.01..=1.0e5, "m");
+        /// Multiplies the linear picture by 2^exposure before it is tonemapped. Each step up doubles the light; glow
+        /// turns white.
+        exposure: f32 = 0.0, number(-16.0..=16.0, "EV");
+    }
+}
+
+impl Camera {
+    /// View of a picture of this size.
+    pub fn view(&self, size: UVec2) -> View {
+        let aspect = size.x.max(1) as f32 / size.y.max(1) as f32;
+        // When looking straight up or down, x stays to the right.
+        let forward = (self.target - self.position).normalize_or(Vec3::NEG_Z);
+        let up = if forward.y.abs() > 0.9999 { Vec3::Z * forward.y.signum() } else { Vec3::Y };
+        let clip_from_view = rh::proj::directx::perspective(self.fov.to_radians(), aspect, self.near, self.far);
+        View::new(rh::view::look_to_mat4(self.position, forward, up), clip_from_view, size)
+    }
+}

@@ -1,0 +1,125 @@
+//! Images of one preset: each is decoded once, and their total size is limited.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::path::{Path, PathBuf};
+
+use super::image_source::ImageSource;
+use haze_core::assets::noise::NoiseVolume;
+use haze_core::assets::ramp::Ramp;
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::{Error, FieldError};
+
+/// Maximum memory of the images of a preset, bytes. An image counts for every field that names it, because renderers
+/// upload it for each.
+pub const MAX_IMAGE_BYTES: u64 = 1 << 30;
+
+/// Images loaded so far, by file.
+pub struct ImageCache<'a> {
+    source: ImageSource<'a>,
+    ramps: HashMap<PathBuf, Ramp>,
+    sprites: HashMap<(PathBuf, SpriteLayout), Sprite>,
+    noises: HashMap<PathBuf, NoiseVolume>,
+    bytes: u64,
+}
+
+impl<'a> ImageCache<'a> {
+    /// Nothing loaded yet.
+    pub fn new(source: ImageSource<'a>) -> Self {
+        let (ramps, sprites, noises) = Default::default();
+        Self { source, ramps, sprites, noises, bytes: 0 }
+    }
+
+    /// Loads the ramp of this file, for a field of the material.
+    pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, Error> {
+        self.count(field, 0)?;
+        let source = &mut self.source;
+        let load = |file: &PathBuf| source.read(file).and_then(|(path, bytes)| Ramp::decode(&path, &bytes));
+        let ramp = get_or_load(&mut self.ramps, file.into(), load);
+        let ramp = ramp.map_err(|error| named_by(field, error))?;
+        self.count(field, ramp.memory())?;
+        Ok(ramp)
+    }
+
+    /// Loads the sprite of this file.
+    pub fn sprite(&mut self, field: &str, file: &Path, layout: SpriteLayout) -> Result<Sprite, Error> {
+        self.count(field, 0)?;
+        let source = &mut self.source;
+        let load = |(file, layout): &(PathBuf, SpriteLayout)| {
+            source.read(file).and_then(|(path, bytes)| Sprite::decode(&path, &bytes, *layout))
+        };
+        let sprite =
+            get_or_load(&mut self.sprites, (file.into(), layout), load).map_err(|error| named_by(field, error))?;
+        self.count(field, sprite.memory())?;
+        Ok(sprite)
+    }
+
+    /// Loads the noise of this file.
+    pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, Error> {
+        self.count(field, 0)?;
+        let source = &mut self.source;
+        let load = |file: &PathBuf| source.read(file).and_then(|(path, bytes)| NoiseVolume::decode(&path, &bytes));
+        let noise = get_or_load(&mut self.noises, file.into(), load);
+        let noise = noise.map_err(|error| named_by(field, error))?;
+        self.count(field, noise.memory())?;
+        Ok(noise)
+    }
+
+    /// Counts bytes. Fails above the limit, after which nothing is decoded.
+    fn count(&mut self, field: &str, bytes: u64) -> Result<(), FieldError> {
+        self.bytes += bytes;
+        if self.bytes <= MAX_IMAGE_BYTES {
+            return Ok(());
+        }
+        let [found, most] = [self.bytes, MAX_IMAGE_BYTES].map(|bytes| bytes >> 20);
+        let problem = format!("up to this one, the pictures of the preset take {found} MiB");
+        let expected = format!("at most {most} MiB, each picture counted as often as it is named");
+        Err(FieldError::from_problem(format!("material.{field}"), problem, expected))
+    }
+}
+
+fn get_or_load<K: Hash + Eq, T: Clone>(
+    loaded: &mut HashMap<K, T>,
+    key: K,
+    load: impl FnOnce(&K) -> Result<T, Error>,
+) -> Result<T, Error> {
+    if let Some(picture) = loaded.get(&key) {
+        return Ok(picture.clone());
+    }
+    let picture = load(&key)?;
+    loaded.insert(key, picture.clone());
+    Ok(picture)
+}
+
+/// Adds the field of the preset that names it to the error of an image.
+fn named_by(field: &str, error: Error) -> Error {
+    Error::Asset { named_by: format!("material.{field}"), error: Box::new(error) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset_folders::AssetFolders;
+
+    #[test]
+    fn a_file_is_read_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = Path::new("own.png");
+        let path = folder.path().join(file);
+        let layout = SpriteLayout::default();
+        image::RgbaImage::new(1, 1).save(&path).unwrap();
+        let mut pictures = ImageCache::new(ImageSource::Folders(AssetFolders::at(folder.path())));
+        let ramp = pictures.ramp("motif", file).unwrap();
+        let noise = pictures.noise("noise", file).unwrap();
+        let sprite = pictures.sprite("sprite", file, layout).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(pictures.ramp("age_ramp", file).unwrap(), ramp);
+        assert_eq!(pictures.noise("noise", file).unwrap(), noise);
+        assert_eq!(pictures.sprite("detail", file, layout).unwrap(), sprite);
+        // The ramp has four half floats a texel, the noise and the sprite four bytes.
+        assert_eq!(pictures.bytes, 2 * (8 + 4 + 4));
+        let other = SpriteLayout { y_down: true, ..layout };
+        let error = pictures.sprite("sprite", file, other).unwrap_err().to_string();
+        assert!(error.starts_with("material.sprite: ") && error.contains("own.png: No such file"), "{error}");
+    }
+}

@@ -1,0 +1,43 @@
+//! Source of the image files that a preset names.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::asset_folders::AssetFolders;
+use haze_core::assets::image::{MAX_BYTES, read_file};
+use haze_core::error::Error;
+
+/// Source of the image files that a preset names: folders, or a host's own reader.
+pub enum ImageSource<'a> {
+    /// Folders, in which a file is searched for.
+    Folders(AssetFolders),
+    /// Reader of a host, for packed files, asset servers and web pages. It gets the name as the preset has it, and
+    /// returns the bytes of the file.
+    Reader(&'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>),
+}
+
+impl ImageSource<'_> {
+    /// Returns the path of a file, for messages, and its bytes.
+    ///
+    /// # Errors
+    /// [`Error::Image`] if no folder has the file, [`Error::Io`] if it cannot be read or has more than 64 MiB.
+    pub(super) fn read(&mut self, file: &Path) -> Result<(PathBuf, Vec<u8>), Error> {
+        match self {
+            Self::Folders(folders) => {
+                let path = folders.find(file)?;
+                let bytes = read_file(&path)?;
+                Ok((path, bytes))
+            }
+            Self::Reader(read) => {
+                let io = |error| Error::Io { path: file.into(), error };
+                let bytes = read(file).map_err(io)?;
+                if bytes.len() as u64 > MAX_BYTES {
+                    let reason =
+                        format!("{} bytes; expected a PNG file of at most {} MiB", bytes.len(), MAX_BYTES >> 20);
+                    return Err(io(io::Error::new(io::ErrorKind::InvalidData, reason)));
+                }
+                Ok((file.into(), bytes))
+            }
+        }
+    }
+}
