@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
-use std::path::Path;
-
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{UVec2, Vec3};
-use haze::{Context, Descriptor, FrameInput, Light, ParticleSystem, Particles, Renderer, SceneDepth, Settings, wgpu};
+use haze::{
+    Context, FrameInput, Light, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth, Settings, wgpu,
+};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::emitter::Emitter;
@@ -40,7 +40,7 @@ fn evaluate(criterion: &mut Criterion) {
 /// CPU time of `prepare` in a steady frame. The difference between `sorted` and `weighted` is the sort.
 fn prepare(criterion: &mut Criterion) {
     let gpu = Headless::new().unwrap();
-    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue, None));
+    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue));
     let size = UVec2::new(640, 360);
     let depth = gpu.target("depth", size, wgpu::TextureFormat::Depth32Float).create_view(&Default::default());
     let view = Shot::load("column", size).unwrap().preset.camera.view(size);
@@ -51,8 +51,8 @@ fn prepare(criterion: &mut Criterion) {
             settings.accumulate.order = order;
             // Small sprites keep the GPU work short, so that it does not delay the next `prepare`.
             settings.sprite.size = 0.02;
-            let mut renderer = Renderer::new(&context, &Descriptor::default()).unwrap();
-            let pictures = haze_preset::MaterialNames::default().load(Path::new("")).unwrap();
+            let mut renderer = Renderer::new(&context, &RendererDescriptor::default()).unwrap();
+            let pictures = haze_preset::MaterialSources::default().load(haze_preset::ImageSource::BuiltIn).unwrap();
             let material = context.create_material(&pictures).unwrap();
             let (emitter, time) = emitter(count);
             let mut particles = Vec::new();

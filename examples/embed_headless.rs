@@ -1,12 +1,11 @@
 //! Embeds haze in a host without a window: own device, depth buffer and render pass. Writes `embed_headless.png`.
 
-use std::path::Path;
-
 use glam::camera::rh;
 use glam::{UVec2, Vec3, vec3};
-use haze::preset::MaterialNames;
+use haze::preset::{ImageSource, MaterialSources};
 use haze::{
-    Context, Descriptor, FrameInput, Light, ParticleSystem, Particles, Renderer, SceneDepth, Settings, View, wgpu,
+    Context, FrameInput, Light, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth, Settings, View,
+    wgpu,
 };
 
 const SIZE: UVec2 = UVec2::new(640, 360);
@@ -40,10 +39,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
 
     // haze setup, done once.
-    let descriptor = Descriptor { color_format: COLOR, depth_format: Some(DEPTH), ..Descriptor::default() };
-    let context = Context::new(&device, &queue, None);
+    let descriptor =
+        RendererDescriptor { color_format: COLOR, depth_format: Some(DEPTH), ..RendererDescriptor::default() };
+    let context = Context::new(&device, &queue);
     let mut smoke = Renderer::new(&context, &descriptor)?;
-    let material = context.create_material(&MaterialNames::default().load(Path::new(""))?)?;
+    let material = context.create_material(&MaterialSources::default().load(ImageSource::BuiltIn)?)?;
 
     // haze work of one frame.
     let mut particles = Vec::new();

@@ -1,16 +1,15 @@
 //! Embeds haze in a winit window; the camera orbits the smoke. Close the window or press Escape to quit.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use glam::camera::rh;
 use glam::{UVec2, Vec3, vec3};
 use haze::emitter::Emitter;
-use haze::preset::MaterialNames;
+use haze::preset::{ImageSource, MaterialSources};
 use haze::{
-    Context, Descriptor, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, SceneDepth,
-    Settings, View, wgpu,
+    Context, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, RendererDescriptor,
+    SceneDepth, Settings, View, wgpu,
 };
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
@@ -104,11 +103,14 @@ impl Host {
         configuration.format = configuration.format.add_srgb_suffix();
         surface.configure(&device, &configuration);
 
-        let descriptor =
-            Descriptor { color_format: configuration.format, depth_format: Some(DEPTH), ..Descriptor::default() };
-        let context = Context::new(&device, &queue, None);
+        let descriptor = RendererDescriptor {
+            color_format: configuration.format,
+            depth_format: Some(DEPTH),
+            ..RendererDescriptor::default()
+        };
+        let context = Context::new(&device, &queue);
         let smoke = Renderer::new(&context, &descriptor)?;
-        let material = context.create_material(&MaterialNames::default().load(Path::new(""))?)?;
+        let material = context.create_material(&MaterialSources::default().load(ImageSource::BuiltIn)?)?;
         let depth = depth_target(&device, &configuration);
         let (start, settings) = (Instant::now(), Settings::default());
         Ok(Self {

@@ -34,11 +34,11 @@ fn vertex(
     // The x of a hidden sprite keeps it outside the clip volume.
     if !HOST_DEPTH {
         // Depth in the units of the reduced target.
-        out.position.z = saturate(sprite_front(out.centre_radius) / system.depth_limit) * out.position.w;
+        out.position.z = saturate(sprite_front(out.center_radius) / system.depth_limit) * out.position.w;
     }
     if WEIGHTED {
-        let view_depth = -out.centre_radius.z;
-        let in_front = optical_depth_in_front(system.front_knots, view_depth, system.smoke_near, system.smoke_far);
+        let view_depth = -out.center_radius.z;
+        let in_front = optical_depth_in_front(system.optical_depth_knots, view_depth, system.smoke_near, system.smoke_far);
         out.weight = order_weight(system.depth_weight, in_front);
     }
     return out;
@@ -79,7 +79,7 @@ fn fragment(in: SpriteVertex) -> Accumulated {
     let weight = fragment.amount * in.weight;
     // The stretch comes with the vertex.
     let values = SpriteValues(in.depths_and_heat, in.tint, 0u);
-    let attachments = attachments_from_fragment(fragment, weight, values, in.centre_radius);
+    let attachments = attachments_from_fragment(fragment, weight, values, in.center_radius);
     if SIX_WAY {
         // Saves blending two targets: six of ten texels of a sprite are clear.
         if fragment.amount <= 0.0 {

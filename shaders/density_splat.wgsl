@@ -35,7 +35,7 @@ fn add_sprite(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     let at = splat.first + PARTICLE_VECTORS * index;
     let particle = particle_from_words(particles[at], particles[at + 1u], particles[at + 2u]);
     let in_view = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
-    let centre = (system.grid_from_view * vec4f(in_view, 1.0)).xyz;
+    let center = (system.grid_from_view * vec4f(in_view, 1.0)).xyz;
     let radius = density_radius(particle);
     let depth = sprite_optical_depth(particle);
     let other = dot(abs(particle.rotation_amount_frame_age), vec4f(1.0)) + dot(abs(particle.velocity), vec3f(1.0));
@@ -46,12 +46,12 @@ fn add_sprite(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     }
     let last = system.grid_size - 1.0;
     let reach = bump_radius(radius);
-    let low = vec3u(clamp(floor(centre - reach), vec3f(0.0), last));
-    let span = vec3u(clamp(floor(centre + reach), vec3f(0.0), last)) - low + 1u;
+    let low = vec3u(clamp(floor(center - reach), vec3f(0.0), last));
+    let span = vec3u(clamp(floor(center + reach), vec3f(0.0), last)) - low + 1u;
     let size = vec3u(system.grid_size);
     for (var i = local; i < span.x * span.y * span.z; i += WORKGROUP) {
         let cell = low + vec3u(i % span.x, i / span.x % span.y, i / (span.x * span.y));
-        let steps = density_steps(cell_optical_depth(vec3f(cell) - centre, radius, depth));
+        let steps = density_steps(cell_optical_depth(vec3f(cell) - center, radius, depth));
         let word = 2u * ((cell.z * size.y + cell.y) * size.x + cell.x);
         let before = atomicAdd(&density[word], steps);
         if before > 0xffffffffu - steps {

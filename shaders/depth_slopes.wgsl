@@ -37,7 +37,7 @@ fn texels(
         let slope = slope_at(vec2i(id.xy));
         textureStore(written, id.xy, slope);
         if any(slope != vec4f(0.0)) {
-            atomicStore(&has_slope[cell_of_four(local.xy)], 1u);
+            atomicStore(&has_slope[quad_cell(local.xy)], 1u);
         }
     }
     workgroupBarrier();
@@ -52,7 +52,7 @@ fn slope_at(texel: vec2i) -> vec4f {
     var nearest = depth;
     var farthest = depth;
     for (var i = 0; i < 5; i++) {
-        let around = guide(clamped_texel(texel + texel_of_five(i)));
+        let around = guide(clamped_texel(texel + cross_offset(i)));
         nearest = min(nearest, around);
         farthest = max(farthest, around);
     }
@@ -61,7 +61,7 @@ fn slope_at(texel: vec2i) -> vec4f {
     }
     var line: DepthLine;
     for (var i = 0; i < 5; i++) {
-        let offset = texel_of_five(i);
+        let offset = cross_offset(i);
         let at = clamped_texel(texel + offset);
         let z = guide(at) - depth;
         line = add_to_line(line, z, guided_weight(vec3f(vec2f(offset), z), depth), textureLoad(accumulation, at, 0));
@@ -70,7 +70,7 @@ fn slope_at(texel: vec2i) -> vec4f {
 }
 
 // Offset of one of five texels, which form a cross.
-fn texel_of_five(index: i32) -> vec2i {
+fn cross_offset(index: i32) -> vec2i {
     if index < 3 {
         return vec2i(index - 1, 0);
     }

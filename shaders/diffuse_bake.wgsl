@@ -30,7 +30,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> BakeVertex {
 
 @fragment
 fn fragment(in: BakeVertex) -> @location(0) vec4f {
-    // First and last texel centres lie on -1 and 1.
+    // First and last texel centers lie on -1 and 1.
     let place = floor(in.position.xy) / (BAKE_SIZE - 1.0) * 2.0 - 1.0;
     var normal = motif_normal(place);
     if !MOTIF {
@@ -38,5 +38,5 @@ fn fragment(in: BakeVertex) -> @location(0) vec4f {
     }
     // Baked by normal only, with the coverage of thick smoke.
     let unshaded = shade_of_sprites(vec3f(0.0));
-    return vec4f(bounded_light(diffuse_from_lights(normal, 1.0, system.centre, unshaded)), 1.0);
+    return vec4f(bounded_light(diffuse_from_lights(normal, 1.0, system.center, unshaded)), 1.0);
 }

@@ -45,12 +45,12 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     let amount = fragment.amount;
     var position = in.view_position;
     if is_sphere() {
-        position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
+        position = view_position(in.view_position.xy, max(-in.center_radius.z, view.near), view.orthographic);
     }
     let covered = coverage(amount, system.boost);
     var shade = shade_of_sprites(in.depths_and_heat.xyz);
     if BY_DEPTH {
-        shade = shade_on_ray(in.depths_and_heat.xyz, ray_through(position), moments_of_sprite(in.centre_radius));
+        shade = shade_on_ray(in.depths_and_heat.xyz, ray_through(position), moments_of_sprite(in.center_radius));
     }
     var light = vec3f(0.0);
     if SIX_WAY {

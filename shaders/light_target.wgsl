@@ -42,7 +42,7 @@ fn texels(
         let lit = lit_texel(vec2f(id.xy));
         textureStore(written, id.xy, lit);
         if lit.a > 0.0 {
-            atomicStore(&has_smoke[cell_of_four(local.xy)], 1u);
+            atomicStore(&has_smoke[quad_cell(local.xy)], 1u);
         }
     }
     workgroupBarrier();
@@ -52,7 +52,7 @@ fn texels(
     if all(workgroup.xy == vec2u(0u)) {
         for (var light = index; light < system.light_count; light += 64u) {
             let glow = glow_of_light(lights[light]);
-            textureStore(written_glows, vec2u(light, 0u), vec4f(glow.centre, 0.0, 0.0));
+            textureStore(written_glows, vec2u(light, 0u), vec4f(glow.center, 0.0, 0.0));
             textureStore(written_glows, vec2u(light, 1u), vec4f(glow.color, 0.0));
         }
     }
@@ -64,7 +64,7 @@ fn lit_texel(texel: vec2f) -> vec4f {
     if amount <= 0.0 {
         return vec4f(0.0);
     }
-    // The centre of the texel represents all of its pixels.
+    // The center of the texel represents all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * f32(system.scale);
     let surface = shaded_surface(accumulated, load_attachments(vec2i(texel)), pixel);
     let reflected = diffuse(surface, amount, lit_position(surface, pixel)) + soft_scatter(amount) * surface.tint;

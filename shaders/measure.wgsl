@@ -17,7 +17,7 @@ struct Measure {
     first: u32,
     // Workgroups of `sum_particles` and of `farthest_particle`, at most WORKGROUP.
     workgroups: u32,
-    // 1 if the host has chosen the depth of the centre.
+    // 1 if the host has chosen the depth of the center.
     keeps_depth: u32,
     // Length of the fade, metres.
     fade_distance: f32,
@@ -26,7 +26,7 @@ struct Measure {
     padding_2: f32,
 }
 
-// Sums over sprites, relative to the centre of the bounding box.
+// Sums over sprites, relative to the center of the bounding box.
 struct ExtentSums {
     // xyz: weighted positions; w: weights.
     positions: vec4f,
@@ -35,12 +35,12 @@ struct ExtentSums {
 
 // The first six numbers are laid out as in System.
 struct MeasuredExtent {
-    centre: vec3f,
+    center: vec3f,
     smoke_near: f32,
     smoke_far: f32,
     // Bits of a positive number, which order as an integer.
     smoke_depth_limit: atomic<u32>,
-    // View depth of the measured centre; `centre` may have another, chosen by the host.
+    // View depth of the measured center; `center` may have another, chosen by the host.
     mean_depth: f32,
 }
 
@@ -74,11 +74,11 @@ fn load_particle(index: u32) -> Particle {
 fn sized_particle(index: u32) -> vec4f {
     let particle = load_particle(index);
     let other = particle.rotation_amount_frame_age;
-    let centre = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
+    let center = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     let radius = particle.position_radius.w * system.size;
     let motion = dot(abs(particle.velocity), vec3f(1.0));
-    let finite = dot(abs(centre), vec3f(1.0)) + radius + dot(abs(other), vec4f(1.0)) + motion < MAX_MAGNITUDE;
-    return vec4f(centre, select(0.0, radius, finite && other.y > 0.0 && radius > 0.0));
+    let finite = dot(abs(center), vec3f(1.0)) + radius + dot(abs(other), vec4f(1.0)) + motion < MAX_MAGNITUDE;
+    return vec4f(center, select(0.0, radius, finite && other.y > 0.0 && radius > 0.0));
 }
 
 fn amount_of(index: u32) -> f32 {
@@ -97,7 +97,7 @@ fn sum_particles(
         let particle = sized_particle(index);
         if particle.w > 0.0 {
             let weight = extent_weight(amount_of(index), particle.w, -particle.z, view.near);
-            let position = particle.xyz - system.centre;
+            let position = particle.xyz - system.center;
             sum.positions += vec4f(position, 1.0) * weight;
             sum.squares += mean_square_depth(position.z, particle.w) * weight;
         }
@@ -122,21 +122,21 @@ fn combine_sums(@builtin(local_invocation_index) local: u32) {
     let weight = total.positions.w;
     if !(weight > 0.0) {
         // No particle is in front of the viewer: the extent of the box stays.
-        measured.centre = system.centre;
+        measured.center = system.center;
         measured.smoke_near = system.smoke_near;
         measured.smoke_far = system.smoke_far;
-        measured.mean_depth = -system.centre.z;
+        measured.mean_depth = -system.center.z;
         atomicStore(&measured.smoke_depth_limit, bitcast<u32>(system.smoke_depth_limit));
         return;
     }
     let mean = total.positions.xyz / weight;
     let half = half_extent(total.squares / weight, mean.z);
-    let centre = system.centre + mean;
-    measured.centre = select(centre, vec3f(centre.xy, system.centre.z), measure.keeps_depth == 1u);
-    measured.smoke_near = -centre.z - half;
-    measured.smoke_far = -centre.z + half;
-    measured.mean_depth = -centre.z;
-    let limit = min(-centre.z + measure.fade_distance, system.depth_limit);
+    let center = system.center + mean;
+    measured.center = select(center, vec3f(center.xy, system.center.z), measure.keeps_depth == 1u);
+    measured.smoke_near = -center.z - half;
+    measured.smoke_far = -center.z + half;
+    measured.mean_depth = -center.z;
+    let limit = min(-center.z + measure.fade_distance, system.depth_limit);
     atomicStore(&measured.smoke_depth_limit, bitcast<u32>(max(limit, 0.0)));
 }
 

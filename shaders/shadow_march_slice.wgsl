@@ -19,7 +19,7 @@ fn load_density(cell: vec3i) -> f32 {
     return textureLoad(density, cell, 0).r;
 }
 
-// Between the centres of eight cells.
+// Between the centers of eight cells.
 fn sample_density(place: vec3f) -> f32 {
     let low = floor(place - 0.5);
     let high_weight = place - 0.5 - low;

@@ -32,7 +32,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     }
     let corner = sprite_corner(index);
     let extent = corner * system.specular_scatter_size * 2.0 / view.size;
-    out.position = vec4f(ndc_from_pixel(glow.centre, view.size) + extent, 0.5, 1.0);
+    out.position = vec4f(ndc_from_pixel(glow.center, view.size) + extent, 0.5, 1.0);
     out.uv = corner;
     out.color = glow.color;
     out.light = instance;

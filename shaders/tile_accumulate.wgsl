@@ -79,7 +79,7 @@ fn accumulate_sprite(texel: Texel, sprite: TileSprite, values: SpriteValues, uv:
     } else {
         next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, 1.0, weight).rgb;
     }
-    let attachments = attachments_from_fragment(fragment, weight, values, in.centre_radius);
+    let attachments = attachments_from_fragment(fragment, weight, values, in.center_radius);
     next.attachments = add_attachments(texel.attachments, attachments);
     next.transmittance *= 1.0 - amount;
     return next;
@@ -264,7 +264,7 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
             // `debug_loop`: repeats the list.
             let index = sprite_index(list, (start + first + local) % list.y);
             if local == 0u {
-                fronts[part] = sprite_front(sprites[index].centre_radius);
+                fronts[part] = sprite_front(sprites[index].center_radius);
             }
             // Most sprites of a bin do not touch this tile: reads only the rectangle of those.
             if rects_meet(rects[index], low, low + tile) {
@@ -272,10 +272,10 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
                 if has_values() {
                     values = sprite_values[index];
                 }
-                // Only texel centres count.
+                // Only texel centers count.
                 let reach = reach_in_square(sprite, 0.5 * vec2f(tile - 1u));
                 let meets = is_sphere() || square_fills(sprite, uv_in_square(sprite, middle), reach);
-                is_kept = meets && sprite_front(sprite.centre_radius) <= end;
+                is_kept = meets && sprite_front(sprite.center_radius) <= end;
             }
         }
         let entry = part * share + local;
@@ -395,7 +395,7 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
             b = accumulate_sprite(b, sprite, values, in_b, !is_opaque(b) && covers(in_b));
             c = accumulate_sprite(c, sprite, values, in_c, !is_opaque(c) && covers(in_c));
             d = accumulate_sprite(d, sprite, values, in_d, !is_opaque(d) && covers(in_d));
-            last_front = sprite_front(sprite.centre_radius);
+            last_front = sprite_front(sprite.center_radius);
         }
         if STOPS || is_flat() {
             let above = is_opaque_or_occluded(a, last_front) && is_opaque_or_occluded(b, last_front);

@@ -33,10 +33,10 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     let at = tiles.first + PARTICLE_VECTORS * index;
     let particle = particle_from_words(particles[at], particles[at + 1u], particles[at + 2u]);
     let placed = project_sprite(particle, 1.0 / f32(system.scale));
-    let centre = placed.centre_radius.xyz;
-    let radius = placed.centre_radius.w;
+    let center = placed.center_radius.xyz;
+    let radius = placed.center_radius.w;
     var sprite: TileSprite;
-    sprite.centre_radius = placed.centre_radius;
+    sprite.center_radius = placed.center_radius;
     let lod = placed.amount_lod_frame_erosion.y;
     let frames = animation_frames(SPRITE_ANIMATION, placed.amount_lod_frame_erosion.z, system.frame_count);
     sprite.amount = placed.amount_lod_frame_erosion.x;
@@ -48,12 +48,12 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     var high: vec2f;
     if is_sphere() {
         let texels_per_pixel = 1.0 / f32(system.scale);
-        low = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(-1.0, 1.0), texels_per_pixel));
-        high = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(1.0, -1.0), texels_per_pixel));
+        low = texel_of_ndc(sphere_corner(placed.center_radius, vec2f(-1.0, 1.0), texels_per_pixel));
+        high = texel_of_ndc(sphere_corner(placed.center_radius, vec2f(1.0, -1.0), texels_per_pixel));
     } else {
-        // A slab whose centre has passed the near plane is drawn on that plane.
-        let plane = mix(max(-centre.z, view.near), 1.0, view.orthographic);
-        let middle = texel_of_ray(centre.xy / plane);
+        // A slab whose center has passed the near plane is drawn on that plane.
+        let plane = mix(max(-center.z, view.near), 1.0, view.orthographic);
+        let middle = texel_of_ray(center.xy / plane);
         // Size of a texel in view space, metres; the y of texels points down.
         let metres = view.ray_scale * vec2f(2.0, -2.0) * (plane * f32(system.scale)) / view.size;
         // Axes of the sprite on the screen, and the rows of the inverse matrix.
@@ -69,8 +69,8 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         }
         // v points down.
         sprite.uv_from_texels = vec4f(metres * to_across, metres * -to_up) * (0.5 / radius);
-        sprite.centre_radius = vec4f(middle, centre.z, radius);
-        // Filled part of the square: its centre, and half its sides.
+        sprite.center_radius = vec4f(middle, center.z, radius);
+        // Filled part of the square: its center, and half its sides.
         let reach = trimmed_extent(frames, lod);
         let texels = radius / metres;
         let place = 0.5 * (reach.zw - reach.xy);
@@ -80,14 +80,14 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         low = filled - extent;
         high = filled + extent;
     }
-    // Texels whose centres lie inside, with a margin of 0.01 texels for rounding.
+    // Texels whose centers lie inside, with a margin of 0.01 texels for rounding.
     let first = clamp(floor(low - 0.01), vec2f(0.0), system.target_size);
     let last = clamp(ceil(high + 0.01), vec2f(0.0), system.target_size);
 
     sprite.rotation = placed.rotation;
     sprite.weight = 1.0;
     if WEIGHTED {
-        let in_front = optical_depth_in_front(system.front_knots, -centre.z, system.smoke_near, system.smoke_far);
+        let in_front = optical_depth_in_front(system.optical_depth_knots, -center.z, system.smoke_near, system.smoke_far);
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
     let visible = !placed.hidden && index < system.alive_count && all(first < last);
@@ -102,6 +102,6 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     }
     rects[index] = select(vec2u(0u), packed_rect(vec2u(first), vec2u(last)), visible);
     let backwards = tiles.count - 1u - index;
-    keys[backwards] = select(HIDDEN_KEY, front_to_back_bits(centre.z), visible);
+    keys[backwards] = select(HIDDEN_KEY, front_to_back_bits(center.z), visible);
     indices[backwards] = index;
 }

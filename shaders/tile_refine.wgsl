@@ -22,7 +22,7 @@ var<workgroup> ends: array<f32, BITS_PER_WORD>;
 var<workgroup> nearest_end: atomic<u32>;
 // For each sprite of a batch, one bit for every part in which it may be visible.
 var<workgroup> marks: array<u32, BITS_PER_WORD>;
-// Approximate optical depth of all sprites so far at the centre of the bin, in 1/256.
+// Approximate optical depth of all sprites so far at the center of the bin, in 1/256.
 var<workgroup> depth: atomic<u32>;
 // Number of parts whose remaining words are known.
 var<workgroup> finished_parts: atomic<u32>;
@@ -30,7 +30,7 @@ var<workgroup> finished_parts: atomic<u32>;
 // True: the traversal stops where the smoke is opaque.
 override STOPS: bool = true;
 
-// Optical depth at the centre of a bin at which almost all of its texels are opaque: four times the depth at which a
+// Optical depth at the center of a bin at which almost all of its texels are opaque: four times the depth at which a
 // traversal stops.
 const OPAQUE_DEPTH: u32 = 28u;
 
@@ -49,7 +49,7 @@ fn farthest_visible_depth(low: vec2u, high: vec2u) -> f32 {
 fn visible_parts(index: u32, low: vec2u, part: vec2u) -> u32 {
     let sprite = sprites[index];
     let rect = rects[index];
-    let front = sprite_front(sprite.centre_radius);
+    let front = sprite_front(sprite.center_radius);
     let reach = reach_in_square(sprite, 0.5 * vec2f(part - 1u));
     // Steps from part to part.
     let uv = uv_in_square(sprite, vec2f(low) + 0.5 * vec2f(part));
@@ -74,7 +74,7 @@ fn visible_parts(index: u32, low: vec2u, part: vec2u) -> u32 {
     return marks;
 }
 
-// Returns the approximate amount of a sprite at a texel: puffs are thick in the centre and thin out.
+// Returns the approximate amount of a sprite at a texel: puffs are thick in the center and thin out.
 fn approximate_amount(index: u32, texel: vec2f) -> f32 {
     let sprite = sprites[index];
     let place = 2.0 * uv_in_square(sprite, texel) - 1.0;
@@ -122,7 +122,7 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
             // The few texels that are not opaque yet then visit all further sprites.
             let is_opaque = STOPS && !is_sphere() && atomicLoad(&depth) >= 256u * OPAQUE_DEPTH;
             // The scene hides this sprite and all further ones.
-            let is_hidden = sprite_front(sprites[lists[list.x + batch]].centre_radius) > end + tiles.occlusion_margin;
+            let is_hidden = sprite_front(sprites[lists[list.x + batch]].center_radius) > end + tiles.occlusion_margin;
             is_settled = is_opaque || is_hidden;
             if is_settled {
                 rest = select(0u, 0xffffffffu, is_opaque);

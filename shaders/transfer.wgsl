@@ -43,8 +43,8 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
             let texel = pixel / f32(system.scale) - system.target_origin;
             depth = textureLoad(reduced_depth, vec2i(texel), 0).r * system.depth_limit;
         }
-        let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
-        return vec4f(vec3f(grey), 1.0);
+        let gray = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
+        return vec4f(vec3f(gray), 1.0);
     }
     if DEBUG_VIEW == DEBUG_VIEW_SHADOW_SLICE {
         return slice_of_light(pixel);

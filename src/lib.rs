@@ -39,12 +39,12 @@
 //! # fn pass_with_read_only_depth(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { unimplemented!() }
 //! # let (device, queue, mut encoder, scene_depth, view) = host();
 //! use haze::{
-//!     Context, Descriptor, FrameInput, Light, MaterialAssets, ParticleSystem, Particles, Renderer, SceneDepth, Settings,
+//!     Context, RendererDescriptor, FrameInput, Light, MaterialAssets, ParticleSystem, Particles, Renderer, SceneDepth, Settings,
 //! };
 //!
 //! // Once.
-//! let context = Context::new(&device, &queue, None);
-//! let mut smoke = Renderer::new(&context, &Descriptor::default())?;
+//! let context = Context::new(&device, &queue);
+//! let mut smoke = Renderer::new(&context, &RendererDescriptor::default())?;
 //! let material = context.create_material(&MaterialAssets::default())?;
 //! let settings = Settings::default();
 //!
@@ -113,8 +113,8 @@ pub use haze_core::view_setup::{AttachmentRole, AttachmentSet, LightingChoice, S
 #[doc(inline)]
 pub use haze_preset::builtin;
 pub use renderer::{
-    Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,
-    PathModelSource, PathReason, PathWorkload, Renderer, SceneDepthKind, TargetViews, TiledMemory, Timing,
+    Context, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel, PathModelSource,
+    PathReason, PathWorkload, Renderer, RendererDescriptor, SceneDepthKind, TargetViews, TiledMemory, Timing,
     TimingDetail, WarmUp, read_only_depth_is_supported, shader,
 };
 
@@ -137,8 +137,8 @@ pub mod noise {
 pub mod preset {
     #[doc(inline)]
     pub use haze_preset::{
-        AnimatedPreset, AssetFolders, Camera, Ease, EndBehaviour, Environment, Flicker, ImageCache, ImageSource,
-        KeyValue, Keyframe, MAX_IMAGE_BYTES, MAX_KEYFRAMES, MAX_SYSTEMS, MAX_TIME, MaterialNames, PRESET_VERSION,
+        AnimatedPreset, AssetFolders, Camera, Ease, EndBehavior, Environment, Flicker, ImageCache, ImageSource,
+        KeyValue, Keyframe, MAX_IMAGE_BYTES, MAX_KEYFRAMES, MAX_SYSTEMS, MAX_TIME, MaterialSources, PRESET_VERSION,
         ParticleFiles, Preset, PresetSystem, SceneName, Track, UpAxis,
     };
 }
@@ -162,9 +162,9 @@ pub mod settings {
         Accumulate, AccumulationFormat, Ambient, BackdropKind, Backlight, BlendMode, BlendOrder, Budget,
         COARSEST_AUTO_SCALE, Choice, CoverageMode, Curve, CurveError, DebugView, Density, DepthDownsample, DepthSource,
         Diffuse, DiffuseMode, FadeCurve, FieldHeading, FieldRef, FieldValue, FieldVisitor, Fields, Fire, Grain,
-        ImageRole, Layers, Lighting, LightingResolution, MAX_CURVE_POINTS, NormalDecode, NormalEncoding, PathStep,
-        RampFilter, RenderPath, ScaleBudget, ScaleMode, Shadow, SoftFade, SoftScatter, SoftScatterMode,
-        SpecularScatter, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, UnknownChoice, Upsample,
+        ImageRole, Lighting, LightingResolution, MAX_CURVE_POINTS, NormalDecode, NormalEncoding, ParseChoiceError,
+        PathStep, RampFilter, RenderPath, ScaleBudget, ScaleMode, Shadow, SoftFade, SoftScatter, SoftScatterMode,
+        SpecularScatter, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Traversal, Upsample,
         Volumetric, field_path, field_values, for_each_field, set_field, validate, write_field_path,
     };
 }

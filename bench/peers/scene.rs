@@ -111,7 +111,7 @@ pub fn app<M>(options: &Options, plugins: impl Plugins<M>) -> (App, Entity) {
     (app, camera)
 }
 
-/// Centres of the squares, far to near.
+/// Centers of the squares, far to near.
 pub fn centers(layers: u32) -> impl Iterator<Item = Vec3> {
     (0..layers).map(move |index| Vec3::new(0.0, 0.0, -8.0 + 2.0 * index as f32 / layers as f32))
 }

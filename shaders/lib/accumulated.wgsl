@@ -81,5 +81,5 @@ fn ray_of_pixel(pixel: vec2f) -> vec2f {
 // Point of the smoke that is lit at a pixel, view space. It is on the pixel's ray, flattened to one plane; otherwise
 // the faces of the box would show.
 fn shading_position(pixel: vec2f) -> vec3f {
-    return view_position(ray_of_pixel(pixel), -system.centre.z, view.orthographic);
+    return view_position(ray_of_pixel(pixel), -system.center.z, view.orthographic);
 }

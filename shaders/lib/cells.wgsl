@@ -4,7 +4,7 @@
 const CELL_SIDE: u32 = 4u;
 
 // Index among the four cells of a workgroup of 8x8 invocations, row by row. `local`: of an invocation in its workgroup.
-fn cell_of_four(local: vec2u) -> u32 {
+fn quad_cell(local: vec2u) -> u32 {
     return local.x / CELL_SIDE + 2u * (local.y / CELL_SIDE);
 }
 

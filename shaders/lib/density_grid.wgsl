@@ -27,7 +27,7 @@ fn bump_radius(radius: f32) -> f32 {
 // Optical depth that a sprite adds to a cell: its mean over the cell, exactly. The sprite is a product of bumps along the
 // three axes, as wide as its square; the sum over all cells is the `depth` over the area of its square.
 //
-// `low`: lower corner of the cell, relative to the sprite's centre. `depth`: mean_optical_depth().
+// `low`: lower corner of the cell, relative to the sprite's center. `depth`: mean_optical_depth().
 fn cell_optical_depth(low: vec3f, radius: f32, depth: f32) -> f32 {
     let reach = bump_radius(radius);
     let near = low / reach;

@@ -84,9 +84,9 @@ fn shadow_on_light(slot: f32, shade: BlockShade, to_light: vec3f, to_viewer: vec
     if !SHADOW || slot < 0.5 {
         return vec3f(1.0);
     }
-    let at = shadow_position(of_slot(slot, shade.optical_depths), to_light, to_viewer);
+    let at = shadow_position(select_slot(slot, shade.optical_depths), to_light, to_viewer);
     let through = mix(vec3f(1.0), sample_ramp_2d(shadow_ramp, linear_sampler, at), system.shadow_strength);
-    return through * of_slot(slot, shade.visible);
+    return through * select_slot(slot, shade.visible);
 }
 
 // Share of the light from a hemisphere that comes through the smoke.

@@ -2,7 +2,7 @@
 
 #import "lib/ramp.wgsl"
 
-// Cube faces are in the order +x -x +y -y +z -z. The centres of a face's edge texels lie exactly on the cube's edges,
+// Cube faces are in the order +x -x +y -y +z -z. The centers of a face's edge texels lie exactly on the cube's edges,
 // so that two faces share the texels there and bilinear lookups meet without a seam.
 
 struct CubeCoordinate {

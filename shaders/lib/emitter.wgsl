@@ -110,7 +110,7 @@ fn smoothstep_unit(x: f32) -> f32 {
     return s * s * (3.0 - 2.0 * s);
 }
 
-// Returns the birth position of a particle, relative to the centre of the shape.
+// Returns the birth position of a particle, relative to the center of the shape.
 fn birth_offset(emitter: Emitter, random: vec3f) -> vec3f {
     switch emitter.shape {
         case EMITTER_SHAPE_BOX: {

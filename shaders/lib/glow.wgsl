@@ -9,7 +9,7 @@
 // A light as its glow is drawn: within a circle of constant size around it.
 struct Glow {
     // Pixels of the view.
-    centre: vec2f,
+    center: vec2f,
     // Light color times all fades except that of the range. Zero if nothing shows.
     color: vec3f,
 }

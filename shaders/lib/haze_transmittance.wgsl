@@ -1,4 +1,4 @@
-// Shadow of smoke in a host's shader: the bindings of Renderer::scene_shadow(), and the function that reads them. The group
+// Shadow of smoke in a host's shader: the bindings of Renderer::scene_shadow_bind_group(), and the function that reads them. The group
 // is a host's choice: scene_shadow_wgsl() replaces its number.
 
 #import "lib/ramp.wgsl"

@@ -90,7 +90,7 @@ fn coverage(amount: f32, boost: f32) -> f32 {
 }
 
 // Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a displayed
-// middle grey is half.
+// middle gray is half.
 fn painted_share(paint: vec3f) -> f32 {
     return srgb_from_linear(saturate(luminance(paint)));
 }
@@ -103,7 +103,7 @@ fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f
 
 const VISIBILITY_TAPS: u32 = 9u;
 
-// Offset of a visibility tap from the centre of a light, pixels: 8 taps on a ring of `radius`, and the centre as the
+// Offset of a visibility tap from the center of a light, pixels: 8 taps on a ring of `radius`, and the center as the
 // last.
 fn visibility_tap(index: u32, radius: f32) -> vec2f {
     let angle = f32(index) * 0.785398163;

@@ -37,9 +37,9 @@ fn lit_pixel(pixel: vec2f, has_slopes: bool, texel_size: vec2f, glowing: vec2u) 
 fn lights_that_reach(low: vec2f, high: vec2f) -> vec2u {
     var range = vec2u(0u);
     for (var i = 0u; i < system.light_count; i++) {
-        let centre = textureLoad(glows, vec2u(i, 0u), 0).xy;
+        let center = textureLoad(glows, vec2u(i, 0u), 0).xy;
         let color = textureLoad(glows, vec2u(i, 1u), 0).rgb;
-        let offset = centre - clamp(centre, low, high);
+        let offset = center - clamp(center, low, high);
         let reaches = dot(offset, offset) < system.specular_scatter_size * system.specular_scatter_size;
         if reaches && any(color > vec3f(0.0)) {
             range = vec2u(select(range.x, i, range.y == 0u), i + 1u);

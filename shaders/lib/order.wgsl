@@ -4,14 +4,14 @@
 
 // The knots cover twice the depth range of the smoke: a margin of half the range in front, the smoke, and the same
 // margin behind.
-const FRONT_KNOTS: f32 = 16.0;
+const OPTICAL_DEPTH_KNOTS: f32 = 16.0;
 
 // Returns the optical depth of the smoke in front of a view depth. smoke_near and smoke_far lie at a quarter and three
 // quarters of the knots.
 fn optical_depth_in_front(knots: array<vec4f, 4>, view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     let through = (view_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4);
-    let place = saturate(through * 0.5 + 0.25) * (FRONT_KNOTS - 1.0);
-    let low = u32(min(place, FRONT_KNOTS - 2.0));
+    let place = saturate(through * 0.5 + 0.25) * (OPTICAL_DEPTH_KNOTS - 1.0);
+    let low = u32(min(place, OPTICAL_DEPTH_KNOTS - 2.0));
     let high = low + 1u;
     var values = knots;
     return mix(values[low / 4u][low % 4u], values[high / 4u][high % 4u], place - f32(low));

@@ -1,4 +1,4 @@
-// Ramp lookups. The centres of a ramp's first and last texel are at 0 and 1, so that the end stops of a gradient are
+// Ramp lookups. The centers of a ramp's first and last texel are at 0 and 1, so that the end stops of a gradient are
 // reached.
 
 // True: filter in the shader in f32, as the CPU renderer does. False: use the sampler's filter, often with 8-bit

@@ -7,9 +7,9 @@ fn smoother_step(a: vec3f, b: vec3f) -> vec3f {
 }
 
 // Normal of the scene at a pixel, towards the viewer, from the positions of the pixel and its four neighbours.
-fn scene_normal(centre: vec3f, left: vec3f, right: vec3f, above: vec3f, below: vec3f) -> vec3f {
-    let across = smoother_step(centre - left, right - centre);
-    let up = smoother_step(centre - below, above - centre);
+fn scene_normal(center: vec3f, left: vec3f, right: vec3f, above: vec3f, below: vec3f) -> vec3f {
+    let across = smoother_step(center - left, right - center);
+    let up = smoother_step(center - below, above - center);
     let normal = cross(across, up);
     return normal * inverseSqrt(max(dot(normal, normal), 1.0e-30));
 }

@@ -42,7 +42,7 @@ fn light_disc_offset(step: u32, direction: vec3f) -> vec3f {
     return (right * cos(angle) + cross(right, direction) * sin(angle)) * sqrt(place.x);
 }
 
-// Optical depth of a sprite's own smoke from its centre outwards, as a lookup at its centre finds it.
+// Optical depth of a sprite's own smoke from its center outwards, as a lookup at its center finds it.
 //
 // It is c · mass / width². The variance r²/7 of the bump along each axis grows with the size of the cells and by the
 // trilinear lookups of the march and of the result; `2.0` is fitted to the mean over places between cells. c is 7/4π for a
@@ -84,6 +84,6 @@ fn channel_of_slot(slot: f32) -> vec3f {
 }
 
 // Value of a light with shadow: a channel of `values`, those of its block, by its slot; 0 without a slot.
-fn of_slot(slot: f32, values: vec3f) -> f32 {
+fn select_slot(slot: f32, values: vec3f) -> f32 {
     return dot(values, channel_of_slot(slot - block_of_slot(slot) * f32(LIGHTS_PER_BLOCK)));
 }

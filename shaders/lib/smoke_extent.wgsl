@@ -18,8 +18,8 @@ fn half_extent(mean_square: f32, mean: f32) -> f32 {
     return sqrt(3.0 * max(mean_square - mean * mean, 0.0));
 }
 
-// Distance that a sprite reaches behind the centre. A nearly transparent sprite contributes less, so that its death
+// Distance that a sprite reaches behind the center. A nearly transparent sprite contributes less, so that its death
 // causes no jump. `back`: view depth of the sprite's back.
-fn reach_behind(amount: f32, back: f32, centre_depth: f32) -> f32 {
-    return max(back - centre_depth, 0.0) * min(saturate(amount) / NEARLY_TRANSPARENT, 1.0);
+fn reach_behind(amount: f32, back: f32, center_depth: f32) -> f32 {
+    return max(back - center_depth, 0.0) * min(saturate(amount) / NEARLY_TRANSPARENT, 1.0);
 }

@@ -174,7 +174,7 @@ fn sprite_corner(index: u32) -> vec2f {
 }
 
 // Corner of a sprite's trimmed rectangle, -1..1, y up. `corner` is the one of the full square; `reach` is the extent
-// from the centre to the left, bottom, right and top, as shares of half a side.
+// from the center to the left, bottom, right and top, as shares of half a side.
 fn trimmed_corner(corner: vec2f, reach: vec4f) -> vec2f {
     return select(-reach.xy, reach.zw, corner > vec2f(0.0));
 }

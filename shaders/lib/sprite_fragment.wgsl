@@ -33,12 +33,12 @@ const NO_LIGHT: SixWay = SixWay(vec3f(0.0), vec3f(0.0));
 const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, 0.0, true);
 
 // Values of a fragment beside normal and amount. `weight`: amount times the weight of its normal. `sprite_values`: of its
-// sprite. `centre_radius`: the sprite in view space.
+// sprite. `center_radius`: the sprite in view space.
 fn attachments_from_fragment(
     fragment: SpriteFragment,
     weight: f32,
     sprite_values: SpriteValues,
-    centre_radius: vec4f,
+    center_radius: vec4f,
 ) -> Attachments {
     var values: Attachments;
     if SIX_WAY_SLOT != 0u {
@@ -51,7 +51,7 @@ fn attachments_from_fragment(
         values.optical_depths = vec4f(sprite_values.depths_and_heat.xyz * weight, weight);
     }
     if DEPTH_SLOT != 0u {
-        values.depth = vec4f(moments_of_sprite(centre_radius) * weight, 0.0, weight);
+        values.depth = vec4f(moments_of_sprite(center_radius) * weight, 0.0, weight);
     }
     if HEAT_SLOT != 0u {
         let heat = fragment_heat(fragment, sprite_values.depths_and_heat.w);
@@ -69,9 +69,9 @@ fn fragment_heat(fragment: SpriteFragment, heat: f32) -> f32 {
 }
 
 // depth_moments() of a sprite in view space.
-fn moments_of_sprite(centre_radius: vec4f) -> vec2f {
-    let radius = centre_radius.w * system.density_reach;
-    return depth_moments(-centre_radius.z, radius, system.smoke_near, system.smoke_far);
+fn moments_of_sprite(center_radius: vec4f) -> vec2f {
+    let radius = center_radius.w * system.density_reach;
+    return depth_moments(-center_radius.z, radius, system.smoke_near, system.smoke_far);
 }
 
 // True if the technique reads the scene's depth in the shader.
@@ -97,8 +97,8 @@ fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> S
         return sphere_fragment(in, frames, scene);
     }
     var amount = in.amount_lod_frame_erosion.x;
-    let view_depth = -in.centre_radius.z;
-    let radius = in.centre_radius.w;
+    let view_depth = -in.center_radius.z;
+    let radius = in.center_radius.w;
 
     var texel_depth = view_depth;
     var motion = vec2f(0.0);
@@ -142,9 +142,9 @@ fn fade_before(scene: f32, view_depth: f32) -> f32 {
 
 // Grain at a position on a sprite: see sample_grain().
 fn grain_of(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames) -> vec3f {
-    let distance = mix(max(-in.centre_radius.z, view.near), 1.0, view.orthographic);
+    let distance = mix(max(-in.center_radius.z, view.near), 1.0, view.orthographic);
     let scale = select(f32(system.scale), 1.0, FULL_RESOLUTION);
-    let fineness = system.grain_fineness * scale * distance / in.centre_radius.w;
+    let fineness = system.grain_fineness * scale * distance / in.center_radius.w;
     let phase = (f32(frames.first) + frames.blend) / system.frame_count;
     return sample_grain(noise, repeat_sampler, uv, phase, system.grain_tiles, fineness, GRAIN_OCTAVES);
 }
@@ -200,14 +200,14 @@ fn clean_texel(
 }
 
 fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {
-    let centre = in.centre_radius.xyz;
-    let radius = in.centre_radius.w;
+    let center = in.center_radius.xyz;
+    let radius = in.center_radius.w;
     // Ray through the pixel. View depth d is at a distance of d · per_depth along it.
     let origin = vec3f(in.view_position.xy * view.orthographic, 0.0);
     let along = normalize(vec3f(in.view_position.xy * (1.0 - view.orthographic), -1.0));
     let per_depth = -1.0 / along.z;
     let end = (scene + system.show_through_distance) * per_depth;
-    let interval = ray_sphere(origin, along, centre, radius, view.near * per_depth, end);
+    let interval = ray_sphere(origin, along, center, radius, view.near * per_depth, end);
     let stretch = interval.leave - interval.enter;
     if stretch <= 0.0 || dot(interval.axis, interval.axis) >= radius * radius {
         return HIDDEN;
@@ -216,7 +216,7 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
     if is_volumetric() {
         return volumetric_fragment(in, scene, origin, along, interval);
     }
-    // The sprite's image is on the disc through the centre that faces the ray.
+    // The sprite's image is on the disc through the center that faces the ray.
     let place = unrotate(interval.axis.xy, in.rotation) / radius;
     var motion = vec2f(0.0);
     if MOTION {
@@ -237,7 +237,7 @@ fn volumetric_fragment(
     along: vec3f,
     interval: RayInterval,
 ) -> SpriteFragment {
-    let centre = in.centre_radius.xyz;
+    let center = in.center_radius.xyz;
     let world_from_view = transpose(mat3x3f(
         view.view_from_world[0].xyz,
         view.view_from_world[1].xyz,
@@ -246,8 +246,8 @@ fn volumetric_fragment(
     // Along the ray, a coordinate is its value at the entry plus the distance times its slope.
     let span = interval.leave - interval.enter;
     let entry = origin + along * interval.enter;
-    let place_at_entry = (entry - centre) / in.centre_radius.w;
-    let place_along = along / in.centre_radius.w;
+    let place_at_entry = (entry - center) / in.center_radius.w;
+    let place_along = along / in.center_radius.w;
     let noise_at_entry = fract(noise_coordinate(world_from_view * entry, system.noise_size, system.noise_offset));
     let noise_along = world_from_view * along / system.noise_size;
     let opacity = system.volume_opacity * in.amount_lod_frame_erosion.x * span;

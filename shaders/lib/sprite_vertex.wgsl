@@ -26,7 +26,7 @@ struct SpriteVertex {
     // Amount after near fade and opacity, mip level, frame, and erosion by the grain.
     @location(2) @interpolate(flat, either) amount_lod_frame_erosion: vec4f,
     // View space.
-    @location(3) @interpolate(flat, either) centre_radius: vec4f,
+    @location(3) @interpolate(flat, either) center_radius: vec4f,
     // Cosine and sine of the rotation.
     @location(4) @interpolate(flat, either) rotation: vec2f,
     // Weight of the normal under the order `weighted`.
@@ -66,7 +66,7 @@ fn is_volumetric() -> bool {
     return TECHNIQUE == TECHNIQUE_VOLUMETRIC_HARD || TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT;
 }
 
-// Extent of a sprite in front of its centre and behind it, metres.
+// Extent of a sprite in front of its center and behind it, metres.
 fn sprite_thickness(radius: f32) -> f32 {
     return select(radius, 0.0, is_flat());
 }
@@ -76,20 +76,20 @@ fn is_flat() -> bool {
 }
 
 // View depth at which the hardware tests a sprite. No part of the sprite is nearer.
-fn sprite_front(centre_radius: vec4f) -> f32 {
-    return max(-centre_radius.z - sprite_thickness(centre_radius.w), view.near);
+fn sprite_front(center_radius: vec4f) -> f32 {
+    return max(-center_radius.z - sprite_thickness(center_radius.w), view.near);
 }
 
 // NDC of a corner of the rectangle around a sphere's projection, clipped half a texel outside the view, because the
 // last texels may extend that far.
-fn sphere_corner(centre_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> vec2f {
-    let centre = centre_radius.xyz;
-    let radius = centre_radius.w;
-    let x = sphere_axis_bounds(vec2f(centre.x, -centre.z), radius, view.near);
-    let y = sphere_axis_bounds(vec2f(centre.y, -centre.z), radius, view.near);
+fn sphere_corner(center_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> vec2f {
+    let center = center_radius.xyz;
+    let radius = center_radius.w;
+    let x = sphere_axis_bounds(vec2f(center.x, -center.z), radius, view.near);
+    let y = sphere_axis_bounds(vec2f(center.y, -center.z), radius, view.near);
     var ray = select(vec2f(x.x, y.x), vec2f(x.y, y.y), corner > vec2f(0.0));
     if view.orthographic > 0.5 {
-        ray = centre.xy + corner * radius;
+        ray = center.xy + corner * radius;
     }
     let edge = 1.0 + 1.0 / (texels_per_pixel * view.size);
     return clamp((ray - view.ray_offset) / view.ray_scale, -edge, edge);
@@ -113,7 +113,7 @@ fn has_values() -> bool {
 // Particle in view space, with the values that all fragments of its sprite share, as in SpriteVertex.
 struct ProjectedSprite {
     hidden: bool,
-    centre_radius: vec4f,
+    center_radius: vec4f,
     amount_lod_frame_erosion: vec4f,
     rotation: vec2f,
     stretch: vec2f,
@@ -138,12 +138,12 @@ fn sprite_optical_depth(particle: Particle) -> f32 {
     return system.shadow_density * depth / (system.density_reach * system.density_reach);
 }
 
-// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `centre`: view space.
-fn optical_depths_of(particle: Particle, centre: vec3f) -> vec3f {
+// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `center`: view space.
+fn optical_depths_of(particle: Particle, center: vec3f) -> vec3f {
     if !SHADOW {
         return vec3f(0.0);
     }
-    let in_grid = sample_volume(0.0, (system.grid_from_view * vec4f(centre, 1.0)).xyz);
+    let in_grid = sample_volume(0.0, (system.grid_from_view * vec4f(center, 1.0)).xyz);
     return foreign_optical_depths(in_grid, own_optical_depth(density_radius(particle), sprite_optical_depth(particle)));
 }
 
@@ -165,24 +165,24 @@ fn tint_of(particle: Particle) -> vec3f {
     return mix(vec3f(1.0), by_age, system.age_color) * mix(vec3f(1.0), particle.tint_heat.rgb, system.tint);
 }
 
-// Stretch of a particle's sprite. `centre_radius`: of the sprite, view space.
-fn stretch_of(particle: Particle, centre_radius: vec4f) -> vec2f {
+// Stretch of a particle's sprite. `center_radius`: of the sprite, view space.
+fn stretch_of(particle: Particle, center_radius: vec4f) -> vec2f {
     var velocity = (system.view_from_particles * vec4f(particle.velocity, 0.0)).xyz;
     if any(system.stretch_axis != vec3f(0.0)) {
         velocity = (view.view_from_world * vec4f(system.stretch_axis, 0.0)).xyz;
     }
-    let radius = centre_radius.w;
-    return sprite_stretch(centre_radius.xyz, velocity, system.stretch, radius, system.stretch_limit, view.orthographic);
+    let radius = center_radius.w;
+    return sprite_stretch(center_radius.xyz, velocity, system.stretch, radius, system.stretch_limit, view.orthographic);
 }
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.
 fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite {
-    let centre = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
+    let center = (system.view_from_particles * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     var radius = particle.position_radius.w * system.size;
     if TECHNIQUE == TECHNIQUE_SPHERICAL_BILLBOARD {
         radius *= system.billboard_radius;
     }
-    let view_depth = -centre.z;
+    let view_depth = -center.z;
     let angle = particle.rotation_amount_frame_age.x;
     // A sprite is visible until its far side has passed the near plane, so the near fade uses that side.
     let half_depth = sprite_thickness(radius);
@@ -195,16 +195,16 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
     // A host's own buffer may contain anything. The comparisons are false for NaN, and numbers beyond MAX_MAGNITUDE are
     // not drawn.
     let motion = dot(abs(particle.velocity), vec3f(1.0));
-    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) + motion < MAX_MAGNITUDE;
+    let finite = dot(abs(center), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) + motion < MAX_MAGNITUDE;
     let in_view = back > view.near && view_depth - half_depth < view.far;
     let shown = finite && in_view && radius > 0.0 && amount > 0.0;
 
     let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, max(view_depth, view.near), view.orthographic);
     var stretch = vec2f(0.0);
     if STRETCH {
-        let thin = stretch_of(particle, vec4f(centre, radius));
+        let thin = stretch_of(particle, vec4f(center, radius));
         let wide = max(radius, MIN_RADIUS / (pixels * texels_per_pixel));
-        stretch = stretch_of(particle, vec4f(centre, wide));
+        stretch = stretch_of(particle, vec4f(center, wide));
         amount *= widened_share(radius, wide, thin, stretch);
         radius = wide;
     }
@@ -213,12 +213,12 @@ fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite 
     let shown_frame = sprite_frame(SPRITE_ANIMATION, frame, age, system.frame_count);
     return ProjectedSprite(
         !shown,
-        vec4f(centre, radius),
+        vec4f(center, radius),
         vec4f(amount, lod, shown_frame, erosion_of(age)),
         vec2f(cos(angle), sin(angle)),
         stretch,
         SpriteValues(
-            vec4f(optical_depths_of(particle, centre), heat_of(particle)),
+            vec4f(optical_depths_of(particle, center), heat_of(particle)),
             tint_of(particle),
             pack2x16snorm(stretch),
         ),
@@ -237,7 +237,7 @@ fn alpha_bounds_texel(frame: i32, lod: f32) -> vec4u {
     return textureLoad(sprite_alpha_bounds, vec2i(level, frame + select(0, i32(system.frame_count), SIX_WAY)), 0);
 }
 
-// Extent of a sprite with these frames from its centre to the left, bottom, right and top, as shares of half its side.
+// Extent of a sprite with these frames from its center to the left, bottom, right and top, as shares of half its side.
 fn trimmed_extent(frames: FlipbookFrames, lod: f32) -> vec4f {
     let reach = unpack4x8unorm(alpha_bounds_texel(frames.first, lod).z);
     if frames.blend > 0.0 {
@@ -261,18 +261,18 @@ fn sprite_vertex(
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
         return out;
     }
-    out.centre_radius = sprite.centre_radius;
+    out.center_radius = sprite.center_radius;
     out.amount_lod_frame_erosion = sprite.amount_lod_frame_erosion;
     out.rotation = sprite.rotation;
     out.weight = 1.0;
     out.depths_and_heat = sprite.values.depths_and_heat;
     out.tint = sprite.values.tint;
     out.stretch = sprite.stretch;
-    let centre = sprite.centre_radius.xyz;
+    let center = sprite.center_radius.xyz;
     let corner = sprite_corner(corner_index);
     var clip: vec4f;
     if is_sphere() {
-        let ndc = sphere_corner(out.centre_radius, corner, texels_per_pixel);
+        let ndc = sphere_corner(out.center_radius, corner, texels_per_pixel);
         clip = vec4f(ndc, 0.0, 1.0);
         out.view_position = view_position(ndc * view.ray_scale + view.ray_offset, 1.0, view.orthographic);
     } else {
@@ -285,12 +285,12 @@ fn sprite_vertex(
         if STRETCH {
             turned = stretched(turned, out.stretch);
         }
-        // A slab whose centre has passed the near plane is drawn on the near plane.
-        out.view_position = vec3f(centre.xy + turned * sprite.centre_radius.w, min(centre.z, -view.near));
+        // A slab whose center has passed the near plane is drawn on the near plane.
+        out.view_position = vec3f(center.xy + turned * sprite.center_radius.w, min(center.z, -view.near));
         clip = view.clip_from_view * vec4f(out.view_position, 1.0);
         out.uv = sprite_uv(place);
     }
-    let front = view.clip_from_view * vec4f(0.0, 0.0, -sprite_front(out.centre_radius), 1.0);
+    let front = view.clip_from_view * vec4f(0.0, 0.0, -sprite_front(out.center_radius), 1.0);
     let depth = saturate(front.z / front.w);
     out.position = vec4f(clip.xy * target_from_ndc.xy + clip.w * target_from_ndc.zw, depth * clip.w, clip.w);
     return out;

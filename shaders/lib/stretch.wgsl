@@ -9,22 +9,22 @@ fn stretch_ratio(length: f32, radius: f32, limit: f32) -> f32 {
     return min(1.0 + 0.5 * length / max(radius, 1.0e-6), limit);
 }
 
-// Velocity across the line of sight at a particle's depth. `centre` and `velocity`: view space.
-fn velocity_on_screen(centre: vec3f, velocity: vec3f, orthographic: f32) -> vec2f {
-    let approach = velocity.z * (1.0 - orthographic) / max(-centre.z, 1.0e-3);
-    return velocity.xy + centre.xy * approach;
+// Velocity across the line of sight at a particle's depth. `center` and `velocity`: view space.
+fn velocity_on_screen(center: vec3f, velocity: vec3f, orthographic: f32) -> vec2f {
+    let approach = velocity.z * (1.0 - orthographic) / max(-center.z, 1.0e-3);
+    return velocity.xy + center.xy * approach;
 }
 
 // Stretch of a sprite. `seconds`: time for which the shutter is open.
 fn sprite_stretch(
-    centre: vec3f,
+    center: vec3f,
     velocity: vec3f,
     seconds: f32,
     radius: f32,
     limit: f32,
     orthographic: f32,
 ) -> vec2f {
-    let across = velocity_on_screen(centre, velocity, orthographic);
+    let across = velocity_on_screen(center, velocity, orthographic);
     let speed = length(across);
     // Beside the viewer, a particle that comes closer passes faster than it moves.
     let ratio = stretch_ratio(min(speed, length(velocity)) * seconds, radius, limit);
@@ -41,7 +41,7 @@ fn widened_share(radius: f32, wide: f32, thin: vec2f, stretch: vec2f) -> f32 {
     return min(ratio * ratio * (1.0 - dot(stretch, stretch)) / max(1.0 - dot(thin, thin), 1.0e-4), 1.0);
 }
 
-// Position on a sprite at rest to its position on the stretched one, relative to the centre.
+// Position on a sprite at rest to its position on the stretched one, relative to the center.
 fn stretched(place: vec2f, stretch: vec2f) -> vec2f {
     return place + stretch * (dot(stretch, place) / max(1.0 - dot(stretch, stretch), 1.0e-4));
 }

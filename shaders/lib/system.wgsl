@@ -11,7 +11,7 @@ struct System {
     opacity: f32,
     // View space: the middle of the smoke. Light is evaluated on the plane through it that faces the viewer. This field
     // and the next three are measured on the GPU for particles that the CPU cannot read.
-    centre: vec3f,
+    center: vec3f,
     // Most of the smoke lies between this view depth and smoke_far.
     smoke_near: f32,
     smoke_far: f32,
@@ -69,7 +69,7 @@ struct System {
     six_way_color: vec3f,
     six_way_anisotropy: f32,
     // Optical depth of the smoke in front of sixteen view depths.
-    front_knots: array<vec4f, 4>,
+    optical_depth_knots: array<vec4f, 4>,
     // Diffuse light as spherical harmonics, rgb.
     spherical_harmonics: array<vec4f, 9>,
     // Density grid, in cells.

@@ -25,16 +25,16 @@ struct RayInterval {
     enter: f32,
     // The interval is empty if leave <= enter.
     leave: f32,
-    // Vector from the centre of the sphere to the nearest point of the ray's line.
+    // Vector from the center of the sphere to the nearest point of the ray's line.
     axis: vec3f,
 }
 
 // Intersects a ray of unit length with a sphere. `near` and `scene` are distances along the ray. Half the chord is w =
 // sqrt(r² - q²). (BLOG 2)
-fn ray_sphere(origin: vec3f, direction: vec3f, centre: vec3f, radius: f32, near: f32, scene: f32) -> RayInterval {
-    let to_centre = centre - origin;
-    let middle = dot(to_centre, direction);
-    let axis = direction * middle - to_centre;
+fn ray_sphere(origin: vec3f, direction: vec3f, center: vec3f, radius: f32, near: f32, scene: f32) -> RayInterval {
+    let to_center = center - origin;
+    let middle = dot(to_center, direction);
+    let axis = direction * middle - to_center;
     let half_chord = sqrt(max(radius * radius - dot(axis, axis), 0.0));
     return RayInterval(max(middle - half_chord, near), min(middle + half_chord, scene), axis);
 }
@@ -62,7 +62,7 @@ fn density_amount(density: f32, thickness: f32) -> f32 {
     return 1.0 - exp(-density * thickness);
 }
 
-// Falloff of a volume from its centre. `place` is the position in the sphere, -1..1. (MS "March", step 3)
+// Falloff of a volume from its center. `place` is the position in the sphere, -1..1. (MS "March", step 3)
 fn volumetric_falloff(place: vec3f) -> f32 {
     return saturate(1.0 - dot(place, place));
 }
@@ -87,23 +87,23 @@ fn volumetric_normal(place: vec3f, gradient: vec3f) -> vec3f {
     return normalize(vec3f(normal.xy, max(normal.z, 0.1)));
 }
 
-// Lower and upper bound of a sphere's projection on one axis, as position / depth, clipped at the near plane. `centre`
+// Lower and upper bound of a sphere's projection on one axis, as position / depth, clipped at the near plane. `center`
 // is (position on the axis, depth). (Mara and McGuire, "2D polyhedral bounds of a clipped, perspective-projected 3D
 // sphere", JCGT 2013)
-fn sphere_axis_bounds(centre: vec2f, radius: f32, near: f32) -> vec2f {
-    let clipped = centre.y - radius < near;
+fn sphere_axis_bounds(center: vec2f, radius: f32, near: f32) -> vec2f {
+    let clipped = center.y - radius < near;
     // Half the width of the disc that the near plane cuts out of the sphere.
-    let cut = sqrt(max(radius * radius - (near - centre.y) * (near - centre.y), 0.0));
-    var bounds = vec2f(centre.x - cut, centre.x + cut) / near;
-    let tangent_squared = dot(centre, centre) - radius * radius;
+    let cut = sqrt(max(radius * radius - (near - center.y) * (near - center.y), 0.0));
+    var bounds = vec2f(center.x - cut, center.x + cut) / near;
+    let tangent_squared = dot(center, center) - radius * radius;
     if tangent_squared > 0.0 {
-        // Rotates the direction of the centre to either tangent. The tangent points are at `cosine` times the distance
-        // of the centre.
-        let distance = length(centre);
+        // Rotates the direction of the center to either tangent. The tangent points are at `cosine` times the distance
+        // of the center.
+        let distance = length(center);
         let cosine = sqrt(tangent_squared) / distance;
         let sine = radius / distance;
-        let lower = vec2f(cosine * centre.x - sine * centre.y, cosine * centre.y + sine * centre.x);
-        let upper = vec2f(cosine * centre.x + sine * centre.y, cosine * centre.y - sine * centre.x);
+        let lower = vec2f(cosine * center.x - sine * center.y, cosine * center.y + sine * center.x);
+        let upper = vec2f(cosine * center.x + sine * center.y, cosine * center.y - sine * center.x);
         if !clipped || lower.y * cosine > near {
             bounds.x = lower.x / lower.y;
         }

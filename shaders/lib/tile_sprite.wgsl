@@ -16,10 +16,10 @@ fn tested_view_depth(tested_depth: texture_2d<f32>, texel: vec2u) -> f32 {
 }
 
 struct TileSprite {
-    // Squares: rows of the matrix from texels, relative to the centre, to uv.
+    // Squares: rows of the matrix from texels, relative to the center, to uv.
     uv_from_texels: vec4f,
-    // View space. Squares: xy is the centre in texels.
-    centre_radius: vec4f,
+    // View space. Squares: xy is the center in texels.
+    center_radius: vec4f,
     amount: f32,
     weight: f32,
     // Both frames and the mip level. Computing them per texel took a sixteenth of the traversal.
@@ -117,7 +117,7 @@ fn texel_of_ndc(ndc: vec2f) -> vec2f {
 
 // Returns the uv in a sprite's square at a texel.
 fn uv_in_square(sprite: TileSprite, texel: vec2f) -> vec2f {
-    let offset = texel - sprite.centre_radius.xy;
+    let offset = texel - sprite.center_radius.xy;
     return vec2f(dot(sprite.uv_from_texels.xy, offset), dot(sprite.uv_from_texels.zw, offset)) + 0.5;
 }
 
@@ -137,7 +137,7 @@ fn square_fills(sprite: TileSprite, uv: vec2f, reach: vec2f) -> bool {
 fn fragment_of(sprite: TileSprite, texel: vec2f, ray: vec2f, uv: vec2f) -> SpriteVertex {
     var out: SpriteVertex;
     out.position = vec4f(texel, 0.0, 1.0);
-    out.centre_radius = sprite.centre_radius;
+    out.center_radius = sprite.center_radius;
     out.amount_lod_frame_erosion = vec4f(sprite.amount, lod_of(sprite), 0.0, blend_and_erosion(sprite).y);
     out.rotation = sprite.rotation;
     out.weight = sprite.weight;

@@ -1,12 +1,12 @@
 //! Input of one frame.
 
 use glam::{Mat4, UVec2, Vec3};
+use haze_core::settings::{BlendOrder, DebugView, Settings};
 
 use haze_core::frame::{Bounds, EmitterSnapshot, Light, Particle, View};
 
 use super::material::Material;
 use super::shadow_map::ShadowMap;
-use haze_core::settings::{BlendOrder, DebugView, Settings};
 
 /// Input of [`Renderer::prepare`](crate::Renderer::prepare) for one frame.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +76,7 @@ pub enum SceneDepth<'a> {
     /// Both, of the same scene. The buffer is read, with two exceptions: systems of the technique
     /// [`SoftLinear`](crate::settings::Technique::SoftLinear), and backends (OpenGL) that cannot read a buffer that is
     /// attached to the pass.
-    Both {
+    BufferAndLinear {
         /// As in [`SceneDepth::Buffer`].
         buffer: &'a wgpu::TextureView,
         /// As in [`SceneDepth::Linear`].
@@ -87,15 +87,17 @@ pub enum SceneDepth<'a> {
 impl<'a> SceneDepth<'a> {
     /// The texture that is read.
     pub(crate) fn texture(&self) -> &'a wgpu::Texture {
-        let (Self::Buffer(view) | Self::Multisampled(view) | Self::Linear(view) | Self::Both { buffer: view, .. }) =
-            self;
+        let (Self::Buffer(view)
+        | Self::Multisampled(view)
+        | Self::Linear(view)
+        | Self::BufferAndLinear { buffer: view, .. }) = self;
         view.texture()
     }
 
     /// The single-sampled depth buffer, if there is one.
     pub fn buffer(&self) -> Option<&'a wgpu::TextureView> {
         match self {
-            Self::Buffer(view) | Self::Both { buffer: view, .. } => Some(view),
+            Self::Buffer(view) | Self::BufferAndLinear { buffer: view, .. } => Some(view),
             Self::Linear(_) | Self::Multisampled(_) => None,
         }
     }
@@ -103,7 +105,7 @@ impl<'a> SceneDepth<'a> {
     /// The linear target, if there is one.
     pub fn linear(&self) -> Option<&'a wgpu::TextureView> {
         match self {
-            Self::Linear(view) | Self::Both { linear: view, .. } => Some(view),
+            Self::Linear(view) | Self::BufferAndLinear { linear: view, .. } => Some(view),
             Self::Buffer(_) | Self::Multisampled(_) => None,
         }
     }
@@ -120,7 +122,7 @@ pub struct ParticleSystem<'a> {
     /// An emitter that moves as a whole, or a simulation in local space, needs no work on the CPU.
     pub world_from_particles: Mat4,
     /// Box in the particles' space that contains every sprite with its corners:
-    /// [`SpriteExtent::reach`](crate::SpriteExtent::reach) around each particle. It decides which pixels are lit, which lights
+    /// [`SpriteExtent::radius`](crate::SpriteExtent::radius) around each particle. It decides which pixels are lit, which lights
     /// reach the smoke, and whether the system is visible.
     /// Sprites outside the box may be cut off; a box that is too large costs time. `None` measures a slice with
     /// [`particle_bounds`](crate::particle_bounds).
@@ -204,7 +206,7 @@ impl Particles<'_> {
     }
 
     /// True for a buffer that is not sorted although its order matters.
-    pub fn need_sorting(&self, settings: &Settings) -> bool {
+    pub fn needs_sorting(&self, settings: &Settings) -> bool {
         matches!(self, Self::Buffer(ParticleBuffer { is_sorted: false, .. })) && settings.order() == BlendOrder::Sorted
     }
 }

@@ -4,6 +4,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{UVec2, Vec3};
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
+use haze_core::view_setup::Support;
 
 use super::auto::PathModel;
 use super::gpu::Gpu;
@@ -19,10 +23,6 @@ use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
 use super::tiled::{TiledPipelines, volume};
 use crate::frame::Material;
-use haze_core::assets::material_assets::MaterialAssets;
-use haze_core::assets::ramp::Ramp;
-use haze_core::error::Error;
-use haze_core::view_setup::Support;
 
 /// Resources that all renderers of one device share: device, queue, shader modules, bind group layouts, samplers and
 /// pipelines. A clone refers to the same context. A context can be used from any thread.
@@ -77,12 +77,20 @@ impl Context {
     /// [`Renderer::warm_up`](crate::Renderer::warm_up).
     ///
     /// `queue` must be the queue of `device`. Encoders, passes, textures and buffers that the host passes to haze must
-    /// belong to this device; wgpu has no means to check that, and reports or panics on its own.
-    ///
-    /// `pipeline_cache`: a cache that the host created from saved data, on backends that support it (today Vulkan, with
-    /// `Features::PIPELINE_CACHE`). Pipelines are looked up in it and added to it. The host reads its contents with
+    /// belong to this device; wgpu has no means to check that, and reports or panics on its own. Both come from one
+    /// `Adapter::request_device`.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        Self::create(device, queue, None)
+    }
+
+    /// As [`Context::new`], with a cache that the host created from saved data, on backends that support it (today Vulkan,
+    /// with `Features::PIPELINE_CACHE`). Pipelines are looked up in it and added to it. The host reads its contents with
     /// `get_data` to save them.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
+    pub fn with_pipeline_cache(device: &wgpu::Device, queue: &wgpu::Queue, cache: &wgpu::PipelineCache) -> Self {
+        Self::create(device, queue, Some(cache))
+    }
+
+    fn create(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let layouts = Layouts::new(device);
         let store = PipelineStore::new(device, pipeline_cache);
         let Ok(pipelines) = Pipelines::new(&store, &layouts, |name| embedded_shader(device, name));
@@ -140,7 +148,7 @@ impl Context {
                 six_way: six_way_is_supported(&device),
                 independent_blend: independent_blend_is_supported(&device),
             },
-            path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
+            path_model: Mutex::new(PathModel::for_device_type(device.adapter_info().device_type)),
             device,
             queue: queue.clone(),
             layouts,
@@ -158,7 +166,7 @@ impl Context {
         &self.0.queue
     }
 
-    /// Returns the layout of [`Renderer::scene_shadow`](crate::Renderer::scene_shadow), for a host's pipelines.
+    /// Returns the layout of [`Renderer::scene_shadow_bind_group`](crate::Renderer::scene_shadow_bind_group), for a host's pipelines.
     pub fn scene_shadow_layout(&self) -> &wgpu::BindGroupLayout {
         &self.0.layouts.scene_shadow
     }
@@ -187,7 +195,7 @@ impl Context {
     }
 
     /// Returns true if the device supports the path `tiled`.
-    pub fn has_tiles(&self) -> bool {
+    pub fn supports_tiled(&self) -> bool {
         self.0.tiles().is_some()
     }
 

@@ -1,23 +1,24 @@
 //! Description of a renderer and of the host's render pass.
 
-use super::gpu::host_pass::{HostPass, MAX_ATTACHMENTS};
 use haze_core::error::FieldError;
+
+use super::gpu::host_pass::{HostPass, MAX_ATTACHMENTS};
 
 /// Describes the host's render pass. All fields are fixed for the lifetime of a [`Renderer`](crate::Renderer).
 #[derive(Clone, Copy, Debug)]
-pub struct Descriptor<'a> {
+pub struct RendererDescriptor<'a> {
     /// Format of the view that is the first color attachment. It must be blendable. haze writes linear light: use
     /// `Rgba16Float` for HDR. If the texture holds sRGB-encoded values (`Rgba8Unorm`, `Bgra8Unorm`), attach a view in the
     /// format that ends in `Srgb`, so that the hardware blends linear light.
     pub color_format: wgpu::TextureFormat,
     /// Formats of the pass's further color attachments (velocity, object IDs …), in order, at most 7; `None` for an
     /// unused index. haze does not write to them.
-    pub further_color_formats: &'a [Option<wgpu::TextureFormat>],
+    pub other_color_formats: &'a [Option<wgpu::TextureFormat>],
     /// Format of the pass's depth attachment, `None` if it has none.
     ///
     /// The attachment is the frame's scene depth. It must be read-only (`depth_ops: None`), because haze samples it
     /// too. OpenGL and WebGL2 cannot test and sample one texture in the same pass: there, supply a linear target
-    /// ([`SceneDepth::Both`](crate::SceneDepth::Both)) or set `None`. See
+    /// ([`SceneDepth::BufferAndLinear`](crate::SceneDepth::BufferAndLinear)) or set `None`. See
     /// [`read_only_depth_is_supported`](crate::read_only_depth_is_supported). A multisampled host attaches its
     /// depth buffer and supplies the same as [`SceneDepth::Multisampled`](crate::SceneDepth::Multisampled).
     pub depth_format: Option<wgpu::TextureFormat>,
@@ -33,11 +34,11 @@ pub struct Descriptor<'a> {
     pub exact_filtering: bool,
 }
 
-impl Default for Descriptor<'_> {
+impl Default for RendererDescriptor<'_> {
     fn default() -> Self {
         Self {
             color_format: wgpu::TextureFormat::Rgba16Float,
-            further_color_formats: &[],
+            other_color_formats: &[],
             depth_format: Some(wgpu::TextureFormat::Depth32Float),
             sample_count: 1,
             scene_color_format: None,
@@ -46,7 +47,7 @@ impl Default for Descriptor<'_> {
     }
 }
 
-impl Descriptor<'_> {
+impl RendererDescriptor<'_> {
     /// Returns the pass.
     ///
     /// # Errors
@@ -57,10 +58,10 @@ impl Descriptor<'_> {
             sample_count: self.sample_count,
             ..HostPass::color_only(self.color_format)
         };
-        let Some(pass) = pass.with_further(self.further_color_formats) else {
-            let problem = format!("{} formats are too many", self.further_color_formats.len());
+        let Some(pass) = pass.with_further(self.other_color_formats) else {
+            let problem = format!("{} formats are too many", self.other_color_formats.len());
             let expected = format!("at most {}", MAX_ATTACHMENTS - 1);
-            return Err(FieldError::from_problem("further_color_formats", problem, expected));
+            return Err(FieldError::from_problem("other_color_formats", problem, expected));
         };
         pass.validate(device)?;
         Ok(pass)

@@ -1,12 +1,13 @@
 //! Bind group 0 of every pass: view uniforms and scene depth.
 
+use haze_core::error::FieldError;
+use haze_core::formula::uniforms::ViewUniform;
+use haze_core::view_setup::ViewGeometry;
+
 use super::context::Shared;
 use super::gpu::error_scopes::with_error_scopes;
 use super::gpu::record::uniform_buffer;
 use crate::frame::SceneDepth;
-use haze_core::error::FieldError;
-use haze_core::formula::uniforms::ViewUniform;
-use haze_core::view_setup::ViewGeometry;
 
 /// View uniforms, bound with each kind of scene depth.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! Resources of a frame that all its systems share.
 
 use glam::UVec2;
+use haze_core::view_setup::ViewGeometry;
 
 use super::context::Shared;
 use super::frame_bindings::FrameBindings;
@@ -8,7 +9,6 @@ use super::gpu::Gpu;
 use super::plan::PipelineInputs;
 use super::tiled::FrameShadow;
 use crate::frame::FrameInput;
-use haze_core::view_setup::ViewGeometry;
 
 /// A frame, with the resources that every system needs.
 pub(crate) struct FrameContext<'a> {

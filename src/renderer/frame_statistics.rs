@@ -1,5 +1,7 @@
 //! Targets, memory, counts and choices of a renderer's last frame.
 
+use haze_core::view_setup::{LightingChoice, ScaleChoice};
+
 use super::Renderer;
 use super::auto::PathChoice;
 use super::counts::{FrameCounts, Overdraw};
@@ -7,7 +9,6 @@ use super::memory_use::MemoryUse;
 use super::resolved_depth::ResolvedDepth;
 use super::system::SystemState;
 use super::targets::TargetViews;
-use haze_core::view_setup::{LightingChoice, ScaleChoice};
 
 impl Renderer {
     /// Returns the view depth of a system's smoke, metres, by which [`render`](Self::render) sorts: `ParticleSystem::depth`, or

@@ -1,11 +1,12 @@
 //! Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. See `shaders/lib/bindings.wgsl`.
 
-use super::gpu::binding::{FILTERED, LOADED, SAMPLER, bind_group_layout, texture, uniform};
-use super::gpu::capabilities::tiles_are_supported;
 use haze_core::formula::uniforms::{
     LightUniform, SceneShadowUniform, ScreenShadowUniform, ShadowVisibilityUniform, SystemUniform, ViewUniform,
 };
 use haze_core::frame::MAX_LIGHTS;
+
+use super::gpu::binding::{FILTERED, LOADED, SAMPLER, bind_group_layout, texture, uniform};
+use super::gpu::capabilities::tiles_are_supported;
 
 /// Size of the lights' uniform block, bytes.
 pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as u64;

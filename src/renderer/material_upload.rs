@@ -1,17 +1,17 @@
 //! Upload of materials: sprite images, ramps and noise.
 
 use glam::UVec2;
-
-use super::gpu::Gpu;
-use super::gpu::capabilities::array_layers;
-use super::layouts::{LIGHTING_BINDINGS, Layouts, SPRITE_BINDINGS};
-use crate::frame::Material;
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::Sprite;
 use haze_core::assets::sprite::alpha_bounds::AlphaBounds;
 use haze_core::error::FieldError;
+
+use super::gpu::Gpu;
+use super::gpu::capabilities::array_layers;
+use super::layouts::{LIGHTING_BINDINGS, Layouts, SPRITE_BINDINGS};
+use crate::frame::Material;
 
 /// Samplers and textures that every material binds.
 #[derive(Debug)]

@@ -29,17 +29,18 @@ mod tiled;
 mod validate_frame;
 mod warm_up;
 
-use crate::frame::{FrameInput, SceneDepth};
 use haze_core::assets::ramp_steps::RampSteps;
 use haze_core::error::{Error, FieldError};
 use haze_core::formula::shadow::SHADOWED_LIGHTS;
 use haze_core::settings::DebugView;
 use haze_core::view_setup::{AttachmentSet, ResolvedSettings, SmokeShadow, ViewGeometry};
 
+use crate::frame::{FrameInput, SceneDepth};
+
 pub use auto::{PathChoice, PathCosts, PathModel, PathModelSource, PathReason, PathWorkload};
 pub use context::Context;
 pub use counts::{FrameCounts, Overdraw};
-pub use descriptor::Descriptor;
+pub use descriptor::RendererDescriptor;
 pub use gpu::capabilities::read_only_depth_is_supported;
 pub use gpu::frame_times::{FrameTimes, PassTime};
 pub use gpu::timing::{Timing, TimingDetail};
@@ -89,7 +90,7 @@ pub struct Renderer {
     screen_shadow: ScreenShadowState,
     /// Lights of the frame that cast shadow.
     shadowed_lights: [Option<usize>; SHADOWED_LIGHTS],
-    /// True between `cast_shadow` and the `prepare` that completes the frame.
+    /// True between `prepare_shadow` and the `prepare` that completes the frame.
     has_cast: bool,
     states: Vec<SystemState>,
     /// Visible systems, farthest first.
@@ -102,7 +103,7 @@ pub struct Renderer {
 #[derive(Clone, Copy, Debug)]
 struct VisibleSystem {
     state: usize,
-    /// View depth of the smoke's centre, metres.
+    /// View depth of the smoke's center, metres.
     distance: f32,
 }
 
@@ -112,7 +113,7 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Field`] names the property that the device does not support: a format, or the sample count.
-    pub fn new(context: &Context, descriptor: &Descriptor<'_>) -> Result<Self, Error> {
+    pub fn new(context: &Context, descriptor: &RendererDescriptor<'_>) -> Result<Self, Error> {
         let device = &context.shared().device;
         let host = descriptor.host_pass(device)?;
         Ok(Self {
@@ -144,7 +145,7 @@ impl Renderer {
 
     /// Compiles every pipeline that the described frames need, so that the first such frame compiles none. To compile
     /// outside the render thread, create a second renderer on another thread, with the same [`Context`] and the same
-    /// [`Descriptor`].
+    /// [`RendererDescriptor`].
     ///
     /// # Errors
     /// [`Error::Field`] names the view or setting that is not valid. [`Error::Shader`] names the file of a pass whose
@@ -256,21 +257,21 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`prepare`](Self::prepare).
-    pub fn cast_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
+    pub fn prepare_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
         self.prepare_systems(&mut FrameEncoder::new(encoder, self.timing.clone()), frame)?;
         self.has_cast = true;
         Ok(())
     }
 
     /// Returns the bind group that [`shader::scene_shadow_wgsl`] reads, for the frame of the last
-    /// [`cast_shadow`](Self::cast_shadow) or [`prepare`](Self::prepare). Its layout is
+    /// [`prepare_shadow`](Self::prepare_shadow) or [`prepare`](Self::prepare). Its layout is
     /// [`Context::scene_shadow_layout`]. It may be another one in the next frame. Without shadow, light is full.
-    pub fn scene_shadow(&self) -> &wgpu::BindGroup {
+    pub fn scene_shadow_bind_group(&self) -> &wgpu::BindGroup {
         self.scene_shadow.group()
     }
 
     /// Returns the indices in [`FrameInput::lights`] of the lights that cast shadow, in the frame of the last
-    /// [`cast_shadow`](Self::cast_shadow) or [`prepare`](Self::prepare). The three brightest come first.
+    /// [`prepare_shadow`](Self::prepare_shadow) or [`prepare`](Self::prepare). The three brightest come first.
     pub fn shadowed_lights(&self) -> impl Iterator<Item = usize> {
         self.shadowed_lights.into_iter().flatten()
     }
@@ -407,7 +408,7 @@ impl Renderer {
 
     /// Darkens the host's picture by the shadow of the smoke, for hosts whose shaders do not call
     /// [`shader::scene_shadow_wgsl`]: record it in the pass of [`render`](Self::render), or in that of
-    /// [`Descriptor::scene_color_format`], after the opaque scene and before the smoke. Needs
+    /// [`RendererDescriptor::scene_color_format`], after the opaque scene and before the smoke. Needs
     /// [`FrameInput::scene_ambient`]. State of the pass as in `render`.
     ///
     /// Each pixel is multiplied by the share of its light that is left, for a white matte surface whose normal comes from

@@ -4,17 +4,17 @@ use std::time::{Duration, Instant};
 
 use glam::camera::rh::proj::directx::perspective;
 use glam::{Mat4, UVec2, Vec3};
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
+use haze_core::frame::{Particle, View};
+use haze_core::settings::{RenderPath, Settings, Traversal};
 
 use super::Renderer;
 use super::auto::{PathCosts, PathModel, PathWorkload};
 use super::context::Context;
-use super::descriptor::Descriptor;
+use super::descriptor::RendererDescriptor;
 use super::gpu::record::{begin_pass, written_depth};
 use crate::frame::{FrameInput, Material, ParticleSystem, Particles, SceneDepth};
-use haze_core::assets::material_assets::MaterialAssets;
-use haze_core::error::Error;
-use haze_core::frame::{Particle, View};
-use haze_core::settings::{Layers, RenderPath, Settings};
 
 /// Test scene: `SPRITES` sprites, one behind the other, each covering an image of `SIZE` pixels.
 const SIZE: UVec2 = UVec2::splat(256);
@@ -48,7 +48,7 @@ impl Context {
         if self.shared().tiles().is_none() {
             return Ok(self.path_model());
         }
-        let class = PathModel::of_class(self.device().adapter_info().device_type);
+        let class = PathModel::for_device_type(self.device().adapter_info().device_type);
         let mut scene = ProbeScene::new(self)?;
         let seconds = scene.seconds(&mut submit)?;
         let workload = scene.workload();
@@ -77,7 +77,7 @@ struct ProbeScene {
 
 impl ProbeScene {
     fn new(context: &Context) -> Result<Self, Error> {
-        let renderer = Renderer::new(context, &Descriptor::default())?;
+        let renderer = Renderer::new(context, &RendererDescriptor::default())?;
         let material = context.create_material(&MaterialAssets::default())?;
         let depth = context.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("haze probe depth"),
@@ -175,7 +175,7 @@ impl ProbeScene {
         settings.sprite.debug_loop = loops;
         settings.accumulate.scale = 1;
         // Without early stops of the traversal, the time does not depend on the sprites' opacity.
-        settings.accumulate.layers = Layers::All;
+        settings.accumulate.layers = Traversal::All;
         let mut encoder =
             self.renderer.context().device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         drop(begin_pass(&mut encoder, "haze probe", &[], Some(written_depth(&self.depth)), None));

@@ -5,11 +5,12 @@ use std::fmt::Debug;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use haze_core::error::{Error, one_line};
+
 use super::gpu::binding::{bind_group_layout, bind_resources};
 use super::gpu::error_scopes::with_error_scopes;
 use super::gpu::pipeline::{Common, PipelineDescription, PipelineStore, Shader};
 use super::layouts::{GroupSet, Layouts};
-use haze_core::error::{Error, one_line};
 
 /// Declaration of a pass's pipelines, in its file: the key that tells them apart implements it.
 pub(crate) trait PipelineKey: Copy + Debug + Eq + Hash {

@@ -3,6 +3,8 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
+use haze_core::error::Error;
+
 use super::gpu::capabilities::tiles_are_supported;
 use super::gpu::host_pass::HostPass;
 use super::gpu::pipeline::{PipelineStore, Shader};
@@ -20,7 +22,6 @@ use super::pass::transfer_lit::TransferLitKey;
 use super::pipeline_variants::pipeline_set;
 use super::plan::Plan;
 use super::tiled::TiledPipelines;
-use haze_core::error::Error;
 
 pipeline_set! {
     /// Passes that draw, but for those over texels.

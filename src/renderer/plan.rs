@@ -1,6 +1,13 @@
 //! Plan of a system's passes and pipeline keys, decided from plain data before any device call.
 
 use glam::UVec2;
+use haze_core::assets::ramp_steps::RampSteps;
+use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::settings::{
+    BlendOrder, DebugView, DepthSource, DiffuseMode, LightingResolution, RenderPath, Settings, Technique, Traversal,
+    Upsample,
+};
+use haze_core::view_setup::{AttachmentSet, ResolvedSettings, Support};
 
 use super::gpu::host_pass::HostPass;
 use super::pass::TexelPlan;
@@ -15,20 +22,13 @@ use super::pass::mark_cells::MarkCellsKey;
 use super::pass::specular_scatter::SpecularScatterKey;
 use super::pass::sprite_instances::SpriteKey;
 use super::pass::texel_pass::Planned;
-use super::pass::tile_accumulate::{TileAccumulateKey, Traversal};
+use super::pass::tile_accumulate::{TileAccumulateKey, TraversalMode};
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::{BoundingBoxKey, TransferKey};
 use super::pass::transfer_lit::{Tiles, TransferLitKey};
 use super::pass::upsample_lit::{LitPixelKey, UpsampleLitKey};
 use super::tiled::TiledKeys;
 use crate::frame::SceneDepth;
-use haze_core::assets::ramp_steps::RampSteps;
-use haze_core::formula::diffuse_bake::baked_size_and_layers;
-use haze_core::settings::{
-    BlendOrder, DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, RenderPath, Settings, Technique,
-    Upsample,
-};
-use haze_core::view_setup::{AttachmentSet, ResolvedSettings, Support};
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,8 +39,8 @@ pub enum SceneDepthKind {
     Multisampled,
     /// [`SceneDepth::Linear`].
     Linear,
-    /// [`SceneDepth::Both`].
-    Both(wgpu::TextureFormat),
+    /// [`SceneDepth::BufferAndLinear`].
+    BufferAndLinear(wgpu::TextureFormat),
 }
 
 impl SceneDepth<'_> {
@@ -50,7 +50,7 @@ impl SceneDepth<'_> {
             Self::Buffer(view) => SceneDepthKind::Buffer(view.texture().format()),
             Self::Multisampled(_) => SceneDepthKind::Multisampled,
             Self::Linear(_) => SceneDepthKind::Linear,
-            Self::Both { buffer, .. } => SceneDepthKind::Both(buffer.texture().format()),
+            Self::BufferAndLinear { buffer, .. } => SceneDepthKind::BufferAndLinear(buffer.texture().format()),
         }
     }
 }
@@ -278,7 +278,7 @@ fn deferred<'a>(
     }
 }
 
-fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filtering: bool) -> TiledKeys {
+fn tiled_keys(key: &AccumulateKey, layers: Traversal, cooperative: bool, exact_filtering: bool) -> TiledKeys {
     let &AccumulateKey { format, encoding, order, attachments, sprite, host_depth, .. } = key;
     let weighted = order == BlendOrder::Weighted;
     TiledKeys {
@@ -291,11 +291,11 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filt
             attachments,
             host_depth,
             // With weighted normals every sprite counts, even behind opaque smoke.
-            stops: layers == Layers::Visible && !weighted,
+            stops: layers == Traversal::UntilOpaque && !weighted,
             // Per-invocation traversal loads sprite texels in its own way, which is not the reference's filter.
             traversal: match cooperative || exact_filtering {
-                true => Traversal::Cooperative,
-                false => Traversal::PerInvocation,
+                true => TraversalMode::Cooperative,
+                false => TraversalMode::PerInvocation,
             },
         },
     }
@@ -310,7 +310,9 @@ fn depth_test(inputs: &PipelineInputs, settings: &Settings) -> DepthTest {
         return if inputs.read_only_depth { DepthTest::Reduced } else { DepthTest::Copy };
     }
     match inputs.scene_depth {
-        SceneDepthKind::Buffer(format) | SceneDepthKind::Both(format) => DepthTest::Host(format, inputs.reversed),
+        SceneDepthKind::Buffer(format) | SceneDepthKind::BufferAndLinear(format) => {
+            DepthTest::Host(format, inputs.reversed)
+        }
         SceneDepthKind::Multisampled => DepthTest::Host(RESOLVED_DEPTH_FORMAT, inputs.reversed),
         // `validate` refuses this case.
         SceneDepthKind::Linear => DepthTest::InShader,
@@ -323,7 +325,7 @@ pub(crate) fn reads_linear_target(scene_depth: SceneDepthKind, read_only_depth: 
         SceneDepthKind::Buffer(_) | SceneDepthKind::Multisampled => false,
         SceneDepthKind::Linear => true,
         // A backend that cannot test and sample one depth buffer samples the linear target and only tests the buffer.
-        SceneDepthKind::Both(_) => settings.technique == Technique::SoftLinear || !read_only_depth,
+        SceneDepthKind::BufferAndLinear(_) => settings.technique == Technique::SoftLinear || !read_only_depth,
     }
 }
 

@@ -1,13 +1,13 @@
 //! Single-sampled copy of a host's multisampled depth buffer.
 
 use glam::UVec2;
+use haze_core::error::FieldError;
+use haze_core::view_setup::ViewGeometry;
 
 use super::context::Shared;
 use super::gpu::error_scopes::with_error_scopes;
 use super::pass::depth_resolve::{DepthResolve, DepthResolveKey, RESOLVED_DEPTH_FORMAT};
 use super::targets::single_target;
-use haze_core::error::FieldError;
-use haze_core::view_setup::ViewGeometry;
 
 /// Resolved depth, and the bind group of the buffer that it is resolved from.
 #[derive(Debug)]

@@ -1,11 +1,12 @@
 //! Shadow of the smoke on the scene: what a host's shaders read.
 
+use haze_core::formula::uniforms::SceneShadowUniform;
+
 use super::context::Shared;
 use super::gpu::binding::bind_resources;
 use super::gpu::record::uniform_buffer;
 use super::tiled::FrameShadow;
 use crate::frame::FrameInput;
-use haze_core::formula::uniforms::SceneShadowUniform;
 
 /// Bind group for a host's shaders, kept between frames.
 #[derive(Debug)]

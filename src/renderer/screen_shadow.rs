@@ -1,6 +1,8 @@
 //! Shadow of the smoke on a host's lit picture.
 
 use glam::{Mat4, Vec3};
+use haze_core::formula::uniforms::{LightUniform, ScreenShadowUniform};
+use haze_core::view_setup::{SmokeShadow, ViewGeometry, scene_light_uniforms};
 
 use super::context::Shared;
 use super::gpu::binding::bind_resources;
@@ -11,8 +13,6 @@ use super::layouts::LIGHTS_SIZE;
 use super::pass::screen_shadow::ScreenShadow;
 use super::shadow_map_bindings::ShadowMapBindings;
 use crate::frame::FrameInput;
-use haze_core::formula::uniforms::{LightUniform, ScreenShadowUniform};
-use haze_core::view_setup::{SmokeShadow, ViewGeometry, scene_light_uniforms};
 
 /// Inputs of the pass, kept between frames.
 #[derive(Debug, Default)]

@@ -1,13 +1,14 @@
 //! A host's shadow maps of a block of lights, as shaders read them.
 
+use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
+use haze_core::formula::uniforms::ShadowVisibilityUniform;
+use haze_core::view_setup::SmokeShadow;
+
 use super::gpu::Gpu;
 use super::gpu::binding::bind_resources;
 use super::gpu::capabilities::array_layers;
 use super::gpu::record::uniform_buffer;
 use crate::frame::ShadowMap;
-use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
-use haze_core::formula::uniforms::ShadowVisibilityUniform;
-use haze_core::view_setup::SmokeShadow;
 
 /// Bind group of `lib/shadow_map_lookup.wgsl`, kept between frames.
 #[derive(Debug)]

@@ -2,6 +2,9 @@
 //! slice by slice. `tiled/shadow_volume.rs` is the same by compute shaders.
 
 use glam::UVec3;
+use haze_core::formula::uniforms::{ShadowMarchUniform, SystemUniform};
+use haze_core::frame::Particle;
+use haze_core::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 use super::context::Shared;
 use super::gpu::idle_counter::IdleCounter;
@@ -12,9 +15,6 @@ use super::pass::volume_slices::VolumeSlices;
 use super::shadow_map_bindings::ShadowMapBindings;
 use super::tiled::{FrameShadow, volume};
 use crate::frame::ShadowMap;
-use haze_core::formula::uniforms::{ShadowMarchUniform, SystemUniform};
-use haze_core::frame::Particle;
-use haze_core::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 /// Bytes of a cell on the GPU: of its density, and of a texel of the volume.
 const DENSITY_BYTES: u64 = 4;

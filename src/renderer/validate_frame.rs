@@ -1,6 +1,13 @@
 //! Validation of a frame for the GPU renderer.
 
 use glam::UVec2;
+use haze_core::error::FieldError;
+use haze_core::frame::validate_input::{
+    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
+    validate_world_from_particles,
+};
+use haze_core::frame::{Particle, SpriteExtent, View};
+use haze_core::settings::{DepthSource, RenderPath, Technique};
 
 use super::context::Shared;
 use super::gpu::capabilities::array_layers;
@@ -9,13 +16,6 @@ use super::plan::reads_linear_target;
 use super::targets::validate_attachments;
 use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::frame::{AliveCount, FrameInput, ParticleBuffer, ParticleSystem, Particles, SceneDepth, ShadowMap};
-use haze_core::error::FieldError;
-use haze_core::frame::validate_input::{
-    validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
-    validate_world_from_particles,
-};
-use haze_core::frame::{Particle, SpriteExtent, View};
-use haze_core::settings::{DepthSource, RenderPath, Technique};
 
 /// Validates everything except the view's matrices.
 ///
@@ -33,7 +33,7 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &FrameInput<'_>)
     }
     let reads_attached = host.depth_format.is_some() && frame.scene_depth.linear().is_none();
     if reads_attached && !shared.read_only_depth && host.sample_count == 1 {
-        let expected = "SceneDepth::Linear or Both, or a descriptor with depth_format None: this backend (OpenGL) \
+        let expected = "SceneDepth::Linear or BufferAndLinear, or a descriptor with depth_format None: this backend (OpenGL) \
                         cannot sample the depth buffer that the pass tests";
         return Err(FieldError::new("scene_depth", "SceneDepth::Buffer", expected));
     }
@@ -77,7 +77,7 @@ fn validate_scene_depth(shared: &Shared, frame: &FrameInput<'_>) -> Result<UVec2
     }
     if let SceneDepth::Multisampled(buffer) = frame.scene_depth {
         if !shared.read_only_depth {
-            let expected = "Buffer, Linear or Both: this backend (OpenGL) cannot read multisampled depth";
+            let expected = "Buffer, Linear or BufferAndLinear: this backend (OpenGL) cannot read multisampled depth";
             return Err(FieldError::new("scene_depth", "Multisampled", expected));
         }
         if buffer.texture().sample_count() < 2 {
@@ -185,7 +185,7 @@ fn validate_system(
     }
     system.material.info.validate(index, system.settings)?;
     if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {
-        let expected = "\"soft\", or a scene_depth that is SceneDepth::Linear or Both";
+        let expected = "\"soft\", or a scene_depth that is SceneDepth::Linear or BufferAndLinear";
         return Err(FieldError::new(field("settings.technique"), "\"soft_linear\"", expected));
     }
     if system.settings.accumulate.depth_source == DepthSource::Host && !system.settings.is_forward() {
@@ -227,7 +227,7 @@ fn validate_particles(
 ) -> Result<(), FieldError> {
     let size = size_of::<Particle>() as u64;
     let is_tiled = system.settings.path == RenderPath::Tiled;
-    let needs_sorting = system.particles.need_sorting(system.settings);
+    let needs_sorting = system.particles.needs_sorting(system.settings);
     if needs_sorting && shared.pipelines.tiled.is_none() {
         let expected = "true, the order \"weighted\", or a slice: sorting a buffer needs compute shaders and \
                         WebGPU's default limits; OpenGL is not supported";
@@ -244,7 +244,7 @@ fn validate_particles(
         Particles::Slice(particles) => validate_count(particles.len() as u64, max_count, field)?,
         Particles::Emitter(emission) => {
             validate_count(u64::from(emission.count()), max_count, field)?;
-            let bounds = emission.bounds(SpriteExtent::of(system.settings));
+            let bounds = emission.bounds(SpriteExtent::from_settings(system.settings));
             let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
             if !bounds.is_empty() && !is_finite {
                 let expected = "an emission of an emitter that Emitter::validate accepts";

@@ -1,8 +1,9 @@
 //! Description of future frames, for compiling their pipelines in advance.
 
-use super::plan::SceneDepthKind;
 use haze_core::frame::View;
 use haze_core::settings::{DebugView, Settings};
+
+use super::plan::SceneDepthKind;
 
 /// Properties of future frames that select pipelines. See [`Renderer::warm_up`](crate::Renderer::warm_up).
 #[derive(Clone, Copy, Debug)]

@@ -192,9 +192,9 @@ fn volume_amounts_follow_the_beer_lambert_law() {
 
 #[test]
 fn ray_sphere_gives_entry_exit_and_distance() {
-    // Entry, exit, and distance of the ray from the centre.
-    let ahead = |centre, near, scene| {
-        let found = ray_sphere(Vec3::ZERO, Vec3::NEG_Z, centre, 1.0, near, scene);
+    // Entry, exit, and distance of the ray from the center.
+    let ahead = |center, near, scene| {
+        let found = ray_sphere(Vec3::ZERO, Vec3::NEG_Z, center, 1.0, near, scene);
         vec3(found.enter, found.leave, found.axis.length())
     };
     let deep = vec3(0.0, 0.0, -5.0);

@@ -32,9 +32,9 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
     match kind {
         "preset" => {
             let preset = Preset::load(path.to_str().unwrap())?;
-            let preset = preset.at(preset.time);
+            let preset = preset.evaluate(preset.time);
             preset.load_materials(path)?;
-            let caches = particle_files::load_particle_files(&preset, path, &AssetFolders::beside(path))?;
+            let caches = particle_files::load_particle_files(&preset, path, &AssetFolders::for_preset_file(path))?;
             let mut particles = Vec::new();
             let mut alive = 0;
             for (system, cache) in preset.systems.iter().zip(&caches) {

@@ -13,7 +13,7 @@ use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::no_effect_reason;
 use haze_core::assets::image::Image;
 use haze_core::settings::*;
-use haze_preset::{AssetFolders, EndBehaviour, MaterialNames, Preset, PresetSystem};
+use haze_preset::{AssetFolders, EndBehavior, ImageSource, MaterialSources, Preset, PresetSystem};
 
 use crate::every_setting::{OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY, SettingMutator};
 use crate::gpu::{gpu, is_tiled_available, shared_context};
@@ -31,13 +31,13 @@ struct PresetCase {
 }
 
 /// Loads images. Most cases have the same ones: those of the first names are kept.
-fn load(names: &MaterialNames, folder: &File) -> Result<MaterialAssets, Error> {
-    static LOADED: Mutex<Vec<(MaterialNames, MaterialAssets)>> = Mutex::new(Vec::new());
+fn load(names: &MaterialSources, folder: &File) -> Result<MaterialAssets, Error> {
+    static LOADED: Mutex<Vec<(MaterialSources, MaterialAssets)>> = Mutex::new(Vec::new());
     let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, assets)) = loaded.iter().find(|(of, _)| of == names) {
         return Ok(assets.clone());
     }
-    let assets = names.load(folder)?;
+    let assets = names.load(ImageSource::folder(folder))?;
     if loaded.len() < 40 {
         loaded.push((names.clone(), assets.clone()));
     }
@@ -61,7 +61,7 @@ impl PresetCase {
         let material = load(&system.material, folder).unwrap();
         let preset = Preset { time: 6.3, lights: vec![light], systems: vec![system], ..Preset::default() };
         preset.validate().unwrap();
-        let caches = particle_files::load_particle_files(&preset, folder, &AssetFolders::at(folder)).unwrap();
+        let caches = particle_files::load_particle_files(&preset, folder, &AssetFolders::new(folder)).unwrap();
         Self { preset, material, caches }
     }
 
@@ -185,7 +185,7 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     // Particle files, at a time between two frames and past the end.
     |s, _| {
         (s.cache.path, s.cache.position) = (PARTICLES.into(), vec3(0.0, -0.5, -6.0));
-        (s.cache.fps, s.cache.after) = (3.0, EndBehaviour::Loop);
+        (s.cache.fps, s.cache.after) = (3.0, EndBehavior::Loop);
         // Large enough that the sampled mip level of the detail map still contains motion.
         s.settings.sprite.size = 4.0;
     },

@@ -1,13 +1,13 @@
 //! Fire: whole frames on the GPU and on the CPU, and how smoke and fire hide each other.
 
 use glam::{IVec2, UVec2, Vec3, Vec4, vec3};
-use haze::{MaterialAssets, Particle};
+use haze::{Light, MaterialAssets, Particle};
 use haze_core::assets::image::Image;
 use haze_core::assets::ramp::Ramp;
 use haze_core::emitter::Emitter;
-use haze_core::fire::light;
+use haze_core::fire::FireLight;
 use haze_core::settings::*;
-use haze_preset::MaterialNames;
+use haze_preset::{ImageSource, MaterialSources};
 
 use crate::gpu::{gpu, is_tiled_available};
 use crate::psnr::psnr;
@@ -207,11 +207,20 @@ fn cold_smoke_gives_no_light_and_strange_ages_are_harmless() {
     assert!(psnr(&drawn(&cold), &drawn(&without)) > 70.0);
 }
 
+fn light(
+    particles: &[Particle],
+    particles_per_sample: u32,
+    settings: &Settings,
+    assets: &MaterialAssets,
+) -> Option<Light> {
+    FireLight { particles, particles_per_sample, settings, assets, time: 9.0, seed: 1 }.estimate()
+}
+
 /// Settings and images of a fire, without flicker.
 fn steady_fire() -> (Settings, MaterialAssets) {
     let mut settings = Settings::default();
     (settings.fire.intensity, settings.fire.flicker) = (4.0, 0.0);
-    (settings, MaterialNames::default().load("".as_ref()).unwrap())
+    (settings, MaterialSources::default().load(ImageSource::BuiltIn).unwrap())
 }
 
 #[test]
@@ -220,7 +229,7 @@ fn light_of_a_fire_is_where_it_burns() {
     let emitter = Emitter { position: Vec3::new(3.0, 1.0, -2.0), ..Emitter::default() };
     let mut particles = Vec::new();
     emitter.evaluate(9.0, &mut particles);
-    let found = light(&particles, 1, &settings, &assets, (9.0, 1)).unwrap();
+    let found = light(&particles, 1, &settings, &assets).unwrap();
     assert!(found.position.distance(emitter.position) < 2.0 && found.intensity > 0.1, "{found:?}");
     assert!(found.color.x > found.color.y && found.color.y > found.color.z, "{found:?}");
     // Far fewer than half of the particles are hot: it is nearer to the source than their mean.
@@ -228,12 +237,12 @@ fn light_of_a_fire_is_where_it_burns() {
     assert!(found.position.y < mean, "{} {mean}", found.position.y);
     // A sample has the same light, but for the chance by which it holds more or fewer of the hottest.
     let half: Vec<_> = particles.iter().copied().step_by(2).collect();
-    let sampled = light(&half, 2, &settings, &assets, (9.0, 1)).unwrap();
+    let sampled = light(&half, 2, &settings, &assets).unwrap();
     assert!((sampled.intensity / found.intensity - 1.0).abs() < 0.15, "{sampled:?} {found:?}");
     // Cold smoke gives none.
     let cold: Vec<_> = particles.iter().map(|particle| Particle { age: 1.0, ..*particle }).collect();
-    assert_eq!(light(&cold, 1, &settings, &assets, (9.0, 1)), None);
-    assert_eq!(light(&particles, 1, &Settings::default(), &assets, (9.0, 1)), None);
+    assert_eq!(light(&cold, 1, &settings, &assets), None);
+    assert_eq!(light(&particles, 1, &Settings::default(), &assets), None);
 }
 
 #[test]
@@ -248,7 +257,16 @@ fn light_of_strange_particles_is_valid_or_none() {
         Particle { age: -1.0e30, ..particle },
         Particle { radius: 1.0e-20, ..particle },
     ] {
-        let Some(light) = light(&[strange], 1, &settings, &assets, (f32::MAX, 3)) else { continue };
+        let particles = &[strange];
+        let fire = FireLight {
+            particles,
+            particles_per_sample: 1,
+            settings: &settings,
+            assets: &assets,
+            time: f32::MAX,
+            seed: 3,
+        };
+        let Some(light) = fire.estimate() else { continue };
         assert!((0.0..=1.0e9).contains(&light.intensity) && (0.0..=1.0e4).contains(&light.radius), "{light:?}");
         assert!(light.position.is_finite() && light.color.is_finite() && light.range >= 0.01, "{light:?}");
     }

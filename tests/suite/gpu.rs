@@ -22,7 +22,7 @@ pub fn gpu() -> &'static Headless {
 
 /// Returns a context for tests that only compare images, so that no pipeline is compiled twice.
 pub fn shared_context() -> Context {
-    static CONTEXT: LazyLock<Context> = LazyLock::new(|| Context::new(&gpu().device, &gpu().queue, None));
+    static CONTEXT: LazyLock<Context> = LazyLock::new(|| Context::new(&gpu().device, &gpu().queue));
     CONTEXT.clone()
 }
 

@@ -182,7 +182,7 @@ fn velocities_that_are_no_numbers_hide_their_sprites_alone() {
     let mut scene = moving();
     // Of unsorted sprites, the order does not matter.
     scene.settings.accumulate.order = BlendOrder::Weighted;
-    scene.bounds = Some(particle_bounds(&scene.particles, SpriteExtent::of(&scene.settings)));
+    scene.bounds = Some(particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings)));
     let mut host = Host::new(gpu(), &scene).unwrap();
     // From a buffer, and from a slice.
     let mut pictures = |scene: &TestScene| {

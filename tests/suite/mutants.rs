@@ -69,7 +69,7 @@ const GLOW_MUTANTS: &[Mutant] = &[
 
 /// Mistakes in frames whose pixels are computed.
 const PIXEL_MUTANTS: &[Mutant] = &[
-    ("centres of pixels", "upsample_lit.wgsl", "+ 0.5, has_slopes", ", has_slopes"),
+    ("centers of pixels", "upsample_lit.wgsl", "+ 0.5, has_slopes", ", has_slopes"),
     ("texels of other workgroups", "upsample_lit.wgsl", "workgroup.xy * SIDE", "workgroup.yx * SIDE"),
     (
         "pixels of other places",

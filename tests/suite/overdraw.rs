@@ -48,7 +48,7 @@ fn layers(picture: &Image<Vec4>) -> Vec<u32> {
 
 /// Stages with different projections and positions of sprites.
 fn cases() -> Vec<(&'static str, TestScene)> {
-    let off_centre = directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 80.0);
+    let off_center = directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 80.0);
     let orthographic = directx::orthographic(-1.6, 1.2, -0.9, 0.7, 0.1, 80.0);
     let seen = |clip_from_view| TestScene { view: View::new(Mat4::IDENTITY, clip_from_view, SIZE), ..scene() };
     let mut depth_sprites = moved(scene(), 2.6);
@@ -57,7 +57,7 @@ fn cases() -> Vec<(&'static str, TestScene)> {
         ("in sight", scene()),
         ("around the camera", moved(scene(), 2.6)),
         ("slabs through the near plane", depth_sprites),
-        ("off centre", seen(off_centre)),
+        ("off center", seen(off_center)),
         ("orthographic", seen(orthographic)),
     ]
 }
@@ -69,7 +69,7 @@ fn estimated_fragments_match_the_overdraw_view() {
         let found = drawn.renderer.overdraw();
         let counted: u32 = layers(&drawn.picture).iter().sum();
         println!("{name}: {found:?}, counted {counted}, {:.2} layers", found.mean());
-        // The number of pixel centres in a square differs from its area by about the square root of its outline in
+        // The number of pixel centers in a square differs from its area by about the square root of its outline in
         // pixels. For 60 squares with outlines of 400 pixels that is about 150 of 100 000 fragments in total.
         assert!((found.fragments / f64::from(counted) - 1.0).abs() < 0.003, "{name}: {found:?}, counted {counted}");
     }

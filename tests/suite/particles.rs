@@ -30,7 +30,7 @@ fn a_hundred_frames_of_ten_thousand_particles_are_kept_in_memory_and_interpolate
     system.cache.path = "s#.ply".into();
     let preset = Preset { systems: vec![system], ..Preset::default() };
     let files =
-        particle_files::load_particle_files(&preset, "my.json".as_ref(), &AssetFolders::at(folder.path())).unwrap();
+        particle_files::load_particle_files(&preset, "my.json".as_ref(), &AssetFolders::new(folder.path())).unwrap();
     let frames = files[0].as_ref().unwrap();
     assert_eq!((frames.frames().len(), frames.max_particles()), (100, 10_000));
     // At most 64 bytes a particle, as the module's documentation states.

@@ -10,7 +10,7 @@ use haze_core::assets::image::Image;
 use haze_core::settings::*;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_preset::{EndBehaviour, Preset, SceneName, UpAxis};
+use haze_preset::{EndBehavior, Preset, SceneName, UpAxis};
 
 use crate::gpu::{gpu, shared_context};
 use crate::psnr::{MIN_PSNR, psnr_over};
@@ -42,7 +42,7 @@ pub fn offscreen_context() -> &'static OffscreenContext {
     &CONTEXT
 }
 
-/// Renders a shot on the GPU. `exact_filtering` as in [`Descriptor`](haze::Descriptor).
+/// Renders a shot on the GPU. `exact_filtering` as in [`RendererDescriptor`](haze::RendererDescriptor).
 pub fn render_on_gpu(shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
     // Keeps the scene for the other images of a test, which runs on one thread. Not thread-local: wgpu's resources must not be
     // dropped while a thread ends.
@@ -175,7 +175,7 @@ fn gpu_and_cpu_agree_on_particles_from_files() {
     let mut preset = Preset::load("column").unwrap();
     let cache = &mut preset.systems[0].cache;
     (cache.path, cache.up, cache.units) = ("smoke_####.ply".into(), UpAxis::Z, 0.01);
-    cache.after = EndBehaviour::Loop;
+    cache.after = EndBehavior::Loop;
     let mut shot = Shot::new(preset, &folder.path().join("my.json"), UVec2::new(320, 180)).unwrap();
     let (psnr, seen) = agreement(&shot);
     println!("{psnr:.1} dB");
@@ -212,7 +212,7 @@ fn worst_step(mut shot: Shot, frames: u32) -> f32 {
 #[test]
 fn births_and_deaths_do_not_pop() {
     // Three births and three deaths per frame. Measured: at most 1.16. Lighting on a plane through the bounding box's
-    // centre gave 2.05.
+    // center gave 2.05.
     for (name, frames) in [("column", 60), ("fence", 30), ("crates", 30), ("dust_storm", 30)] {
         let worst = worst_step(shot(name, UVec2::new(128, 72)), frames);
         println!("{name}: largest step {worst:.2} times the median");
@@ -343,7 +343,7 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
     for &stage in DebugView::ALL {
         let mut shot = with(|_| {});
         shot.debug_view = stage;
-        add("shade tree", stage.name(), shot);
+        add("debug views", stage.name(), shot);
     }
     for (name, shot) in &shots {
         let (psnr, _) = agreement(shot);

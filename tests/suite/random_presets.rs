@@ -133,10 +133,10 @@ fn valid_shot(mut preset: Preset, mut values: RandomValues) -> Option<Shot> {
     }
     preset.validate().ok()?;
     let folder = std::path::Path::new("");
-    Shot::from_folders(preset, folder, &AssetFolders::at(folder), SIZE).ok()
+    Shot::from_folders(preset, folder, &AssetFolders::new(folder), SIZE).ok()
 }
 
-/// Lowest PSNR of two renderers as displayed, dB, without edges that lie on either side of a pixel's centre.
+/// Lowest PSNR of two renderers as displayed, dB, without edges that lie on either side of a pixel's center.
 const MIN_DISPLAYED_PSNR: f32 = 45.0;
 /// The same with the checkerboard: rounding decides on which check a texel lies, and one such texel may be all that is seen.
 const MIN_DISPLAYED_PSNR_OF_CHECKS: f32 = 40.0;

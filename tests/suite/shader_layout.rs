@@ -133,7 +133,7 @@ fn wgsl_structs_match_rust() {
 #[test]
 fn measured_extent_is_laid_out_as_in_the_systems_uniforms() {
     let (measured, _) = wgsl_struct(&composed("measure.wgsl"), "MeasuredExtent");
-    let first = std::mem::offset_of!(SystemUniform, centre);
+    let first = std::mem::offset_of!(SystemUniform, center);
     for (name, offset) in &measured[..4] {
         let field = SystemUniform::FIELDS.iter().find(|(field, ..)| field == name).unwrap();
         assert_eq!(field.1 - first, *offset as usize, "{name}");
@@ -197,7 +197,7 @@ fn wgsl_constants_match_rust() {
     let attachments = view_setup::MAX_TARGET_ATTACHMENTS as f64;
     assert_eq!(constant(&transfer, "MAX_TARGET_ATTACHMENTS"), attachments);
     let accumulate = composed("accumulate.wgsl");
-    assert_eq!(constant(&accumulate, "FRONT_KNOTS"), formula::order::FRONT_KNOTS as f64);
+    assert_eq!(constant(&accumulate, "OPTICAL_DEPTH_KNOTS"), formula::order::OPTICAL_DEPTH_KNOTS as f64);
     assert_eq!(constant(&accumulate, "MAX_MAGNITUDE"), f64::from(frame::MAX_MAGNITUDE));
     assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(formula::sprite::MOTION_RANGE));
     assert_eq!(constant(&transfer, "SURFACE_DEPTH_TOLERANCE"), f64::from(formula::upsample::SURFACE_DEPTH_TOLERANCE));

@@ -428,10 +428,10 @@ fn a_larger_lamp_casts_a_softer_shadow() {
     scene.settings.shadow.resolution = 64;
     // Makes room for the cone of the light in the grid.
     scene.bounds = Some(Bounds { min: vec3(-2.0, -2.0, -7.0), max: vec3(1.0, 1.0, -4.0) });
-    let centre = scene.particles[0].position;
+    let center = scene.particles[0].position;
     let depth = Image::new(SIZE, 1.0);
     let shares = |radius| {
-        let position = centre + vec3(0.0, 3.0, 0.0);
+        let position = center + vec3(0.0, 3.0, 0.0);
         let lights = [Light { position, radius, range: f32::INFINITY, ..Light::default() }];
         let systems = [haze_reference::ParticleSystem {
             bounds: scene.bounds,
@@ -444,7 +444,7 @@ fn a_larger_lamp_casts_a_softer_shadow() {
         };
         let frame = haze_reference::PreparedFrame::new(&frame, SIZE).unwrap();
         let shadow = frame.scene_shadow().unwrap();
-        let place = |i: u32| centre + vec3(i as f32 * 0.05 - 1.5, -1.5, 0.0);
+        let place = |i: u32| center + vec3(i as f32 * 0.05 - 1.5, -1.5, 0.0);
         (0..60).map(|i| 1.0 - shadow.haze_transmittance(place(i), 0).y).collect::<Vec<f32>>()
     };
     let (small, large) = (shares(0.0), shares(1.5));
@@ -573,7 +573,7 @@ fn casting_shadow_first_draws_the_same_frame() {
         assert_eq!(host.renderer.shadowed_lights().count(), 1);
         // Commands that were dropped are recorded again.
         let mut dropped = gpu().device.create_command_encoder(&Default::default());
-        host.cast_shadow(&mut dropped, &scene).unwrap();
+        host.prepare_shadow(&mut dropped, &scene).unwrap();
         drop(dropped);
         host.casts_first = false;
         host.draw(gpu(), &scene).unwrap();

@@ -132,7 +132,7 @@ fn two_hundred_shader_reloads_leak_nothing() {
         let text = step as usize % texts.len();
         std::fs::write(folder.path().join("transfer.wgsl"), &texts[text]).unwrap();
         let sources = Sources::from_folder(folder.path()).unwrap();
-        let context = Context::new(&gpu().device, &gpu().queue, None).with_shaders(&sources);
+        let context = Context::new(&gpu().device, &gpu().queue).with_shaders(&sources);
         assert_eq!(context.is_ok(), text == 0);
         if let Ok(context) = context {
             Host::with_context(gpu(), &scene, Some(&context)).unwrap().draw(gpu(), &scene).unwrap();

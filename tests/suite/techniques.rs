@@ -1,5 +1,5 @@
 //! Intersection of sprites with the scene under every technique: agreement of the renderers, and the documented
-//! behaviour of each.
+//! behavior of each.
 
 mod flipbook;
 mod intersection;
@@ -72,14 +72,14 @@ fn gpu_and_cpu_agree_on_every_technique_and_path() {
         let mut scene = self::scene(technique);
         scene.view.clip_from_view = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
         assert_agreement(&format!("{} orthographic", technique.name()), &scene);
-        // Off-centre projection, and a rotated and translated camera: noise and sphere bounds depend on them.
+        // Off-center projection, and a rotated and translated camera: noise and sphere bounds depend on them.
         let mut scene = self::scene(technique);
         scene.view.clip_from_view = directx::frustum(-0.06, 0.03, -0.02, 0.03, 0.1, 80.0);
         let turn = Mat4::from_rotation_y(0.4) * Mat4::from_translation(vec3(1.0, -2.0, 3.0));
         scene.view.view_from_world *= turn;
         scene.particles.iter_mut().for_each(|p| p.position = turn.inverse().transform_point3(p.position));
         scene.lights.iter_mut().for_each(|l| l.position = turn.inverse().transform_point3(l.position));
-        assert_agreement(&format!("{} off centre", technique.name()), &scene);
+        assert_agreement(&format!("{} off center", technique.name()), &scene);
     }
 }
 

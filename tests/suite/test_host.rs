@@ -4,8 +4,8 @@ mod textures;
 
 use glam::{UVec2, Vec4};
 use haze::{
-    Context, Descriptor, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, Renderer, SceneDepth,
-    ShadowMap, Timing, wgpu,
+    Context, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, Renderer, RendererDescriptor,
+    SceneDepth, ShadowMap, Timing, wgpu,
 };
 use haze_core::assets::image::Image;
 use haze_demo::headless::Headless;
@@ -106,15 +106,15 @@ impl Host {
     pub fn with_context(gpu: &Headless, scene: &TestScene, context: Option<&Context>) -> Result<Self, Error> {
         let kind = &scene.host;
         let additional_attachments: Vec<_> = kind.additional_attachments.iter().copied().map(Some).collect();
-        let descriptor = Descriptor {
+        let descriptor = RendererDescriptor {
             color_format: kind.color_format,
-            further_color_formats: &additional_attachments,
+            other_color_formats: &additional_attachments,
             depth_format: scene.attach_depth.then_some(kind.depth_format),
             sample_count: kind.samples,
             exact_filtering: kind.exact_filtering,
             scene_color_format: None,
         };
-        let context = context.cloned().unwrap_or_else(|| Context::new(&gpu.device, &gpu.queue, None));
+        let context = context.cloned().unwrap_or_else(|| Context::new(&gpu.device, &gpu.queue));
         let renderer = Renderer::new(&context, &descriptor)?;
         let material = context.create_material(&scene.material)?;
         let size = kind.target_size.unwrap_or(scene.view.size);
@@ -197,16 +197,16 @@ impl Host {
         let casts_first = self.casts_first;
         self.with_frame(scene, particles, |renderer, frame| {
             if casts_first {
-                renderer.cast_shadow(encoder, frame)?;
+                renderer.prepare_shadow(encoder, frame)?;
             }
             renderer.prepare(encoder, frame)
         })
     }
 
-    /// Records `cast_shadow` alone.
-    pub fn cast_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) -> Result<(), Error> {
+    /// Records `prepare_shadow` alone.
+    pub fn prepare_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) -> Result<(), Error> {
         let particles = Particles::Slice(&scene.particles);
-        self.with_frame(scene, particles, |renderer, frame| renderer.cast_shadow(encoder, frame))
+        self.with_frame(scene, particles, |renderer, frame| renderer.prepare_shadow(encoder, frame))
     }
 
     /// Calls `f` with the renderer and the input of a frame.
@@ -229,7 +229,7 @@ impl Host {
             DepthKind::Buffer => SceneDepth::Buffer(&self.depth),
             DepthKind::Multisampled => SceneDepth::Multisampled(&self.samples),
             DepthKind::Linear => SceneDepth::Linear(&self.linear),
-            DepthKind::Both => SceneDepth::Both { buffer: &self.depth, linear: &self.linear },
+            DepthKind::Both => SceneDepth::BufferAndLinear { buffer: &self.depth, linear: &self.linear },
         };
         let shadow_maps: Vec<_> = self
             .shadow_maps

@@ -88,11 +88,11 @@ pub fn perspective(size: UVec2) -> Mat4 {
     rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 80.0)
 }
 
-/// A soft ball off the sprite's centre. `y_down` is the convention that the sprite declares for its normals.
+/// A soft ball off the sprite's center. `y_down` is the convention that the sprite declares for its normals.
 pub fn ball_sprite(y_down: bool) -> Sprite {
     let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
         let p = (Vec2::new(x as f32, 63.0 - y as f32) + 0.5) / 32.0 - 1.0;
-        // Off-centre and tilted, so that a rotated or flipped sprite looks different.
+        // Off-center and tilted, so that a rotated or flipped sprite looks different.
         let p = p - Vec2::new(0.1, 0.05);
         let inside = (1.0 - p.length_squared() * 1.4).max(0.0);
         let normal = (p * 1.5 + Vec2::new(0.2, -0.1)).extend(inside.sqrt().max(0.05)).normalize() * 0.5 + 0.5;

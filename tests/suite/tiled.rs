@@ -32,7 +32,7 @@ const MIN_PSNR_TO_CPU: f32 = MIN_PSNR;
 
 fn scene(technique: Technique) -> TestScene {
     let mut scene = techniques::scene(technique);
-    scene.settings.accumulate.layers = Layers::All;
+    scene.settings.accumulate.layers = Traversal::All;
     scene
 }
 
@@ -142,9 +142,9 @@ fn skipping_hidden_layers_barely_changes_the_image() {
     };
     scene.particles = (0..400).map(layer).collect();
     for cooperative in [true, false] {
-        scene.settings.accumulate.layers = Layers::All;
+        scene.settings.accumulate.layers = Traversal::All;
         let all = render_with(&scene, RenderPath::Tiled, cooperative);
-        scene.settings.accumulate.layers = Layers::Visible;
+        scene.settings.accumulate.layers = Traversal::UntilOpaque;
         let visible = render_with(&scene, RenderPath::Tiled, cooperative);
         let apart = psnr(&visible, &all);
         println!("visible layers against all: {apart:.1} dB");
@@ -171,9 +171,9 @@ fn tiled_path_agrees_on_every_preset() {
         let mut behind = shot.clone();
         behind.preset.systems.clear();
         behind.materials.clear();
-        let behind = renderer(&behind, RenderPath::Raster, Layers::All);
-        let raster = renderer(&shot, RenderPath::Raster, Layers::All);
-        for &layers in Layers::ALL {
+        let behind = renderer(&behind, RenderPath::Raster, Traversal::All);
+        let raster = renderer(&shot, RenderPath::Raster, Traversal::All);
+        for &layers in Traversal::ALL {
             let tiled = renderer(&shot, RenderPath::Tiled, layers);
             let apart = crate::psnr::psnr_over([&tiled, &raster], [&behind, &behind]);
             println!("{}, {} layers: {apart:.1} dB", preset.name, layers.name());

@@ -212,7 +212,7 @@ fn pass_times_add_up_over_systems() {
 fn device_without_timestamps_has_no_timing() {
     let plain = gpu();
     assert!(!plain.device.features().contains(wgpu::Features::TIMESTAMP_QUERY));
-    assert!(Context::new(&plain.device, &plain.queue, None).create_timing().is_none());
+    assert!(Context::new(&plain.device, &plain.queue).create_timing().is_none());
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn timing_of_another_device_is_an_error() {
     // wgpu may give devices of two instances the same ID.
     let other_instance = Headless::with(wgpu::Limits::default(), FEATURES).unwrap();
     for (device, queue) in [(&device, &queue), (&other_instance.device, &other_instance.queue)] {
-        let of_another = Context::new(device, queue, None).create_timing().unwrap();
+        let of_another = Context::new(device, queue).create_timing().unwrap();
         let refused = host.renderer.set_timing(Some(&of_another));
         let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
         assert_eq!(error.field, "timing");

@@ -59,7 +59,7 @@ fn sheet(light_uniforms: &[Light]) -> TestScene {
     scene
 }
 
-/// Returns the view-space point at `view_depth` behind the centre of pixel `at`, by inverting the projection.
+/// Returns the view-space point at `view_depth` behind the center of pixel `at`, by inverting the projection.
 fn point_behind(scene: &TestScene, at: UVec2, view_depth: f32) -> Vec3 {
     let uv = (at.as_vec2() + 0.5) / scene.view.size.as_vec2();
     let ndc = Vec2::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0);
@@ -163,7 +163,7 @@ fn lit_by_quadratic_ramp(light: Light, mode: DiffuseMode) -> TestScene {
     scene.material.diffuse_ramp = Ramp::from_linear(UVec2::new(256, 1), ramp);
     scene.settings.diffuse.mode = mode;
     scene.debug_view = DebugView::Diffuse;
-    // Bounds other than the smoke's own: lighting must not use their centre.
+    // Bounds other than the smoke's own: lighting must not use their center.
     scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     scene
 }
@@ -251,25 +251,25 @@ fn sprites_are_drawn_in_the_order_of_a_plain_depth_sort() {
 /// Rotation of the sprite that is moved in and out of view, radians.
 const TURN: f32 = 0.6;
 
-/// Draws one sprite at `centre` (view space) with both renderers. Returns true if some pixel shows it. Asserts that
+/// Draws one sprite at `center` (view space) with both renderers. Returns true if some pixel shows it. Asserts that
 /// pixels outside the sprite do not show it, and that pixels well inside show it exactly if its depth is between `near`
 /// and `far`.
-fn draws_sprite(scene: &mut TestScene, host: &mut Host, (near, far): (f32, f32), centre: Vec3, radius: f32) -> bool {
-    let position = scene.view.view_from_world.inverse().transform_point3(centre);
+fn draws_sprite(scene: &mut TestScene, host: &mut Host, (near, far): (f32, f32), center: Vec3, radius: f32) -> bool {
+    let position = scene.view.view_from_world.inverse().transform_point3(center);
     scene.particles = vec![Particle { position, radius, rotation: TURN, ..Particle::default() }];
     host.draw(gpu(), scene).unwrap();
     let mut any = false;
     for (renderer, picture) in [("CPU", scene.on_cpu()), ("GPU", host.picture(gpu()).unwrap())] {
         for (index, texel) in (0..).zip(&picture.texels) {
             let at = UVec2::new(index % SIZE.x, index / SIZE.x);
-            let offset = (point_behind(scene, at, -centre.z) - centre).xy();
+            let offset = (point_behind(scene, at, -center.z) - center).xy();
             let local = Vec2::from_angle(-TURN).rotate(offset).abs().max_element() / radius;
             // The margins allow for the border texel and for a pixel of filtering.
             let (inside, outside) = (local < 0.8, local > 1.2);
-            let in_depth = (near..far).contains(&-centre.z);
+            let in_depth = (near..far).contains(&-center.z);
             let shown = *texel != BACKDROP;
-            assert!(!(shown && (outside || !in_depth)), "{renderer}: {at} shows a sprite at {centre}");
-            assert!(shown || !(inside && in_depth), "{renderer}: {at} does not show a sprite at {centre}");
+            assert!(!(shown && (outside || !in_depth)), "{renderer}: {at} shows a sprite at {center}");
+            assert!(shown || !(inside && in_depth), "{renderer}: {at} does not show a sprite at {center}");
             any |= shown;
         }
     }
@@ -307,8 +307,8 @@ fn system_is_drawn_exactly_when_it_is_inside_the_view_frustum() {
             // Image y points down, view-space y points up.
             let outwards = edge.as_vec2() * Vec2::new(1.0, -1.0);
             let seen = (-5..=10).map(|step| {
-                let centre = crossing + (outwards * (0.1 * step as f32)).extend(0.0);
-                draws_sprite(&mut scene, &mut host, (near, far), centre, 0.5)
+                let center = crossing + (outwards * (0.1 * step as f32)).extend(0.0);
+                draws_sprite(&mut scene, &mut host, (near, far), center, 0.5)
             });
             let seen: Vec<bool> = seen.collect();
             assert!(seen[0] && !seen[seen.len() - 1], "{edge}");
@@ -316,8 +316,8 @@ fn system_is_drawn_exactly_when_it_is_inside_the_view_frustum() {
         // Near and far planes, to the right of the wall and the post.
         for (plane, depths) in [(near, [0.47, 0.53]), (far, [8.95, 9.05])] {
             let seen = depths.map(|depth| {
-                let centre = point_behind(&scene, UVec2::new(SIZE.x * 5 / 6, SIZE.y / 2), depth);
-                draws_sprite(&mut scene, &mut host, (near, far), centre, 0.5)
+                let center = point_behind(&scene, UVec2::new(SIZE.x * 5 / 6, SIZE.y / 2), depth);
+                draws_sprite(&mut scene, &mut host, (near, far), center, 0.5)
             });
             assert_eq!(seen, depths.map(|depth| (near..far).contains(&depth)), "the plane at {plane} m");
         }

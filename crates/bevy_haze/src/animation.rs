@@ -52,7 +52,7 @@ impl SmokeAnimation {
             return;
         }
         self.systems.clear();
-        self.systems.extend(preset.at(seconds).systems.iter().map(|system| SystemState::new(system, seconds)));
+        self.systems.extend(preset.evaluate(seconds).systems.iter().map(|system| SystemState::new(system, seconds)));
     }
 
     /// Systems at the time of the clock; none if the preset has no tracks.

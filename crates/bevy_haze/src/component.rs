@@ -120,7 +120,7 @@ impl SmokeParticles {
 /// One puff: a sprite that faces the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmokeParticle {
-    /// Centre in the entity's local space, metres.
+    /// Center in the entity's local space, metres.
     pub position: Vec3,
     /// Half the side of the square sprite, metres. 0 draws nothing.
     pub radius: f32,

@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use bevy::camera::Exposure;
 use bevy::prelude::*;
+use haze::fire::FireLight;
 
 use crate::animation::{SmokeAnimation, SystemState};
 use crate::asset::{SmokeAsset, SmokeSystem};
@@ -90,5 +91,7 @@ fn system_light(
             (sample.as_slice(), snapshot.step)
         }
     };
-    haze::fire::light(particles, step, settings, images, (seconds, seed))
+    let fire =
+        FireLight { particles, particles_per_sample: step, settings, assets: images, time: seconds, seed };
+    fire.estimate()
 }

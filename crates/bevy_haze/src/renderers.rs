@@ -11,7 +11,7 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::view::ExtractedView;
 use haze::preset::MAX_SYSTEMS;
-use haze::{Context, Descriptor, Error, Renderer, wgpu};
+use haze::{Context, RendererDescriptor, Error, Renderer, wgpu};
 
 use crate::composite::CompositeBinding;
 use crate::extract::{ExtractedSmoke, ExtractedSmokes};
@@ -51,7 +51,7 @@ impl FromWorld for SmokeRenderers {
     fn from_world(world: &mut World) -> Self {
         let (device, queue) = (world.resource::<RenderDevice>(), world.resource::<RenderQueue>());
         let (device, queue): (&wgpu::Device, &wgpu::Queue) = (device.wgpu_device(), queue);
-        Self { context: Context::new(device, queue, None), views: HashMap::new() }
+        Self { context: Context::new(device, queue), views: HashMap::new() }
     }
 }
 
@@ -59,12 +59,12 @@ impl SmokeRenderers {
     /// Renderer of a view whose pass has this format.
     pub fn ensure(&mut self, view: Entity, pass: PassFormat) -> Result<&mut ViewRenderer, Error> {
         if self.views.get(&view).is_none_or(|kept| kept.pass != pass) {
-            let descriptor = Descriptor {
+            let descriptor = RendererDescriptor {
                 color_format: pass.color,
                 depth_format: Some(pass.depth),
                 sample_count: pass.samples,
                 scene_color_format: Some(pass.scene_color),
-                ..Descriptor::default()
+                ..RendererDescriptor::default()
             };
             let renderer = Renderer::new(&self.context, &descriptor)?;
             let drawn = HashMap::new();

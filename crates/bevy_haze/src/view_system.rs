@@ -2,6 +2,7 @@
 
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::storage::GpuShaderBuffer;
+use haze::fire::FireLight;
 use haze::settings::Shadow;
 use haze::{EmitterSnapshot, ParticleBuffer, ParticleSystem, Particles, Settings, glam, wgpu};
 
@@ -103,7 +104,15 @@ pub(crate) fn fire_light(system: &ViewSystem<'_>) -> Option<haze::Light> {
         Source::Buffer { .. } => return None,
     };
     let seed = system.key as u32;
-    let light = haze::fire::light(particles, step, settings, &system.system.images, (smoke.seconds as f32, seed))?;
+    let fire = FireLight {
+        particles,
+        particles_per_sample: step,
+        settings,
+        assets: &system.system.images,
+        time: smoke.seconds as f32,
+        seed,
+    };
+    let light = fire.estimate()?;
     let scale = smoke.world_from_smoke.x_axis.length();
     let position = smoke.world_from_smoke.transform_point3(light.position);
     (position.abs().max_element() <= MAX_POSITION).then(|| haze::Light {

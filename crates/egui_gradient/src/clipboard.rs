@@ -9,7 +9,7 @@ use haze_core::error::Error;
 use haze_core::settings::validate;
 
 /// Returns the row as JSON, as in a recipe.
-pub fn to_text(row: &RampRow) -> String {
+pub fn to_json(row: &RampRow) -> String {
     // Numbers and strings only, so serialisation cannot fail.
     serde_json::to_string_pretty(row).unwrap_or_default()
 }
@@ -43,7 +43,7 @@ mod tests {
             RampStop::new(0.3, HexColor([0; 3])),
         ];
         let row = RampRow { at: 0.5, curve: Curve::Ease, stops };
-        assert_eq!(parse(&to_text(&row)).unwrap(), row.stops);
+        assert_eq!(parse(&to_json(&row)).unwrap(), row.stops);
     }
 
     #[test]

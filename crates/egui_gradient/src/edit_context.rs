@@ -25,7 +25,7 @@ pub struct EditorState {
     pub eyedropper: Option<Eyedropper>,
     /// Sample size of the eyedropper.
     pub sample_size: SampleSize,
-    /// Last color set by hue, saturation and value, with these values: keeps the hue of greys, which have none.
+    /// Last color set by hue, saturation and value, with these values: keeps the hue of grays, which have none.
     pub hsv: Option<(HexColor, Vec3)>,
     /// Name of the undo step in progress, until the pointer or key is released.
     pub pending: Option<&'static str>,
@@ -207,6 +207,6 @@ impl EditContext<'_> {
 
     pub fn copy(&self, ui: &Ui, at: f32) {
         let row = RampRow { at, stops: self.stops.clone(), ..RampRow::default() };
-        ui.ctx().copy_text(clipboard::to_text(&row));
+        ui.ctx().copy_text(clipboard::to_json(&row));
     }
 }

@@ -201,7 +201,7 @@ impl Eyedropper {
         let away = |is_far: bool| if is_far { -20.0 } else { 20.0 };
         let area = Area::new(ui.scope_id().with("magnifier")).order(Order::Tooltip).interactable(false);
         let area = area.pivot(egui::Align2([side(x), side(y)])).fixed_pos(self.at + vec2(away(x), away(y)));
-        let centre = pixel_at(screenshot, self.at, ui.pixels_per_point());
+        let center = pixel_at(screenshot, self.at, ui.pixels_per_point());
         area.show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).inner_margin(4.0).show(ui, |ui| {
                 let (_, seen) = ui.allocate_space(Vec2::splat(SEEN as f32 * CELL));
@@ -209,7 +209,7 @@ impl Eyedropper {
                 let cell =
                     |x: i32, y: i32| Rect::from_min_size(seen.min + vec2(x as f32, y as f32) * CELL, Vec2::splat(CELL));
                 for (x, y) in (0..SEEN).flat_map(|y| (0..SEEN).map(move |x| (x, y))) {
-                    let pixel = pixel_color(screenshot, [centre[0] + x - SEEN / 2, centre[1] + y - SEEN / 2]);
+                    let pixel = pixel_color(screenshot, [center[0] + x - SEEN / 2, center[1] + y - SEEN / 2]);
                     mesh.add_colored_rect(cell(x, y), color32(pixel));
                 }
                 ui.painter().add(mesh);

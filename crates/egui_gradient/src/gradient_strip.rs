@@ -1,6 +1,7 @@
 //! The strip: the gradient, its handles and the histogram of lookups below it.
 
 use egui::{self, Color32, CursorIcon, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
+use haze_core::formula::color::srgb_from_linear;
 
 use super::edit_context::{DisplayOptions, EditContext};
 use super::handles::{self, GAP, strip_position};
@@ -9,7 +10,6 @@ use super::selection::Selection;
 use super::stop_operations;
 use haze_author::ramp::gradient::add_stop;
 use haze_author::ramp::{Curve, Gradient, HexColor};
-use haze_core::formula::color::srgb_from_linear;
 
 /// Heights of the strip, of the lane for handles below it, and of histograms, points.
 const STRIP: f32 = 30.0;

@@ -10,7 +10,7 @@ use super::{handle_layout, stop_operations};
 
 /// Size of a handle, points.
 const HANDLE: egui::Vec2 = vec2(12.0, 16.0);
-/// Minimum distance between the centres of two handles, points.
+/// Minimum distance between the centers of two handles, points.
 pub const GAP: f32 = 15.0;
 /// Speed of a stop relative to the pointer while Alt is held.
 const FINE: f32 = 0.1;

@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn fewer_stops_cost_more_and_needless_stops_cost_nothing() {
-        let stop = |(at, grey)| RampStop { curve: Curve::Linear, ..RampStop::new(at, HexColor([grey; 3])) };
+        let stop = |(at, gray)| RampStop { curve: Curve::Linear, ..RampStop::new(at, HexColor([gray; 3])) };
         // The stops at 0.25 and 0.75 lie on the lines between their neighbours.
         let stops = [(0.0, 0), (0.25, 50), (0.5, 100), (0.75, 60), (1.0, 20)].map(stop);
         let found = simplified(&stops, Blend::Srgb);

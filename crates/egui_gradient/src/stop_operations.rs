@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
+use haze_core::error::FieldError;
+
 use super::selection::Selection;
 use haze_author::ramp::{Blend, Curve, Gradient, RampRecipe, RampRow, RampStop};
-use haze_core::error::FieldError;
 
 /// Builds the gradient of the stops.
 pub fn gradient(stops: &[RampStop], blend: Blend) -> Result<Gradient, FieldError> {

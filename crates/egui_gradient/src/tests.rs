@@ -29,7 +29,7 @@ fn a_click_adds_a_stop_with_the_color_at_that_position() {
     };
     click(&mut harness, at, NONE);
     assert_eq!(places(&harness), [0.0, 0.25, 1.0]);
-    assert!(greys(&harness)[1].abs_diff(expected) <= 1 && (5..200).contains(&expected), "{expected}");
+    assert!(grays(&harness)[1].abs_diff(expected) <= 1 && (5..200).contains(&expected), "{expected}");
     assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["add a stop"], 1));
     let at = on_strip(&harness, 0.62);
     click(&mut harness, at, Modifiers::COMMAND);
@@ -46,14 +46,14 @@ fn a_drag_is_one_step_and_can_pass_other_stops() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (0.5, 20), (1.0, 30)]);
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.4 * width, NONE);
-    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.5, 0.7, 1.0], vec![0, 20, 10, 30]));
+    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.5, 0.7, 1.0], vec![0, 20, 10, 30]));
     assert!(harness.state().changes > 2, "the host sees it on its way");
     assert_eq!(steps(&harness), ["move a stop"]);
     assert_eq!(harness.state().editor.state.selection.lead(), 2);
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, -0.17 * width, Modifiers::COMMAND);
     assert_eq!(places(&harness), [0.0, 0.5, 0.5, 1.0], "Ctrl snaps");
-    assert_eq!(greys(&harness), [0, 20, 10, 30], "at one place it stays on its side");
+    assert_eq!(grays(&harness), [0, 20, 10, 30], "at one place it stays on its side");
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, 9.0 * width, NONE);
     assert_eq!(places(&harness), [0.0, 0.5, 1.0, 1.0]);
@@ -71,7 +71,7 @@ fn stops_at_one_position_have_separate_handles() {
         let from = handle(&harness, index).center();
         drag(&mut harness, from, width, NONE);
     }
-    assert_eq!(greys(&harness), [1, 2, 3, 4]);
+    assert_eq!(grays(&harness), [1, 2, 3, 4]);
     let at = places(&harness);
     assert!(at[0] < 0.45 && (at[1] - 0.5).abs() < 1.0e-3 && at[2] > 0.55, "{at:?}");
 }
@@ -104,7 +104,7 @@ fn stops_are_edited_by_keyboard_alone() {
     for _ in 0..6 {
         key(&mut harness, Key::ArrowRight, Modifiers::COMMAND);
     }
-    assert_eq!(greys(&harness), [0, 10, 20]);
+    assert_eq!(grays(&harness), [0, 10, 20]);
     key(&mut harness, Key::Tab, Modifiers::SHIFT);
     for _ in 0..11 {
         key(&mut harness, Key::ArrowRight, Modifiers::COMMAND);
@@ -113,12 +113,12 @@ fn stops_are_edited_by_keyboard_alone() {
     for _ in 0..2 {
         key(&mut harness, Key::ArrowLeft, Modifiers::COMMAND);
     }
-    assert_eq!((places(&harness), greys(&harness)), (vec![0.8, 1.0, 1.0], vec![0, 10, 20]));
+    assert_eq!((places(&harness), grays(&harness)), (vec![0.8, 1.0, 1.0], vec![0, 10, 20]));
     key(&mut harness, Key::Delete, NONE);
     key(&mut harness, Key::Delete, NONE);
-    assert_eq!(greys(&harness), [20]);
+    assert_eq!(grays(&harness), [20]);
     key(&mut harness, Key::Delete, NONE);
-    assert_eq!(greys(&harness), [20], "the last one stays");
+    assert_eq!(grays(&harness), [20], "the last one stays");
     harness.get_by_label("gradient: add a stop").focus();
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
@@ -171,7 +171,7 @@ fn each_button_is_one_undo_step() {
         harness.run_steps(3);
     };
     press(&mut harness, "Flip");
-    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.8, 1.0], vec![20, 10, 0]));
+    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.8, 1.0], vec![20, 10, 0]));
     press(&mut harness, "Distribute");
     assert_eq!(places(&harness), [0.0, 0.5, 1.0]);
     press(&mut harness, "Steps");

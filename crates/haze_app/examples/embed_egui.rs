@@ -1,16 +1,15 @@
 //! Embeds haze in a panel of an egui window: a 3D view with smoke beside sliders. Drag in the view to orbit.
 
-use std::path::Path;
 use std::time::Instant;
 
 use eframe::{egui, egui_wgpu};
 use glam::camera::rh;
 use glam::{UVec2, Vec3, vec3};
 use haze::emitter::Emitter;
-use haze::preset::MaterialNames;
+use haze::preset::{ImageSource, MaterialSources};
 use haze::{
-    Context, Descriptor, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, SceneDepth,
-    Settings, View, wgpu,
+    Context, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, RendererDescriptor,
+    SceneDepth, Settings, View, wgpu,
 };
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -56,15 +55,16 @@ struct Targets {
 impl App {
     fn new(creation: &eframe::CreationContext<'_>) -> Result<Self, Failure> {
         let gpu = creation.wgpu_render_state.as_ref().ok_or("egui does not draw with wgpu")?;
-        let context = Context::new(&gpu.device, &gpu.queue, None);
-        let descriptor = Descriptor { color_format: WRITTEN, depth_format: Some(DEPTH), ..Descriptor::default() };
+        let context = Context::new(&gpu.device, &gpu.queue);
+        let descriptor =
+            RendererDescriptor { color_format: WRITTEN, depth_format: Some(DEPTH), ..RendererDescriptor::default() };
         Ok(Self {
             start: Instant::now(),
             angle: 0.5,
             lamp: Lamp { angle: 2.2, intensity: 12.0 },
             targets: None,
             smoke: Renderer::new(&context, &descriptor)?,
-            material: context.create_material(&MaterialNames::default().load(Path::new(""))?)?,
+            material: context.create_material(&MaterialSources::default().load(ImageSource::BuiltIn)?)?,
             particles: Vec::new(),
             settings: Settings::default(),
             failure: None,

@@ -14,7 +14,7 @@ use haze::Error;
 use haze_core::error::is_link_loop;
 use haze_preset::builtin;
 
-use crate::commands::{export, info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
+use crate::commands::{debug_views, export, info, preset, ramp, render, sheet, sprite, techniques};
 use crate::output::{Failures, one_line, print_error, write_text};
 use crate::recipe_files::has_extension;
 use crate::{bench, share_link, tweak};
@@ -35,7 +35,8 @@ enum Command {
     /// Render a preset to a PNG, to one PNG per frame, to a flipbook or to a GIF.
     Render(render::Arguments),
     /// Render every stage of the shading on one labelled sheet.
-    ShadeTree(shade_tree::Arguments),
+    #[command(alias = "shade-tree")]
+    DebugViews(debug_views::Arguments),
     /// Render a preset with several values of one field, on one labelled sheet.
     Sheet(sheet::Arguments),
     /// Render a preset with every soft-particle technique and its cost, on one labelled sheet.
@@ -111,7 +112,7 @@ fn run_arguments(arguments: Vec<OsString>) -> ExitCode {
     report(match cli.command.unwrap_or_else(|| Command::Tweak(tweak::Arguments::default())) {
         Command::Tweak(arguments) => one(tweak::run(&arguments)),
         Command::Render(arguments) => one(render::run(&arguments)),
-        Command::ShadeTree(arguments) => one(shade_tree::run(&arguments)),
+        Command::DebugViews(arguments) => one(debug_views::run(&arguments)),
         Command::Sheet(arguments) => one(sheet::run(&arguments)),
         Command::Techniques(arguments) => one(techniques::run(&arguments)),
         Command::Bench(arguments) => bench::run(&arguments),

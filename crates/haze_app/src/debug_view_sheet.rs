@@ -4,7 +4,7 @@ use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 
 /// Stages in the order of the frame.
-pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
+pub const DEBUG_VIEWS: [(DebugView, &str); DebugView::ALL.len()] = [
     (DebugView::ReducedDepth, "Reduced depth"),
     (DebugView::Normals, "Accumulated normals"),
     (DebugView::Amount, "Accumulated amount"),
@@ -23,5 +23,5 @@ pub const COLUMNS: u32 = 4;
 
 /// Returns one shot per stage, with its label.
 pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
-    STAGES.map(|(stage, label)| (label.into(), Shot { debug_view: stage, ..shot.clone() })).into()
+    DEBUG_VIEWS.map(|(stage, label)| (label.into(), Shot { debug_view: stage, ..shot.clone() })).into()
 }

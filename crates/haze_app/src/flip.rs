@@ -31,12 +31,12 @@ mod tests {
 
     #[test]
     fn flip_is_0_for_equal_images_and_grows_with_the_difference() {
-        let grey = |value: u8| RgbImage::from_pixel(64, 64, image::Rgb([value; 3]));
-        assert!(flip_of(&grey(100), &grey(100)) < 1e-6);
-        let (near, far) = (flip_of(&grey(100), &grey(110)), flip_of(&grey(100), &grey(200)));
+        let gray = |value: u8| RgbImage::from_pixel(64, 64, image::Rgb([value; 3]));
+        assert!(flip_of(&gray(100), &gray(100)) < 1e-6);
+        let (near, far) = (flip_of(&gray(100), &gray(110)), flip_of(&gray(100), &gray(200)));
         assert!(0.0 < near && near < far && far <= 1.0, "{near} {far}");
-        let [grey_100, grey_110, grey_200] = [100, 110, 200].map(grey);
-        let pairs = [[&grey_100, &grey_110], [&grey_100, &grey_200], [&grey_100, &grey_100]];
+        let [gray_100, gray_110, gray_200] = [100, 110, 200].map(gray);
+        let pairs = [[&gray_100, &gray_110], [&gray_100, &gray_200], [&gray_100, &gray_100]];
         assert_eq!(flips(&pairs), [near, far, 0.0]);
         assert!(flips(&[]).is_empty());
     }

@@ -94,7 +94,7 @@ impl Frames {
     /// Returns the shot at the time of a frame, with the values that its settings have then.
     pub fn shot(&self, shot: &Shot, frame: u32) -> Shot {
         let mut shot = shot.clone();
-        shot.preset = shot.preset.at(self.time(&shot, frame));
+        shot.preset = shot.preset.evaluate(self.time(&shot, frame));
         shot
     }
 
@@ -108,7 +108,7 @@ impl Frames {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn burns(&self, shot: &Shot, count: u32) -> bool {
         let mut animated = AnimatedPreset::new(&shot.preset);
-        (0..count).any(|index| burns(animated.at(self.time(shot, self.range.start() + index))))
+        (0..count).any(|index| burns(animated.evaluate(self.time(shot, self.range.start() + index))))
     }
 
     fn time(&self, shot: &Shot, frame: u32) -> f32 {

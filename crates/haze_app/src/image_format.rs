@@ -212,7 +212,7 @@ mod tests {
         shot.preset.animation = vec![Track { setting: "environment.scene".into(), keys, ..Track::default() }];
         let format = ImageFormat::default().resolved(&shot);
         for time in [5.0, 40.0] {
-            let now = Shot { preset: shot.preset.at(time), ..shot.clone() };
+            let now = Shot { preset: shot.preset.evaluate(time), ..shot.clone() };
             assert!(
                 !rendered(&now, format).color().has_alpha() && !format.blank(&shot, UVec2::ONE).color().has_alpha()
             );

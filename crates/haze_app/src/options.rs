@@ -10,7 +10,7 @@ use glam::UVec2;
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_author::preset::no_effect_reason_of_set;
-use haze_core::settings::{Choice, RenderPath, ScaleMode, Technique, UnknownChoice};
+use haze_core::settings::{Choice, ParseChoiceError, RenderPath, ScaleMode, Technique};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 use haze_preset::{AssetFolders, CompressionEffort, MAX_TIME, Preset, write_png};
@@ -102,7 +102,7 @@ impl AssetsArguments {
     /// # Errors
     /// As [`AssetsArguments::folder`].
     pub fn folders(&self, preset: &std::path::Path) -> Result<AssetFolders, Error> {
-        Ok(AssetFolders::beside(preset).with_shared(self.folder()?))
+        Ok(AssetFolders::for_preset_file(preset).with_shared(self.folder()?))
     }
 }
 
@@ -305,7 +305,7 @@ pub fn whole_number(range: RangeInclusive<u32>) -> impl TypedValueParser<Value =
 /// Parser of a setting enum, by its names in presets.
 pub fn choices<T>() -> impl TypedValueParser<Value = T>
 where
-    T: Choice + Default + FromStr<Err = UnknownChoice> + Clone + Send + Sync + 'static,
+    T: Choice + Default + FromStr<Err = ParseChoiceError> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(T::default().names()).try_map(|name| name.parse::<T>())
 }

@@ -7,7 +7,7 @@ use glam::{Mat3, Vec2, Vec3, vec2, vec3};
 /// Temperatures that [`color_of_temperature`] accepts, kelvin.
 pub const KELVIN: RangeInclusive<f32> = 1000.0..=15_000.0;
 
-/// Returns the chromaticity u, v (CIE 1960) of a black body. (Krystek, "An algorithm to calculate correlated colour
+/// Returns the chromaticity u, v (CIE 1960) of a black body. (Krystek, "An algorithm to calculate correlated color
 /// temperature", 1985)
 #[allow(clippy::excessive_precision, reason = "the digits of the paper")]
 fn planckian_uv(kelvin: f32) -> Vec2 {

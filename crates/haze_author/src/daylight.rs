@@ -261,7 +261,7 @@ const SCALES: std::ops::RangeInclusive<f32> = 1.0e-4..=1.0e7;
 
 /// Moves a preset's sun or moon, and gives it, the sky, the ambient light of all systems and the fill lights their colors and
 /// brightness at that time. If the sun is brighter than the model's, all are brighter by the same factor. `index`: the sun.
-/// `place`: centre of the smoke, where fill lights are measured. The intensity of ambient light stays, and so do all other
+/// `place`: center of the smoke, where fill lights are measured. The intensity of ambient light stays, and so do all other
 /// lights.
 pub fn set_time(preset: &mut Preset, index: usize, body: Body, angles: Angles, place: Vec3) {
     let Some(sun) = preset.lights.get_mut(index) else { return };

@@ -129,7 +129,7 @@ settings! {
         /// above 0.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         tint: Vec3 = Vec3::ONE, color(0.0..=1.0);
-        /// The other end of the particles' colors: dust of red ground in grey smoke.
+        /// The other end of the particles' colors: dust of red ground in gray smoke.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         other_tint: Vec3 = Vec3::ONE, color(0.0..=1.0);
         /// Share by which the coldest particles of the same age are colder than the hottest. Higher: sooty puffs between the

@@ -20,52 +20,62 @@ const FLICKER_WAVES: [f64; 2] = [1.0, 2.6];
 /// Brightness at which a fire's light ends.
 const FAINTEST: f32 = 0.004;
 
-/// Returns the light of burning smoke, in the space of its particles: in its middle, in the color of its flames, as bright as
-/// they are large and hot. `None` if nothing burns. Add it to `FrameInput::lights` and to the
-/// lights of the scene.
-///
-/// `particles`: all of the system, or a sample, where one stands for `particles_per_sample`, as from
-/// [`EmitterSnapshot::sample`](crate::frame::EmitterSnapshot::sample). `time`: seconds; the same time gives the same flicker.
-/// `seed`: each value flickers differently.
-pub fn light(
-    particles: &[Particle],
-    particles_per_sample: u32,
-    settings: &Settings,
-    assets: &MaterialAssets,
-    (time, seed): (f32, u32),
-) -> Option<Light> {
-    let fire = &settings.fire;
-    if !settings.burns() || fire.light <= 0.0 {
-        return None;
+/// Burning smoke whose light is estimated.
+#[derive(Clone, Copy, Debug)]
+pub struct FireLight<'a> {
+    /// All particles of the system, or a sample of them, as from
+    /// [`EmitterSnapshot::sample`](crate::frame::EmitterSnapshot::sample).
+    pub particles: &'a [Particle],
+    /// Number of particles that one of the sample stands for; 1 for all particles.
+    pub particles_per_sample: u32,
+    /// Settings of the system.
+    pub settings: &'a Settings,
+    /// Images of the system: those of heat and fire are read.
+    pub assets: &'a MaterialAssets,
+    /// Seconds; the same time gives the same flicker.
+    pub time: f32,
+    /// Each value flickers differently.
+    pub seed: u32,
+}
+
+impl FireLight<'_> {
+    /// Returns the light, in the space of the particles: in the middle of the smoke, in the color of its flames, as bright as
+    /// they are large and hot. `None` if nothing burns. Add it to `FrameInput::lights` and to the lights of the scene.
+    pub fn estimate(&self) -> Option<Light> {
+        let fire = &self.settings.fire;
+        if !self.settings.burns() || fire.light <= 0.0 {
+            return None;
+        }
+        let mut sum = Flames::default();
+        for particle in self.particles.iter().filter(|particle| particle.is_visible()) {
+            let amount = particle.shown_amount() * self.settings.accumulate.opacity;
+            let color =
+                flame_color(self.settings, &self.assets.heat_ramp, &self.assets.fire_ramp, particle.age, amount);
+            sum.add(color, amount, particle.position, particle.radius * self.settings.sprite.size);
+        }
+        let (middle, reach) = sum.extent()?;
+        let area = sum.bright_area() * self.particles_per_sample as f32;
+        // Flames hide each other: at most the disc that they fill shines.
+        let share = 1.0 - (-area / (reach * reach)).exp();
+        let color = sum.light / sum.weight;
+        let brightest = color.max_element();
+        let brightness = brightest * fire.intensity * fire.light * share * reach * reach;
+        let intensity = brightness * flicker(fire.flicker, FLICKER_RATE, self.time, self.seed);
+        // Within the ranges of a light.
+        let (intensity, reach) = (intensity.min(1.0e9), reach.min(1.0e4));
+        (intensity > FAINTEST).then(|| Light {
+            kind: LightKind::Point,
+            position: middle,
+            color: color / brightest,
+            intensity,
+            range: (intensity / FAINTEST).sqrt(),
+            radius: reach,
+            specular_scatter: 0.0,
+            // It shines from the outside of the flames, not from their middle.
+            smoke_shadow: false,
+            ..Light::default()
+        })
     }
-    let mut sum = Flames::default();
-    for particle in particles.iter().filter(|particle| particle.is_visible()) {
-        let amount = particle.shown_amount() * settings.accumulate.opacity;
-        let color = flame_color(settings, &assets.heat_ramp, &assets.fire_ramp, particle.age, amount);
-        sum.add(color, amount, particle.position, particle.radius * settings.sprite.size);
-    }
-    let (middle, reach) = sum.extent()?;
-    let area = sum.bright_area() * particles_per_sample as f32;
-    // Flames hide each other: at most the disc that they fill shines.
-    let share = 1.0 - (-area / (reach * reach)).exp();
-    let color = sum.light / sum.weight;
-    let brightest = color.max_element();
-    let brightness = brightest * fire.intensity * fire.light * share * reach * reach;
-    let intensity = brightness * flicker(fire.flicker, FLICKER_RATE, time, seed);
-    // Within the ranges of a light.
-    let (intensity, reach) = (intensity.min(1.0e9), reach.min(1.0e4));
-    (intensity > FAINTEST).then(|| Light {
-        kind: LightKind::Point,
-        position: middle,
-        color: color / brightest,
-        intensity,
-        range: (intensity / FAINTEST).sqrt(),
-        radius: reach,
-        specular_scatter: 0.0,
-        // It shines from the outside of the flames, not from their middle.
-        smoke_shadow: false,
-        ..Light::default()
-    })
 }
 
 /// Places of a sprite, by the alpha of its image, at which its light is taken.

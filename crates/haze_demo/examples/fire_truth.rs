@@ -13,7 +13,9 @@ use std::fs;
 use std::path::Path;
 
 use glam::{UVec2, UVec3, Vec2, Vec3, Vec4Swizzles as _, vec3};
-use haze::{Context, Descriptor, FrameInput, Particle, ParticleSystem, Particles, Renderer, SceneDepth, builtin};
+use haze::{
+    Context, FrameInput, Particle, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth, builtin,
+};
 use haze_author::path_trace::{DensityVolume, Medium, PathTrace};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::assets::noise::{pcg3d, unit};
@@ -93,11 +95,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// A puff at a random place of a box. `key`: hot or cold, and index.
-fn puff(key: [u32; 2], seed: u32, (centre, half_extent): (Vec3, Vec3), radius: f32) -> Particle {
+fn puff(key: [u32; 2], seed: u32, (center, half_extent): (Vec3, Vec3), radius: f32) -> Particle {
     let [a, b] = [0, 1].map(|more| pcg3d(UVec3::new(key[1], 2 * key[0] + more, seed)));
     let place = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
     Particle {
-        position: centre + place * half_extent,
+        position: center + place * half_extent,
         radius,
         frame: (b.y % 2) as f32,
         age: 0.5,
@@ -172,8 +174,8 @@ fn draw(gpu: &Headless, cloud: &PuffCloud<'_>, material: &PuffMaterial) -> Resul
     let view = cloud.view();
     let (color, depth) = (gpu.target("color", view.size, COLOR), gpu.target("depth", view.size, DEPTH));
     let (color_view, depth_view) = (color.create_view(&Default::default()), depth.create_view(&Default::default()));
-    let context = Context::new(&gpu.device, &gpu.queue, None);
-    let descriptor = Descriptor { color_format: COLOR, depth_format: None, ..Descriptor::default() };
+    let context = Context::new(&gpu.device, &gpu.queue);
+    let descriptor = RendererDescriptor { color_format: COLOR, depth_format: None, ..RendererDescriptor::default() };
     let mut renderer = Renderer::new(&context, &descriptor)?;
     let uploaded = context.create_material(&material.assets)?;
     let particles = Particles::Slice(&cloud.particles);

@@ -21,7 +21,7 @@ pub(crate) const LIGHT_GAP: f32 = 0.02;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct SceneBox {
-    pub centre: Vec3,
+    pub center: Vec3,
     /// Cosine of the rotation.
     pub cos: f32,
     pub half_size: Vec3,

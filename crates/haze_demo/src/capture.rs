@@ -1,15 +1,15 @@
 //! Readback of a frame's intermediate targets, from which the pixel probe explains each pixel.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
+use haze_core::assets::image::Image;
+use haze_core::error::Error;
+use haze_core::frame::Particle;
+use haze_core::settings::Settings;
 
 use super::cpu_render::ShadowLayers;
 use super::shot::Shot;
 use super::texture_readback::TextureReadback;
 use haze::{AttachmentSet, TargetViews};
-use haze_core::assets::image::Image;
-use haze_core::error::Error;
-use haze_core::frame::Particle;
-use haze_core::settings::Settings;
 use haze_reference::{AccumulatedTextures, Probe, ProbeTextures, probe};
 
 /// Pending readback of a frame's targets.

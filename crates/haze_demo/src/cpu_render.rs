@@ -4,18 +4,18 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use glam::{Vec3, Vec4};
-
-use super::ray_caster;
-use super::scene::Scene;
-use super::shadow_views::ShadowView;
-use super::shot::Shot;
-use haze_author::backdrop::Backdrop;
 use haze_core::assets::image::Image;
 use haze_core::error::Error;
 use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
 use haze_core::frame::{Light, Particle};
 use haze_core::settings::Settings;
 use haze_preset::Environment;
+
+use super::ray_caster;
+use super::scene::Scene;
+use super::shadow_views::ShadowView;
+use super::shot::Shot;
+use haze_author::backdrop::Backdrop;
 use haze_reference::{PreparedFrame, SceneShadow};
 
 impl Shot {

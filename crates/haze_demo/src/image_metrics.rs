@@ -1,10 +1,10 @@
 //! Image metrics: PSNR of two images as displayed.
 
 use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
-
-use super::texture_readback::TextureReadback;
 use haze_core::assets::image::Image;
 use haze_core::formula::tonemap::tonemapped;
+
+use super::texture_readback::TextureReadback;
 
 /// Peak signal-to-noise ratio of two images in sRGB code, dB. Infinite if the images are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,22 +109,22 @@ mod tests {
     #[test]
     fn psnr_matches_its_definition() {
         let size = UVec2::new(20, 10);
-        let (black, mut grey) = (Image::new(size, Vec4::W), Image::new(size, Vec4::splat(0.1)));
+        let (black, mut gray) = (Image::new(size, Vec4::W), Image::new(size, Vec4::splat(0.1)));
         // Exposure 0 means data: an error of 0.1 is 20 dB.
         fn report(a: &Image<Vec4>, b: &Image<Vec4>, depth: Option<&Image<f32>>) -> PsnrReport {
             PsnrReport::compare(a, b, Vec2::ZERO, depth)
         }
-        assert!((report(&black, &grey, None).psnr - 20.0).abs() < 1e-3);
-        assert_eq!(report(&grey, &grey, None), PsnrReport { psnr: f32::INFINITY, edge_psnr: None });
+        assert!((report(&black, &gray, None).psnr - 20.0).abs() < 1e-3);
+        assert_eq!(report(&gray, &gray, None), PsnrReport { psnr: f32::INFINITY, edge_psnr: None });
         // Errors only near the edge.
         let mut depth = Image::new(size, 5.0);
         depth.for_each(|at, depth| *depth = if at.x < 10 { 5.0 } else { 9.0 });
-        grey.for_each(|at, grey| *grey = if (8..12).contains(&at.x) { Vec4::splat(0.1) } else { Vec4::W });
-        let found = report(&black, &grey, Some(&depth));
+        gray.for_each(|at, gray| *gray = if (8..12).contains(&at.x) { Vec4::splat(0.1) } else { Vec4::W });
+        let found = report(&black, &gray, Some(&depth));
         assert!((found.edge_psnr.unwrap() - 20.0).abs() < 1e-3, "{found:?}");
         assert!((found.psnr - 20.0 - 10.0 * 5.0_f32.log10()).abs() < 1e-3, "{found:?}");
         // Without an edge there is no edge PSNR.
         depth.texels.fill(5.0);
-        assert_eq!(report(&black, &grey, Some(&depth)).edge_psnr, None);
+        assert_eq!(report(&black, &gray, Some(&depth)).edge_psnr, None);
     }
 }

@@ -1,9 +1,9 @@
 //! Box layouts of the demo scenes. Metres; x right, y up, z towards the default camera.
 
 use glam::{Vec3, vec3};
+use haze_preset::{Environment, SceneName};
 
 use super::boxes::{SceneBox, Surface};
-use haze_preset::{Environment, SceneName};
 
 pub(crate) fn boxes(environment: &Environment) -> Vec<SceneBox> {
     match environment.scene {
@@ -14,10 +14,10 @@ pub(crate) fn boxes(environment: &Environment) -> Vec<SceneBox> {
     }
 }
 
-/// Creates a box with the centre of its underside at `foot`. `turn` is the rotation about the vertical axis, radians.
+/// Creates a box with the center of its underside at `foot`. `turn` is the rotation about the vertical axis, radians.
 fn box_on_ground(foot: Vec3, size: Vec3, turn: f32, color: Vec3, surface: Surface) -> SceneBox {
     SceneBox {
-        centre: foot + Vec3::Y * (0.5 * size.y),
+        center: foot + Vec3::Y * (0.5 * size.y),
         cos: turn.cos(),
         half_size: 0.5 * size,
         sin: turn.sin(),
@@ -33,8 +33,8 @@ const PLASTER: Vec3 = vec3(0.46, 0.42, 0.36);
 const PAVING: Vec3 = vec3(0.30, 0.29, 0.28);
 const IRON: Vec3 = vec3(0.06, 0.06, 0.065);
 const PAINTED: Vec3 = vec3(0.20, 0.21, 0.20);
-/// Reflectance of a photographic grey card.
-const GREY: Vec3 = Vec3::splat(0.18);
+/// Reflectance of a photographic gray card.
+const GRAY: Vec3 = Vec3::splat(0.18);
 
 fn pillar(boxes: &mut Vec<SceneBox>, foot: Vec3, height: f32) {
     boxes.push(box_on_ground(foot, vec3(0.8, 0.3, 0.8), 0.0, STONE, Surface::Plaster));
@@ -133,8 +133,8 @@ fn corridor() -> Vec<SceneBox> {
 
 fn studio() -> Vec<SceneBox> {
     // Extends beyond the view of the presets' cameras.
-    let floor = box_on_ground(vec3(0.0, -1.0, 0.0), vec3(60.0, 1.0, 60.0), 0.0, GREY, Surface::Even);
-    let wall = box_on_ground(vec3(0.0, 0.0, -10.0), vec3(60.0, 16.0, 1.0), 0.0, GREY, Surface::Even);
+    let floor = box_on_ground(vec3(0.0, -1.0, 0.0), vec3(60.0, 1.0, 60.0), 0.0, GRAY, Surface::Even);
+    let wall = box_on_ground(vec3(0.0, 0.0, -10.0), vec3(60.0, 16.0, 1.0), 0.0, GRAY, Surface::Even);
     vec![floor, wall]
 }
 
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn the_studio_is_uniformly_grey() {
+    fn the_studio_is_uniformly_gray() {
         let boxes = boxes(&Environment { scene: SceneName::Studio, ..Environment::default() });
         assert!(boxes.iter().all(|b| b.color == Vec3::splat(0.18) && b.surface == Surface::Even as u32));
     }

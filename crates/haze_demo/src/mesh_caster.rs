@@ -1,15 +1,15 @@
 //! CPU ray caster for a scene from a file: renders the same color and depth as `scene_mesh.wgsl`.
 
 use glam::{Mat4, UVec2, Vec2, Vec3};
+use haze_core::formula::depth::DepthConvention;
+use haze_core::formula::lighting::sample_light;
+use haze_core::frame::View;
 
 use super::boxes::LIGHT_GAP;
 use super::camera_rays::CameraRays;
 use super::scene::Scene;
 use super::shading::Lit;
 use haze_author::backdrop::{RayHit, SceneMesh};
-use haze_core::formula::depth::DepthConvention;
-use haze_core::formula::lighting::sample_light;
-use haze_core::frame::View;
 
 /// Distance beyond everything, metres. `MESH_SUN_DISTANCE` in scene_mesh.wgsl.
 const SUN_DISTANCE: f32 = 1.0e6;
@@ -64,7 +64,7 @@ impl<'a> MeshCaster<'a> {
         })
     }
 
-    /// Depth 0..1 at a pixel's centre.
+    /// Depth 0..1 at a pixel's center.
     pub fn depth(&self, at: UVec2) -> f32 {
         let ray = self.ray(at.as_vec2() + 0.5);
         let Some(hit) = self.hit(ray) else { return 1.0 };

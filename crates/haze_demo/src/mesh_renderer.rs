@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use glam::{UVec2, Vec2};
+use haze_core::assets::image::Image;
 use wgpu::util::DeviceExt as _;
 
 use super::scene_pipeline::{COLOR_FORMAT, LINEAR_FORMAT, ScenePipeline, default_view};
 use haze::shader;
 use haze_author::backdrop::{ColorTexture, MASK_SIDE, SceneMaterial, SceneMesh, SceneVertex, Wrap};
-use haze_core::assets::image::Image;
 
 /// Texels of a row of nodes and triangles. `ROW_BITS` in scene_mesh.wgsl.
 const ROW: u32 = 1 << 11;

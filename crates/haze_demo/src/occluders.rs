@@ -4,12 +4,12 @@
 //! The grid is conservative: a box is left out only if it cannot change the result, so the image is unchanged.
 
 use glam::{IVec2, UVec2, UVec3, Vec3};
+use haze_core::assets::image::Image;
+use haze_core::formula::uniforms::LightUniform;
 
 use super::boxes::{
     AMBIENT_REACH, MAX_BOXES, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
 };
-use haze_core::assets::image::Image;
-use haze_core::formula::uniforms::LightUniform;
 
 /// Number of cells along x, y and z. `OCCLUDER_CELLS` in scene.wgsl.
 pub(crate) const CELLS: UVec3 = UVec3::new(40, 8, 40);
@@ -40,27 +40,27 @@ pub(crate) struct Occluders {
 impl Occluders {
     pub fn new(boxes: &[SceneBox], lights: &[LightUniform]) -> Self {
         let lists = 1 + lights.len() as u32;
-        let has_surface = of_each::<bool>(1, 1, |_, centre, half| {
-            boxes.iter().any(|b| box_distance(b, b.to_local(centre - b.centre)).abs() <= half.length())
+        let has_surface = of_each::<bool>(1, 1, |_, center, half| {
+            boxes.iter().any(|b| box_distance(b, b.to_local(center - b.center)).abs() <= half.length())
         });
-        let is_occluder = |list: u32, b: &SceneBox, centre, half| match list.checked_sub(1) {
-            Some(light) => lights.get(light as usize).is_none_or(|light| can_shadow(b, light, centre, half)),
-            None => can_occlude_sky(b, centre, half),
+        let is_occluder = |list: u32, b: &SceneBox, center, half| match list.checked_sub(1) {
+            Some(light) => lights.get(light as usize).is_none_or(|light| can_shadow(b, light, center, half)),
+            None => can_occlude_sky(b, center, half),
         };
-        let among = |candidates: BoxMask, list, centre, half| {
+        let among = |candidates: BoxMask, list, center, half| {
             let mut mask = [0; 4];
             for index in indices(candidates, boxes.len()) {
-                mask[index / 32] |= u32::from(is_occluder(list, &boxes[index], centre, half)) << (index % 32);
+                mask[index / 32] |= u32::from(is_occluder(list, &boxes[index], center, half)) << (index % 32);
             }
             mask
         };
-        let blocks = of_each(BLOCK, lists, |(_, list), centre, half| among(ALL_BOXES, list, centre, half));
-        let masks = of_each(1, lists, |(cell, list), centre, half| {
+        let blocks = of_each(BLOCK, lists, |(_, list), center, half| among(ALL_BOXES, list, center, half));
+        let masks = of_each(1, lists, |(cell, list), center, half| {
             // Cells without a surface are never shaded; they keep the full mask.
             if !has_surface.load(texel(cell, 1, 0)) {
                 return ALL_BOXES;
             }
-            among(blocks.load(texel(cell / BLOCK, BLOCK, list)), list, centre, half)
+            among(blocks.load(texel(cell / BLOCK, BLOCK, list)), list, center, half)
         });
         Self { masks }
     }
@@ -76,7 +76,7 @@ impl Occluders {
 }
 
 /// Evaluates `value` for every block of so many cells along each side, and every list. It gets the block with the list, the
-/// block's centre, and half its size. The layout is that of [`Occluders::masks`].
+/// block's center, and half its size. The layout is that of [`Occluders::masks`].
 fn of_each<T: Copy + Default + Send>(
     cells: u32,
     lists: u32,
@@ -113,28 +113,28 @@ pub(crate) fn indices(mask: BoxMask, count: usize) -> impl Iterator<Item = usize
 }
 
 /// True if the box can block or, by its penumbra, dim a light at some point of the cell.
-fn can_shadow(b: &SceneBox, light: &LightUniform, centre: Vec3, half: Vec3) -> bool {
+fn can_shadow(b: &SceneBox, light: &LightUniform, center: Vec3, half: Vec3) -> bool {
     if b.surface == Surface::Glow as u32 {
         return false;
     }
     let (towards, reach, dims) = if light.directional > 0.5 {
         // The penumbra at the box is as wide as the sun's disc appears at the box's distance.
-        let beyond = (b.centre - centre).length() + b.half_size.length() + half.length();
+        let beyond = (b.center - center).length() + b.half_size.length() + half.length();
         (-light.direction * SUN_DISTANCE, 1.0, (beyond * SUN_SPREAD).min(SUN_DISTANCE * SUN_SPREAD))
     } else {
-        (light.position - centre, 1.0, light.radius)
+        (light.position - center, 1.0, light.radius)
     };
-    // Instead of rays from every point of the cell, tests the ray from its centre against the box grown by half a cell.
+    // Instead of rays from every point of the cell, tests the ray from its center against the box grown by half a cell.
     let cell =
         Vec3::new(half.x * b.cos.abs() + half.z * b.sin.abs(), half.y, half.z * b.cos.abs() + half.x * b.sin.abs());
     let grown = SceneBox { half_size: b.half_size + cell + dims.max(WIDEST_PIXEL), ..*b };
-    let (enter, leave) = box_interval(&grown, b.to_local(centre - b.centre), b.to_local(towards));
+    let (enter, leave) = box_interval(&grown, b.to_local(center - b.center), b.to_local(towards));
     enter <= leave && leave >= 0.0 && enter <= reach
 }
 
 /// True if the box can be close enough to a point of the cell to occlude the sky.
-fn can_occlude_sky(b: &SceneBox, centre: Vec3, half: Vec3) -> bool {
-    box_distance(b, b.to_local(centre - b.centre)) <= 2.0 * AMBIENT_REACH + half.length()
+fn can_occlude_sky(b: &SceneBox, center: Vec3, half: Vec3) -> bool {
+    box_distance(b, b.to_local(center - b.center)) <= 2.0 * AMBIENT_REACH + half.length()
 }
 
 #[cfg(test)]
@@ -155,17 +155,17 @@ mod tests {
             for (list, light) in (0..).zip([None].into_iter().chain(lights.iter().map(Some))) {
                 for index in 0..CELLS.element_product() {
                     let cell = UVec3::new(index % CELLS.x, index / CELLS.x % CELLS.y, index / (CELLS.x * CELLS.y));
-                    let centre = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
+                    let center = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
                     let half = Vec3::splat(0.5 * CELL + ROUNDING);
-                    let found = occluders.at(list, centre);
+                    let found = occluders.at(list, center);
                     if found == ALL_BOXES {
                         continue;
                     }
                     shaded += 1;
                     for (index, b) in boxes.iter().enumerate() {
                         let expected = match light {
-                            Some(light) => can_shadow(b, light, centre, half),
-                            None => can_occlude_sky(b, centre, half),
+                            Some(light) => can_shadow(b, light, center, half),
+                            None => can_occlude_sky(b, center, half),
                         };
                         assert_eq!(
                             found[index / 32] >> (index % 32) & 1 == 1,
@@ -198,7 +198,7 @@ mod tests {
                 let normal = side.signum()
                     * Vec3::select(side.abs().cmpeq(Vec3::splat(side.abs().max_element())), Vec3::ONE, Vec3::ZERO);
                 let local = Vec3::select(normal.cmpeq(Vec3::ZERO), place, normal) * b.half_size;
-                let world = b.centre + b.to_world(local);
+                let world = b.center + b.to_world(local);
                 let normal = b.to_world(normal);
                 let pixel = WIDEST_PIXEL * unit(pcg3d(UVec3::splat(index)).x);
                 let lit = |scene: &Scene| scene.irradiance(world, normal, pixel, &|_| Vec3::ONE);

@@ -2,12 +2,13 @@
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
+
 use super::scene_pipeline::LINEAR_FORMAT;
 use super::scene_renderer::SceneRenderer;
 use haze::shader::Sources;
 use haze::{Context, Material, PathModel, Timing, read_only_depth_is_supported};
-use haze_core::assets::material_assets::MaterialAssets;
-use haze_core::error::Error;
 
 /// Pipelines and materials that all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a device
 /// share. A clone shares them too.
@@ -31,7 +32,7 @@ impl OffscreenContext {
         let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
         let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
         let flags = adapter.get_downlevel_capabilities().flags;
-        let haze = Context::new(device, queue, None);
+        let haze = Context::new(device, queue);
         Self {
             copies_depth: flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES),
             device: device.clone(),

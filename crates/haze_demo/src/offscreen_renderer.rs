@@ -4,6 +4,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::{UVec2, Vec3, Vec4};
+use haze_core::assets::image::Image;
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
+use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
+use haze_core::settings::DebugView;
+use haze_preset::Environment;
 
 use super::capture::Capture;
 pub use super::offscreen_context::OffscreenContext;
@@ -16,16 +22,10 @@ pub use super::texture_readback::PendingImage;
 use super::uploaded_backdrop::UploadedBackdrop;
 use crate::headless::Headless;
 use haze::{
-    Descriptor, FrameInput, Light, LightingChoice, MemoryUse, ParticleSystem, Particles, PathChoice, Renderer,
+    FrameInput, Light, LightingChoice, MemoryUse, ParticleSystem, Particles, PathChoice, Renderer, RendererDescriptor,
     ScaleChoice, SceneDepth, SceneDepthKind, ShadowMap, Timing, View, WarmUp,
 };
 use haze_author::backdrop::Backdrop;
-use haze_core::assets::image::Image;
-use haze_core::assets::material_assets::MaterialAssets;
-use haze_core::error::Error;
-use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
-use haze_core::settings::DebugView;
-use haze_preset::Environment;
 
 /// Off-screen renderer; see the module's documentation.
 #[derive(Debug)]
@@ -84,16 +84,16 @@ struct SceneInputs {
 }
 
 impl OffscreenRenderer {
-    /// Creates a renderer without targets. `exact_filtering` as in [`Descriptor`].
+    /// Creates a renderer without targets. `exact_filtering` as in [`RendererDescriptor`].
     ///
     /// # Errors
     /// [`Error::Field`] if the device cannot render to half floats.
     pub fn new(context: &OffscreenContext, exact_filtering: bool) -> Result<Self, Error> {
-        let descriptor = Descriptor {
+        let descriptor = RendererDescriptor {
             color_format: COLOR_FORMAT,
             depth_format: context.attaches_depth.then_some(DEPTH_FORMAT),
             exact_filtering,
-            ..Descriptor::default()
+            ..RendererDescriptor::default()
         };
         let renderer = Renderer::new(&context.haze, &descriptor)?;
         Ok(Self {
@@ -209,7 +209,7 @@ impl OffscreenRenderer {
             .collect();
         let (depth, linear) = (sized.targets.depth.clone(), sized.targets.linear.clone());
         let scene_depth = match &linear {
-            Some(linear) => SceneDepth::Both { buffer: &depth, linear },
+            Some(linear) => SceneDepth::BufferAndLinear { buffer: &depth, linear },
             None => SceneDepth::Buffer(&depth),
         };
         let shadow_maps: Vec<_> = self
@@ -228,7 +228,7 @@ impl OffscreenRenderer {
             debug_views: stages,
             ..FrameInput::new(view, scene_depth)
         };
-        self.renderer.cast_shadow(encoder, &frame)?;
+        self.renderer.prepare_shadow(encoder, &frame)?;
         let scene_inputs = SceneInputs {
             environment: shot.preset.environment.clone(),
             backdrop: shot.backdrop.clone(),
@@ -240,7 +240,7 @@ impl OffscreenRenderer {
             scene.record(encoder, &mut sized.targets, &shot.scene(), &view, &scene_inputs.shadowed, backdrop);
             sized.scene_inputs = Some(scene_inputs);
         }
-        scene.shade(encoder, &sized.targets, self.renderer.scene_shadow());
+        scene.shade(encoder, &sized.targets, self.renderer.scene_shadow_bind_group());
         self.renderer.prepare(encoder, &frame)?;
         for &stage in stages {
             let picture = sized.pictures[stage as usize]
@@ -289,7 +289,7 @@ impl OffscreenRenderer {
         self.renderer.warm_up(&WarmUp {
             view: shot.preset.camera.view(shot.size),
             scene_depth: if self.context.scene.draws_linear {
-                SceneDepthKind::Both(DEPTH_FORMAT)
+                SceneDepthKind::BufferAndLinear(DEPTH_FORMAT)
             } else {
                 SceneDepthKind::Buffer(DEPTH_FORMAT)
             },

@@ -16,7 +16,7 @@ use haze_core::assets::noise::{pcg3d, unit};
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::Sprite;
 use haze_core::settings::{Backlight, DebugView, Lighting, Settings, Technique};
-use haze_preset::MaterialNames;
+use haze_preset::{ImageSource, MaterialSources};
 use haze_reference::{FrameInput, ParticleSystem, PreparedFrame};
 
 /// Number of lights in the ring around a cloud.
@@ -53,7 +53,7 @@ impl CloudShape {
         }
     }
 
-    /// Half the extent of the puffs' centres.
+    /// Half the extent of the puffs' centers.
     fn half_extent(self) -> Vec3 {
         match self {
             Self::Column => vec3(0.25, 0.6, 0.25),
@@ -157,7 +157,7 @@ impl PuffKind {
         let assets = MaterialAssets {
             sprite: Sprite::from_image(Path::new("puff"), &sheet, self.recipe.layout())?,
             detail: None,
-            ..MaterialNames::default().load(Path::new(""))?
+            ..MaterialSources::default().load(ImageSource::BuiltIn)?
         };
         Ok(PuffMaterial { settings, assets, exposure: 1.0 })
     }
@@ -228,7 +228,7 @@ impl PuffCloud<'_> {
         let mut all = DensityVolume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
         for index in 0..all.densities.len() as u32 {
             let voxel = UVec3::new(index % side, index / side % side, index / (side * side));
-            all.densities[index as usize] = self.density(all.voxel_centre(voxel));
+            all.densities[index as usize] = self.density(all.voxel_center(voxel));
         }
         all
     }

@@ -3,6 +3,9 @@
 use std::ops::RangeInclusive;
 
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use haze_core::assets::image::Image;
+use haze_core::formula::depth::{DepthConvention, SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
+use haze_core::frame::View;
 
 use super::boxes::{SceneBox, Surface, box_interval};
 use super::camera_rays::CameraRays;
@@ -10,11 +13,8 @@ use super::mesh_caster::MeshCaster;
 use super::occluders::{BoxMask, indices};
 use super::scene::{Scene, coefficients};
 use super::shading::{Lit, albedo};
-use haze_core::assets::image::Image;
-use haze_core::formula::depth::{DepthConvention, SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
-use haze_core::frame::View;
 
-/// Renders depth 0..1 at pixel centres.
+/// Renders depth 0..1 at pixel centers.
 pub(crate) fn render_depth(scene: &Scene, view: &View) -> Image<f32> {
     let mut depth = Image::new(view.size, 1.0);
     if let Some(caster) = MeshCaster::new(scene, view) {
@@ -72,7 +72,7 @@ fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Ima
     for (index, b) in boxes.iter().enumerate() {
         let corners = (0..8).map(|corner| {
             let side = |bit: u32| if corner & bit == 0 { -1.0 } else { 1.0 };
-            let world = b.centre + b.to_world(Vec3::new(side(1), side(2), side(4)) * b.half_size);
+            let world = b.center + b.to_world(Vec3::new(side(1), side(2), side(4)) * b.half_size);
             let clip = *clip_from_world * world.extend(1.0);
             let ndc = clip.xy() / clip.w;
             // A corner at or behind the eye has no projection: the box may cover any pixel.
@@ -137,7 +137,7 @@ impl<'a> RayCaster<'a> {
         let mut hit = None;
         let boxes = &self.scene.boxes;
         for b in indices(self.tiles.load((at / TILE_SIZE).as_ivec2()), boxes.len()).map(|index| &boxes[index]) {
-            let (origin, local) = (b.to_local(self.rays.eye - b.centre), b.to_local(direction));
+            let (origin, local) = (b.to_local(self.rays.eye - b.center), b.to_local(direction));
             let (enter, leave) = box_interval(b, origin, local);
             if enter >= leave {
                 continue;
@@ -164,7 +164,7 @@ impl<'a> RayCaster<'a> {
     }
 
     /// Averages four samples, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
-    /// sample if they lie on different faces, otherwise once at the pixel's centre. `through` as in [`Scene::irradiance`].
+    /// sample if they lie on different faces, otherwise once at the pixel's center. `through` as in [`Scene::irradiance`].
     fn color(&self, at: UVec2, through: &impl Fn(u32) -> Vec3) -> Vec3 {
         const OFFSETS: [Vec2; 4] =
             [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
@@ -175,9 +175,9 @@ impl<'a> RayCaster<'a> {
             (None, None) => true,
             _ => false,
         });
-        let centre = self.direction(at.as_vec2() + 0.5);
-        let pixel_angle = (self.direction(at.as_vec2() + Vec2::new(0.5, 1.5)) - centre).length();
-        let shared_light = is_one_face.then(|| self.light(&hits[0], centre, pixel_angle, through));
+        let center = self.direction(at.as_vec2() + 0.5);
+        let pixel_angle = (self.direction(at.as_vec2() + Vec2::new(0.5, 1.5)) - center).length();
+        let shared_light = is_one_face.then(|| self.light(&hits[0], center, pixel_angle, through));
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
         for (hit, direction) in hits.iter().zip(directions) {
             let reflectance =
@@ -199,7 +199,7 @@ impl<'a> RayCaster<'a> {
         if b.surface == Surface::Glow as u32 {
             return Lit::even(Vec3::ONE);
         }
-        let origin = b.to_local(self.rays.eye - b.centre);
+        let origin = b.to_local(self.rays.eye - b.center);
         let distance = (normal.abs().dot(b.half_size) - normal.dot(origin)) / normal.dot(b.to_local(direction));
         let normal = b.to_world(*normal);
         let pixel = pixel_angle * distance / (-direction.dot(normal)).max(1.0e-3);

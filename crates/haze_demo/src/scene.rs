@@ -1,17 +1,17 @@
 //! Scene data: boxes or a mesh, sky, lights and occluders.
 
 use glam::{Mat4, Vec3, Vec4};
+use haze_core::formula::depth::{DepthConvention, depth_coefficients};
+use haze_core::formula::saturate;
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::frame::{Light, View};
+use haze_preset::Environment;
 
 use super::boxes::{MAX_BOXES, SceneBox};
 use super::camera_rays::CameraRays;
 use super::layout;
 use super::occluders::Occluders;
 use haze_author::backdrop::{Backdrop, SkyLight};
-use haze_core::formula::depth::{DepthConvention, depth_coefficients};
-use haze_core::formula::saturate;
-use haze_core::formula::uniforms::LightUniform;
-use haze_core::frame::{Light, View};
-use haze_preset::Environment;
 
 /// Uniforms of the scene's shader. `Scene` in scene.wgsl.
 #[repr(C)]

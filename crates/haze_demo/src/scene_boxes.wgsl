@@ -64,7 +64,7 @@ fn light_visibility(mask: vec4u, origin: vec3f, direction: vec3f, distance: f32,
             if i >= scene.box_count { break; }
             let b = boxes[i];
             if b.surface == SURFACE_GLOW { continue; }
-            let o = to_local(b, origin - b.centre);
+            let o = to_local(b, origin - b.center);
             let d = to_local(b, direction);
             let interval = box_interval(b, o, d);
             if interval.x < interval.y {
@@ -95,8 +95,8 @@ fn ambient_visibility(p: vec3f, n: vec3f) -> f32 {
             let i = word * 32u + lowest_bit(bits);
             if i >= scene.box_count { break; }
             let b = boxes[i];
-            open_near = min(open_near, box_distance(b, to_local(b, near - b.centre)));
-            open_far = min(open_far, box_distance(b, to_local(b, far - b.centre)));
+            open_near = min(open_near, box_distance(b, to_local(b, near - b.center)));
+            open_far = min(open_far, box_distance(b, to_local(b, far - b.center)));
         }
     }
     return mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH));
@@ -160,7 +160,7 @@ fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) insta
         local = normal + vec3f(u, v, 0.0);
     }
     local *= b.half_size;
-    let world = b.centre + to_world(b, local);
+    let world = b.center + to_world(b, local);
     return BoxVertex(scene.clip_from_world * vec4f(world, 1.0), world, local, normal, index * 6u + face);
 }
 
@@ -183,12 +183,12 @@ fn linear_fragment(in: BoxVertex) -> @location(0) vec4f {
 
 // Returns the point at which the ray meets the plane of a face.
 fn point_on_face(b: Box, normal: vec3f, direction: vec3f) -> vec3f {
-    let origin = to_local(b, scene.eye - b.centre);
+    let origin = to_local(b, scene.eye - b.center);
     let distance = (dot(abs(normal), b.half_size) - dot(normal, origin)) / dot(normal, to_local(b, direction));
     return scene.eye + direction * distance;
 }
 
-// Light is evaluated per sample if they lie on different faces, otherwise once at the pixel's centre.
+// Light is evaluated per sample if they lie on different faces, otherwise once at the pixel's center.
 fn light_at(position: vec2f) -> Lit {
     let first = vec2i(position) * 2;
     var paints = array<vec4f, 4>();

@@ -2,7 +2,7 @@
 // functions on the CPU.
 
 struct Box {
-    centre: vec3f,
+    center: vec3f,
     // Rotation about the vertical axis.
     cosine: f32,
     half_size: vec3f,
@@ -82,8 +82,8 @@ fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
     }
     if b.surface == SURFACE_WOOD {
         let plank = floor(uv.y / 0.2);
-        let grain = value_noise(vec3f(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.centre.x * 3.0));
-        let tone = 0.8 + 0.4 * hash(vec3i(i32(plank), i32(b.centre.x * 10.0), i32(b.centre.z * 10.0)));
+        let grain = value_noise(vec3f(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.center.x * 3.0));
+        let tone = 0.8 + 0.4 * hash(vec3i(i32(plank), i32(b.center.x * 10.0), i32(b.center.z * 10.0)));
         // A frame of boards around every face of a crate.
         var edge = b.half_size - abs(p);
         edge = select(edge, vec3f(10.0), abs(n) > vec3f(0.5));

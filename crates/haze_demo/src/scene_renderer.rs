@@ -1,11 +1,14 @@
 //! GPU renderer of the demo scene, or of a scene from a file. Three passes: paint (reflectance at 2x2 samples per pixel), depth
-//! (depth buffer and linear view depth at pixel centres), and light. With shadow of smoke, light keeps that of up to three lights apart, and
+//! (depth buffer and linear view depth at pixel centers), and light. With shadow of smoke, light keeps that of up to three lights apart, and
 //! a fourth pass, shade, adds what of it comes through the smoke.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use bytemuck::Zeroable as _;
 use glam::UVec2;
+use haze_core::formula::depth::SKY_VIEW_DEPTH;
+use haze_core::formula::uniforms::LightUniform;
+use haze_core::frame::{MAX_LIGHTS, View};
 
 use super::boxes::{MAX_BOXES, SceneBox};
 use super::mesh_renderer::MeshPipelines;
@@ -16,9 +19,6 @@ use super::shadow_views::{ShadowView, casters};
 use super::uploaded_backdrop::UploadedBackdrop;
 use haze::shader;
 use haze_author::backdrop::Backdrop;
-use haze_core::formula::depth::SKY_VIEW_DEPTH;
-use haze_core::formula::uniforms::LightUniform;
-use haze_core::frame::{MAX_LIGHTS, View};
 use wgpu::util::DeviceExt as _;
 
 /// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a

@@ -1,16 +1,16 @@
 //! Lighting and materials of the demo scene on the CPU. `scene.wgsl` implements the same functions on the GPU.
 
 use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
+use haze_core::assets::noise::{pcg3d, unit};
+use haze_core::formula::lighting::sample_light;
+use haze_core::formula::saturate;
+use haze_core::formula::uniforms::LightUniform;
 
 use super::boxes::{
     AMBIENT_REACH, LIGHT_GAP, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
 };
 use super::occluders::{BoxMask, indices};
 use super::scene::Scene;
-use haze_core::assets::noise::{pcg3d, unit};
-use haze_core::formula::lighting::sample_light;
-use haze_core::formula::saturate;
-use haze_core::formula::uniforms::LightUniform;
 
 fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     let t = saturate((x - low) / (high - low));
@@ -81,8 +81,8 @@ pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     }
     if is(Surface::Wood) {
         let plank = (uv.y / 0.2).floor();
-        let grain = value_noise(Vec3::new(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.centre.x * 3.0));
-        let salt = IVec3::new(plank as i32, (b.centre.x * 10.0) as i32, (b.centre.z * 10.0) as i32);
+        let grain = value_noise(Vec3::new(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.center.x * 3.0));
+        let salt = IVec3::new(plank as i32, (b.center.x * 10.0) as i32, (b.center.z * 10.0) as i32);
         let tone = 0.8 + 0.4 * hash(salt);
         let edge = Vec3::select(n.abs().cmpgt(Vec3::splat(0.5)), Vec3::splat(10.0), b.half_size - p.abs());
         let framed = smoothstep(0.09, 0.075, edge.min_element());
@@ -128,7 +128,7 @@ impl Scene {
             if b.surface == Surface::Glow as u32 {
                 continue;
             }
-            let (o, d) = (b.to_local(origin - b.centre), b.to_local(direction));
+            let (o, d) = (b.to_local(origin - b.center), b.to_local(direction));
             let (enter, leave) = box_interval(b, o, d);
             if enter < leave {
                 if leave > 0.0 && enter < distance {
@@ -149,8 +149,8 @@ impl Scene {
         let (near, far) = (p + n * 0.15, p + n * AMBIENT_REACH);
         let (mut open_near, mut open_far) = (0.15_f32, AMBIENT_REACH);
         for b in indices(self.occluders.at(0, p), self.boxes.len()).map(|index| &self.boxes[index]) {
-            open_near = open_near.min(box_distance(b, b.to_local(near - b.centre)));
-            open_far = open_far.min(box_distance(b, b.to_local(far - b.centre)));
+            open_near = open_near.min(box_distance(b, b.to_local(near - b.center)));
+            open_far = open_far.min(box_distance(b, b.to_local(far - b.center)));
         }
         mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH))
     }

@@ -4,11 +4,11 @@
 use glam::camera::rh::proj::directx::{orthographic, perspective};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Mat4, UVec2, Vec3, vec3};
+use haze_core::assets::image::Image;
+use haze_core::frame::{Light, LightKind, ShadowProjection};
 
 use super::boxes::{SceneBox, Surface, box_interval};
 use super::scene::Scene;
-use haze_core::assets::image::Image;
-use haze_core::frame::{Light, LightKind, ShadowProjection};
 
 /// Lights that get a map, from the first on.
 const MAX_MAPS: usize = 8;
@@ -50,7 +50,7 @@ impl ShadowView {
             let near = at_depth(0.0);
             let ray = at_depth(1.0) - near;
             let enter = boxes.iter().filter_map(|b| {
-                let (enter, leave) = box_interval(b, b.to_local(near - b.centre), b.to_local(ray));
+                let (enter, leave) = box_interval(b, b.to_local(near - b.center), b.to_local(ray));
                 // A box around the light shows its far side.
                 (enter < leave).then_some(if enter > 0.0 { enter } else { leave }).filter(|distance| *distance > 0.0)
             });

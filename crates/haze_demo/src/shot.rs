@@ -4,18 +4,18 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use glam::{UVec2, Vec3};
+use haze_core::assets::material_assets::MaterialAssets;
+use haze_core::error::Error;
+use haze_core::fire::FireLight;
+use haze_core::frame::{EmitterSnapshot, Light, MAX_LIGHTS, Particle};
+use haze_core::settings::{DebugView, Settings};
+use haze_preset::{AssetFolders, Preset, PresetSystem};
 
 use super::particle_scalar::ShownScalar;
 use super::scene::Scene;
 use super::shadow_views::{ShadowView, shadow_views};
 use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::{self, ParticleFrames, load_particle_files};
-use haze_core::assets::material_assets::MaterialAssets;
-use haze_core::error::Error;
-use haze_core::fire;
-use haze_core::frame::{EmitterSnapshot, Light, MAX_LIGHTS, Particle};
-use haze_core::settings::{DebugView, Settings};
-use haze_preset::{AssetFolders, Preset, PresetSystem};
 
 /// An emitter with more births than this is evaluated on the GPU.
 const MAX_CPU_BIRTHS: u32 = 1 << 14;
@@ -60,7 +60,7 @@ impl Shot {
     /// # Errors
     /// As [`Preset::load_materials`], [`particle_files::load_particle_files`] and [`Backdrop::load`].
     pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
-        Self::from_folders(preset, path, &AssetFolders::beside(path), size)
+        Self::from_folders(preset, path, &AssetFolders::for_preset_file(path), size)
     }
 
     /// Loads the files that a preset names from the given folders.
@@ -85,7 +85,7 @@ impl Shot {
         if self.preset.animation.is_empty() && !is_lit_by_sky {
             return Cow::Borrowed(self);
         }
-        let mut preset = self.preset.at(self.preset.time);
+        let mut preset = self.preset.evaluate(self.preset.time);
         if let Some(sky) = self.backdrop.sky.as_ref().filter(|_| preset.environment.sky_light) {
             // As systems clamp them: colors of a preset go up to 100.
             let light = sky.light.scaled(preset.environment.sky_exposure.exp2()).hemispheres();
@@ -163,7 +163,8 @@ impl Shot {
                         1
                     }
                 };
-                fire::light(&particles, step, settings, assets, (time, system.emitter.seed))
+                let seed = system.emitter.seed;
+                FireLight { particles: &particles, particles_per_sample: step, settings, assets, time, seed }.estimate()
             });
         lights.extend(fires);
         lights.truncate(MAX_LIGHTS);

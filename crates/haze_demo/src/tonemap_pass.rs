@@ -2,12 +2,12 @@
 //! the library never changes a host's colors.
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use haze_core::assets::image::Image;
+use haze_core::formula::tonemap::{dither, tonemapped};
 use image::{RgbImage, RgbaImage};
 
 use super::shot::Shot;
 use haze::shader;
-use haze_core::assets::image::Image;
-use haze_core::formula::tonemap::{dither, tonemapped};
 
 /// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colors, unchanged values for
 /// data.
@@ -48,7 +48,7 @@ pub fn exposure(shot: &Shot) -> f32 {
     match (shot.debug_view.is_data(), preset.animation.is_empty()) {
         (true, _) => 0.0,
         (false, true) => preset.camera.exposure.exp2(),
-        (false, false) => preset.at(preset.time).camera.exposure.exp2(),
+        (false, false) => preset.evaluate(preset.time).camera.exposure.exp2(),
     }
 }
 

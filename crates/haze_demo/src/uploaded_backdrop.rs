@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::UVec2;
 use half::f16;
+use haze_core::assets::image::Image;
 use wgpu::util::DeviceExt as _;
 
 use super::mesh_renderer::{MeshPipelines, UploadedMesh};
 use super::scene_pipeline::default_view;
 use haze_author::backdrop::Backdrop;
-use haze_core::assets::image::Image;
 
 /// A backdrop, and what was uploaded of it.
 #[derive(Debug)]

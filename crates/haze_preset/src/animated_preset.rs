@@ -2,10 +2,11 @@
 
 use std::slice;
 
-use super::animation::{AnimatedFields, KeyValue, Track};
-use super::preset_file::Preset;
 use haze_core::error::FieldError;
 use haze_core::settings::{is_field_named, set_field};
+
+use super::animation::{AnimatedFields, KeyValue, Track};
+use super::preset_file::Preset;
 
 /// A preset that is evaluated at any times, in any order. Settings are looked up by name once, not in each frame.
 ///
@@ -14,10 +15,10 @@ use haze_core::settings::{is_field_named, set_field};
 ///
 /// let mut animated = AnimatedPreset::new(&Preset::load("column")?);
 /// for frame in 0..3 {
-///     let preset = animated.at(frame as f32 / 60.0);
+///     let preset = animated.evaluate(frame as f32 / 60.0);
 ///     let (lights, settings) = (&preset.lights, &preset.systems[0].settings);
 /// }
-/// # Ok::<(), haze::Error>(())
+/// # Ok::<(), haze_core::error::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct AnimatedPreset {
@@ -35,7 +36,7 @@ impl AnimatedPreset {
 
     /// The preset at a time, seconds: its settings have the values of their tracks, each within its range, and it has no
     /// tracks of its own.
-    pub fn at(&mut self, time: f32) -> &Preset {
+    pub fn evaluate(&mut self, time: f32) -> &Preset {
         self.shown.time = time;
         self.fields.write(time, true, &mut self.shown);
         &self.shown
@@ -46,9 +47,9 @@ impl Preset {
     /// The preset at a time, seconds: its settings have the values of their tracks, and it has no tracks of its own. Any
     /// time can be asked for in any order. [`AnimatedPreset`] does the same frame by frame, without copies.
     #[must_use]
-    pub fn at(&self, time: f32) -> Self {
+    pub fn evaluate(&self, time: f32) -> Self {
         let mut animated = AnimatedPreset::new(self);
-        animated.at(time);
+        animated.evaluate(time);
         animated.shown
     }
 
@@ -98,7 +99,7 @@ mod tests {
     fn parse(animation: &str) -> Result<Preset, String> {
         let mut preset = Preset::load("column").map_err(|error| error.to_string())?;
         preset.description = String::new();
-        let text = preset.to_text("");
+        let text = preset.to_json("");
         let text = format!("{}, \"animation\": [{animation}]}}", text.trim_end().trim_end_matches('}'));
         Preset::parse(Path::new("my.json"), &text).map_err(|error| error.to_string())
     }
@@ -118,8 +119,8 @@ mod tests {
         let mut animated = AnimatedPreset::new(&preset);
         let mut middle = None;
         for time in [2.0, 9.0, -3.0, 2.0, 1.0, 2.0] {
-            let at = animated.at(time).clone();
-            assert_eq!(at, preset.at(time), "{time}");
+            let at = animated.evaluate(time).clone();
+            assert_eq!(at, preset.evaluate(time), "{time}");
             assert!(at.animation.is_empty() && at.time.to_bits() == time.to_bits());
             at.validate().unwrap();
             if time.to_bits() == 2.0_f32.to_bits() {
@@ -129,12 +130,12 @@ mod tests {
         let middle = middle.unwrap();
         assert!((middle.camera.exposure - 1.0).abs() < 1e-6);
         assert_eq!(middle.systems[0].settings.path, RenderPath::Tiled);
-        assert!(middle.environment.lamp && !preset.at(4.5).environment.lamp);
-        let early = preset.at(1.0);
+        assert!(middle.environment.lamp && !preset.evaluate(4.5).environment.lamp);
+        let early = preset.evaluate(1.0);
         assert!(early.lights[1].color.distance(Vec3::new(1.0, 0.75, 0.5)) < 1e-6, "linear light");
         assert!(early.lights[1].direction.distance(Vec3::new(-1.0, -1.0, 0.0).normalize()) < 1e-5);
         assert_eq!(early.systems[0].settings.accumulate.scale, 3, "2.5 is rounded");
-        let share = |time: f32| preset.at(time).lights[2].intensity / preset.lights[2].intensity;
+        let share = |time: f32| preset.evaluate(time).lights[2].intensity / preset.lights[2].intensity;
         assert!((0..50).any(|step| (share(step as f32 * 0.1) - 1.0).abs() > 0.2));
         assert!((0..50).all(|step| (share(step as f32 * 0.1) - 1.0).abs() <= 0.5 + 1e-6));
         // An editor sees the steady value.
@@ -151,7 +152,7 @@ mod tests {
         )
         .unwrap();
         for step in 0..40 {
-            preset.at(step as f32 * 0.125).validate().unwrap();
+            preset.evaluate(step as f32 * 0.125).validate().unwrap();
         }
     }
 
@@ -277,10 +278,10 @@ mod tests {
             },
         ];
         preset.validate().unwrap();
-        let text = preset.to_text("");
+        let text = preset.to_json("");
         assert_eq!(Preset::parse(Path::new("a.json"), &text).unwrap(), preset);
         assert!(!text.contains("\"period\": 0.0"), "{text}");
-        assert!(!Preset::load("corridor").unwrap().to_text("").contains("animation"));
+        assert!(!Preset::load("corridor").unwrap().to_json("").contains("animation"));
     }
 
     #[test]
@@ -289,13 +290,13 @@ mod tests {
         let key = |value| vec![Keyframe { time: 0.0, value, ease: Ease::default() }];
         let tracks = field_values(&preset).into_iter().filter_map(|(setting, value)| {
             let is_fixed = ["version", "time", "systems[0].emitter.seed"].contains(&setting.as_str());
-            let value = KeyValue::of_field(&value).filter(|_| !is_fixed)?;
+            let value = KeyValue::from_field(&value).filter(|_| !is_fixed)?;
             Some(Track { setting, keys: key(value), ..Track::default() })
         });
         preset.animation = tracks.collect();
         assert!(preset.animation.len() > 100, "{}", preset.animation.len());
         preset.validate().unwrap();
-        assert_eq!(preset.at(preset.time), Preset { animation: Vec::new(), ..preset.clone() });
+        assert_eq!(preset.evaluate(preset.time), Preset { animation: Vec::new(), ..preset.clone() });
     }
 
     #[test]
@@ -307,7 +308,7 @@ mod tests {
         )
         .unwrap();
         preset.set_field("lights[0].intensity", "7").unwrap();
-        assert_eq!(preset.at(0.0).lights[0].intensity.to_bits(), 7.0_f32.to_bits());
+        assert_eq!(preset.evaluate(0.0).lights[0].intensity.to_bits(), 7.0_f32.to_bits());
         assert_eq!(preset.animation.len(), 2);
         preset.set_field("lights.intensity", "7").unwrap();
         assert_eq!(preset.animation.len(), 1);

@@ -3,9 +3,10 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use haze_core::error::Error;
+
 use super::sequence::exists;
 use crate::{builtin, directory};
-use haze_core::error::Error;
 
 /// Folder of the preset's file, followed by those that presets share.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -25,12 +26,12 @@ pub(super) const MIN_SIMILARITY: f64 = 0.75;
 
 impl AssetFolders {
     /// The folder of a preset's file alone.
-    pub fn beside(preset: &Path) -> Self {
-        Self::at(preset.parent().unwrap_or(Path::new("")))
+    pub fn for_preset_file(preset: &Path) -> Self {
+        Self::new(preset.parent().unwrap_or(Path::new("")))
     }
 
     /// One folder alone. The empty path is the working directory.
-    pub fn at(folder: &Path) -> Self {
+    pub fn new(folder: &Path) -> Self {
         Self { own: folder.into(), shared: Vec::new() }
     }
 
@@ -96,7 +97,7 @@ mod tests {
             std::fs::create_dir_all(path(file).parent().unwrap()).unwrap();
             std::fs::write(path(file), "").unwrap();
         }
-        let folders = AssetFolders::beside(&path("shots/my.json")).with_shared(Some(path("team")));
+        let folders = AssetFolders::for_preset_file(&path("shots/my.json")).with_shared(Some(path("team")));
         let find = |name: &str| folders.find(Path::new(name));
         assert_eq!(find("both.png").unwrap(), path("shots/both.png"));
         assert_eq!(find("theirs.png").unwrap(), path("team/theirs.png"));
@@ -106,7 +107,7 @@ mod tests {
         std::fs::write(path("shots/diffuse_sot.png"), "").unwrap();
         let error = find("diffuse_soot.png").unwrap_err().to_string();
         assert!(error.ends_with("; the built-in one is \"diffuse_soot\""), "{error}");
-        let error = AssetFolders::at(&path("shots")).find(Path::new("xyz.png")).unwrap_err().to_string();
+        let error = AssetFolders::new(&path("shots")).find(Path::new("xyz.png")).unwrap_err().to_string();
         assert!(error.ends_with("shots") && !error.contains("nor in"), "{error}");
     }
 }

@@ -52,7 +52,7 @@ choice! {
         Yard = "yard",
         /// A colonnade with a far door.
         Corridor = "corridor",
-        /// A floor and a wall of even neutral grey (0.18), and nothing else: for judging light.
+        /// A floor and a wall of even neutral gray (0.18), and nothing else: for judging light.
         Studio = "studio",
         /// The sky alone.
         Empty = "empty",

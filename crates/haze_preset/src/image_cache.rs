@@ -4,11 +4,12 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
 
-use super::image_source::ImageSource;
 use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use haze_core::error::{Error, FieldError};
+
+use super::image_source::ImageSource;
 
 /// Maximum memory of the images of a preset, bytes. An image counts for every field that names it, because renderers
 /// upload it for each.
@@ -108,7 +109,7 @@ mod tests {
         let path = folder.path().join(file);
         let layout = SpriteLayout::default();
         image::RgbaImage::new(1, 1).save(&path).unwrap();
-        let mut pictures = ImageCache::new(ImageSource::Folders(AssetFolders::at(folder.path())));
+        let mut pictures = ImageCache::new(ImageSource::Folders(AssetFolders::new(folder.path())));
         let ramp = pictures.ramp("motif", file).unwrap();
         let noise = pictures.noise("noise", file).unwrap();
         let sprite = pictures.sprite("sprite", file, layout).unwrap();

@@ -3,12 +3,15 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::asset_folders::AssetFolders;
 use haze_core::assets::image::{MAX_BYTES, read_file};
 use haze_core::error::Error;
 
-/// Source of the image files that a preset names: folders, or a host's own reader.
+use super::asset_folders::AssetFolders;
+
+/// Source of the image files that a preset names: none, folders, or a host's own reader.
 pub enum ImageSource<'a> {
+    /// No files: only built-in images are found.
+    BuiltIn,
     /// Folders, in which a file is searched for.
     Folders(AssetFolders),
     /// Reader of a host, for packed files, asset servers and web pages. It gets the name as the preset has it, and
@@ -17,12 +20,21 @@ pub enum ImageSource<'a> {
 }
 
 impl ImageSource<'_> {
+    /// One folder, usually that of the preset.
+    pub fn folder(path: &Path) -> Self {
+        Self::Folders(AssetFolders::new(path))
+    }
+
     /// Returns the path of a file, for messages, and its bytes.
     ///
     /// # Errors
-    /// [`Error::Image`] if no folder has the file, [`Error::Io`] if it cannot be read or has more than 64 MiB.
+    /// [`Error::Image`] if no folder has the file or there is none, [`Error::Io`] if it cannot be read or has more than 64 MiB.
     pub(super) fn read(&mut self, file: &Path) -> Result<(PathBuf, Vec<u8>), Error> {
         match self {
+            Self::BuiltIn => {
+                let reason = "no folder to search; expected the name of a built-in image".into();
+                Err(Error::Image { path: file.into(), reason })
+            }
             Self::Folders(folders) => {
                 let path = folders.find(file)?;
                 let bytes = read_file(&path)?;

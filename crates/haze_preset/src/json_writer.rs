@@ -3,12 +3,12 @@
 
 use std::collections::HashMap;
 
+use haze_core::frame::Light;
+use haze_core::settings::{FieldValue, PathStep, for_each_field};
 use serde::{Serialize, Serializer};
 
 use super::animation::Track;
 use super::preset_file::{Preset, PresetSystem};
-use haze_core::frame::Light;
-use haze_core::settings::{FieldValue, PathStep, for_each_field};
 
 /// Fields that are always written, because they say what the file is.
 const ALWAYS: &[&str] = &["version", "name", "kind"];
@@ -18,7 +18,7 @@ impl Preset {
     /// Fields at their defaults are left out, unless they are in `old`, the text to be replaced, or "".
     ///
     /// JSON has no infinity: the largest number replaces it.
-    pub fn to_text(&self, old: &str) -> String {
+    pub fn to_json(&self, old: &str) -> String {
         let old = serde_json::from_str(old).unwrap_or_default();
         let lists = (vec![Light::default()], vec![PresetSystem::default()]);
         let mut default_preset = Self { lights: lists.0, systems: lists.1, ..Self::default() };
@@ -122,13 +122,13 @@ mod tests {
     #[test]
     fn shipped_presets_are_formatted_as_they_are_written() {
         for shipped in builtin::PRESETS {
-            let (preset, text) = Preset::read(shipped.name).unwrap();
-            let written = preset.to_text(&text);
+            let (preset, text) = Preset::load_with_source(shipped.name).unwrap();
+            let written = preset.to_json(&text);
             for (at, (written, shipped_line)) in (1..).zip(written.lines().zip(text.lines())) {
                 assert_eq!(written, shipped_line, "{}:{at}", shipped.name);
             }
             assert_eq!(written, text);
-            assert_eq!(Preset::parse(Path::new("a.json"), &preset.to_text("")).unwrap(), preset);
+            assert_eq!(Preset::parse(Path::new("a.json"), &preset.to_json("")).unwrap(), preset);
         }
     }
 
@@ -155,11 +155,11 @@ mod tests {
                 }
                 at += 1;
             });
-            let text = preset.to_text("");
+            let text = preset.to_json("");
             let read: Preset = json::parse(Path::new("a.json"), &text).unwrap();
             assert_eq!(read, preset, "field {moved}");
             // Fields of the old text stay, even if they are at their default again.
-            let kept = default_preset.to_text(&text);
+            let kept = default_preset.to_json(&text);
             assert!(kept.lines().count() >= text.lines().count(), "field {moved}: {kept}");
             assert_eq!(Preset::parse(Path::new("a.json"), &kept).unwrap(), default_preset);
         }
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn infinity_is_written_as_the_largest_number() {
         let preset = Preset { lights: vec![Light { range: f32::INFINITY, ..Light::default() }], ..Preset::default() };
-        let read = Preset::parse(Path::new("a.json"), &preset.to_text("")).unwrap();
+        let read = Preset::parse(Path::new("a.json"), &preset.to_json("")).unwrap();
         assert_eq!(read.lights[0].range.to_bits(), f32::MAX.to_bits());
     }
 
@@ -180,7 +180,7 @@ mod tests {
             let number = f32::from_bits(bits);
             prop_assume!(number.is_finite());
             let preset = Preset { time: number, ..Preset::default() };
-            let read: Preset = json::parse(Path::new("a.json"), &preset.to_text("")).unwrap();
+            let read: Preset = json::parse(Path::new("a.json"), &preset.to_json("")).unwrap();
             prop_assert_eq!((read.time + 0.0).to_bits(), (number + 0.0).to_bits());
         }
     }

@@ -3,10 +3,10 @@
 use std::path::{Component, Path};
 
 use glam::Vec3;
+use haze_core::settings::{choice, settings};
 
 use super::animation::MAX_TIME;
 use super::sequence::Sequence;
-use haze_core::settings::{choice, settings};
 
 choice! {
     /// Axis of a file that points up.
@@ -21,7 +21,7 @@ choice! {
 
 choice! {
     /// Continuation after the last frame.
-    EndBehaviour {
+    EndBehavior {
         /// The last frame stays.
         #[default]
         Hold = "hold",
@@ -49,7 +49,7 @@ settings! {
         /// Time at which the first frame is shown. Higher: delays the smoke.
         start: f32 = 0.0, number(-MAX_TIME..=MAX_TIME, "s");
         /// Continuation after the last frame: hold it, or repeat.
-        after: EndBehaviour = EndBehaviour::Hold, choice;
+        after: EndBehavior = EndBehavior::Hold, choice;
         /// Radius of particles if the file has none. Higher: particles blur into each other. Lower: they show one by
         /// one.
         default_radius: f32 = 0.25, number(0.0..=1.0e3, "m");

@@ -3,15 +3,6 @@
 use std::io;
 use std::path::Path;
 
-use super::animation::{MAX_TIME, Track, validate_tracks};
-use super::asset_folders::AssetFolders;
-use super::camera::Camera;
-use super::environment::Environment;
-use super::image_cache::ImageCache;
-use super::image_source::ImageSource;
-use super::material_names::MaterialNames;
-use super::particle_source::ParticleFiles;
-use crate::builtin;
 use haze_core::assets::json;
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::emitter::{Emitter, MAX_PARTICLES};
@@ -20,6 +11,16 @@ use haze_core::frame::validate_input::validate_lights;
 use haze_core::frame::{EmitterSnapshot, Light, LightRole};
 use haze_core::settings::{FieldVisitor, Fields, Settings, validate};
 use haze_core::view_setup::AttachmentSet;
+
+use super::animation::{MAX_TIME, Track, validate_tracks};
+use super::asset_folders::AssetFolders;
+use super::camera::Camera;
+use super::environment::Environment;
+use super::image_cache::ImageCache;
+use super::image_source::ImageSource;
+use super::material_sources::MaterialSources;
+use super::particle_source::ParticleFiles;
+use crate::builtin;
 
 /// Version of the preset format that this code reads and writes.
 pub const PRESET_VERSION: u32 = 1;
@@ -74,7 +75,7 @@ pub struct PresetSystem {
     pub cache: ParticleFiles,
     /// Images of the system.
     #[serde(default)]
-    pub material: MaterialNames,
+    pub material: MaterialSources,
     /// Settings of the system: its rendering, fade and lighting.
     #[serde(default)]
     pub settings: Settings,
@@ -103,7 +104,7 @@ impl Default for PresetSystem {
             name: "smoke".into(),
             emitter: Emitter::default(),
             cache: ParticleFiles::default(),
-            material: MaterialNames::default(),
+            material: MaterialSources::default(),
             settings: Settings::default(),
         }
     }
@@ -142,14 +143,14 @@ impl Preset {
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] with line and column, or [`Error::JsonField`] with the field and its range.
     pub fn load(name_or_path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::read(name_or_path).map(|(preset, _)| preset)
+        Self::load_with_source(name_or_path).map(|(preset, _)| preset)
     }
 
     /// As [`Preset::load`], with the text that it was read from, to detect later changes of the file.
     ///
     /// # Errors
     /// As [`Preset::load`].
-    pub fn read(name_or_path: impl AsRef<Path>) -> Result<(Self, String), Error> {
+    pub fn load_with_source(name_or_path: impl AsRef<Path>) -> Result<(Self, String), Error> {
         let path = name_or_path.as_ref();
         if let Some(preset) = path.to_str().and_then(|name| builtin::find(builtin::PRESETS, name)) {
             let text = String::from_utf8_lossy(preset.bytes);
@@ -178,9 +179,9 @@ impl Preset {
     /// Loads the images of every system, each file once. They are searched for beside `path`, the preset's file.
     ///
     /// # Errors
-    /// As [`MaterialNames::load`], with the preset and the system.
+    /// As [`MaterialSources::load`], with the preset and the system.
     pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, Error> {
-        self.load_materials_from(path, &AssetFolders::beside(path))
+        self.load_materials_from(path, &AssetFolders::for_preset_file(path))
     }
 
     /// As [`Preset::load_materials`], from other folders. `path`, the preset's file, is only named in errors.
@@ -207,14 +208,14 @@ impl Preset {
     fn load_images(&self, path: &Path, source: ImageSource<'_>) -> Result<Vec<MaterialAssets>, Error> {
         let mut pictures = ImageCache::new(source);
         let load = |(index, system): (usize, &PresetSystem)| {
-            let loaded = system.material.load_from(&mut pictures);
+            let loaded = system.material.load_with_cache(&mut pictures);
             loaded.map_err(|mut errors| with_system_context(path, index, errors.swap_remove(0).1))
         };
         self.systems.iter().enumerate().map(load).collect()
     }
 
     /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once; also with the values of each keyframe at its
-    /// time. Between keyframes and with flicker, rules for several settings together may still be broken: `at(time)` can be
+    /// time. Between keyframes and with flicker, rules for several settings together may still be broken: `evaluate(time)` can be
     /// validated too.
     ///
     /// # Errors
@@ -300,7 +301,7 @@ mod tests {
             let loaded = Preset::load(preset.name).unwrap();
             assert!(!loaded.description.is_empty() && !loaded.systems.is_empty(), "{}", preset.name);
             for system in &loaded.systems {
-                system.material.load(Path::new("")).unwrap();
+                system.material.load(ImageSource::BuiltIn).unwrap();
             }
         }
     }

@@ -3,8 +3,9 @@
 use std::io::{Error as IoError, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use crate::directory;
 use haze_core::error::Error;
+
+use crate::directory;
 
 /// Maximum number of folder entries that are examined.
 const MAX_FOLDER_ENTRIES: usize = 100_000;

@@ -1,14 +1,14 @@
 //! Finished target of a system, read at full resolution. WGSL: `shaders/lib/accumulated.wgsl`.
 
 use glam::{IVec2, Vec2, Vec3, Vec4};
-
-use super::visible_system::VisibleSystem;
 use haze_core::assets::image::Image;
 use haze_core::formula::upsample::{
     GuidedFit, add_texel, bilinear_suffices, fitted_value, guided_weight, upsample_weights,
 };
 use haze_core::settings::Upsample;
 use haze_core::view_setup::AttachmentRole;
+
+use super::visible_system::VisibleSystem;
 
 /// Textures of the accumulation target, indexed by role; `None` for those that the system does not have.
 pub type AccumulatedTextures = [Option<Image<Vec4>>; AttachmentRole::ALL.len()];

@@ -1,13 +1,13 @@
 //! Computation of the volume of a frame's shadow.
 
 use glam::Vec3;
+use haze_core::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 use super::input::FrameInput;
 use super::optical_depths::OpticalDepths;
 use super::pass::shadow_march::{march_to_lights, march_to_sky};
 use super::pass::shadow_visibility::shadow_visibility;
 use super::visible_system::PlacedSystems;
-use haze_core::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 impl PlacedSystems<'_> {
     /// Computes all blocks of the volume.

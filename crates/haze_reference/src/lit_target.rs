@@ -1,12 +1,12 @@
 //! Lit target of a system, read at full resolution. WGSL: `shaders/lib/lit_target.wgsl`.
 
 use glam::{IVec2, Mat4, Vec2, Vec4};
-
-use super::accumulated::AccumulatedTarget;
 use haze_core::formula::upsample::{
     carried_value, four_texels_share, guided_weight, surface_weights, upsample_weights,
 };
 use haze_core::settings::Upsample;
+
+use super::accumulated::AccumulatedTarget;
 
 impl AccumulatedTarget<'_> {
     /// Samples the lit smoke at a pixel of the view.

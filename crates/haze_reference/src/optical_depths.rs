@@ -18,7 +18,7 @@ pub struct OpticalDepths {
 }
 
 impl OpticalDepths {
-    /// Optical depths towards a block of lights at a place, in cells, clamped to the centres of the outermost cells.
+    /// Optical depths towards a block of lights at a place, in cells, clamped to the centers of the outermost cells.
     pub fn sample(&self, block: usize, place: Vec3) -> Vec3 {
         self.blocks.get(block).map_or(Vec3::ZERO, |cells| self.sample_cells(cells, place))
     }
@@ -39,7 +39,7 @@ impl OpticalDepths {
     }
 }
 
-/// Value at a place, in cells, between the centres of eight cells, x first; 0 outside the grid. `sample_density()` in
+/// Value at a place, in cells, between the centers of eight cells, x first; 0 outside the grid. `sample_density()` in
 /// shadow_march.wgsl and shadow_march_slice.wgsl.
 pub fn trilinear<T>(size: UVec3, cells: &[T], place: Vec3) -> T
 where

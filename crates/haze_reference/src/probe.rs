@@ -3,12 +3,6 @@
 use std::sync::Arc;
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
-
-use super::accumulated::{AccumulatedTarget, AccumulatedTextures};
-use super::blend_unit::premultiplied_over;
-use super::input::FrameInput;
-use super::shade::Shade;
-use super::visible_system::{VisibleSystem, place_systems};
 use haze_core::assets::image::Image;
 use haze_core::error::FieldError;
 use haze_core::formula::fire::fire_from_moments;
@@ -17,6 +11,12 @@ use haze_core::formula::six_way::SixWay;
 use haze_core::formula::uniforms::LightUniform;
 use haze_core::settings::{DebugView, SoftScatterMode};
 use haze_core::view_setup::{ViewGeometry, light_uniforms};
+
+use super::accumulated::{AccumulatedTarget, AccumulatedTextures};
+use super::blend_unit::premultiplied_over;
+use super::input::FrameInput;
+use super::shade::Shade;
+use super::visible_system::{VisibleSystem, place_systems};
 
 /// Textures that a system was accumulated into, as read back from `TargetViews`, cropped to the
 /// part in use.

@@ -3,9 +3,6 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-
-use super::input::FrameInput;
-use super::optical_depths::OpticalDepths;
 use haze_core::assets::ramp::Ramp;
 use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::formula::saturate;
@@ -14,6 +11,9 @@ use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
 use haze_core::formula::uniforms::SceneShadowUniform;
 use haze_core::settings::RampFilter;
 use haze_core::view_setup::SmokeShadow;
+
+use super::input::FrameInput;
+use super::optical_depths::OpticalDepths;
 
 /// Shadow of a frame's smoke on the scene.
 pub struct SceneShadow {

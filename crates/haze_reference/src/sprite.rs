@@ -1,8 +1,6 @@
 //! Sprites, fragment by fragment. WGSL: `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
 
 use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
-
-use super::visible_system::VisibleSystem;
 use haze_core::formula::depth_moments::depth_moments;
 use haze_core::formula::fire::heat_at;
 use haze_core::formula::grain::{eroded, sample_grain, tilted_normal};
@@ -28,11 +26,13 @@ use haze_core::view_setup::{
     ProjectedSprite, SpriteProjector, TexelGrid, density_radius, erosion_of, sprite_optical_depth,
 };
 
+use super::visible_system::VisibleSystem;
+
 /// Sprite in view space.
 pub struct SpriteSetup {
-    /// Centre, metres.
-    pub centre: Vec3,
-    /// View depth of the centre, metres.
+    /// Center, metres.
+    pub center: Vec3,
+    /// View depth of the center, metres.
     pub view_depth: f32,
     /// Half the side of a square, or the radius of a sphere, metres.
     pub radius: f32,
@@ -46,7 +46,7 @@ pub struct SpriteSetup {
     pub lod: f32,
     /// Frames shown.
     pub frames: FlipbookFrames,
-    /// Squares only: extent from the centre to the left, bottom, right and top, as shares of half a side.
+    /// Squares only: extent from the center to the left, bottom, right and top, as shares of half a side.
     pub reach: Vec4,
     /// Share of the particle's life that has passed.
     pub age: f32,
@@ -117,15 +117,15 @@ impl VisibleSystem<'_> {
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
         let (technique, projector) = (self.settings.technique, self.projector());
         let sprite = projector.project(particle, texels_per_pixel)?;
-        let ProjectedSprite { centre, radius, amount, frames, lod, stretch, .. } = sprite;
-        let view_depth = -centre.z;
+        let ProjectedSprite { center, radius, amount, frames, lod, stretch, .. } = sprite;
+        let view_depth = -center.z;
         let (min, max) = if technique.is_sphere() {
             projector.sphere_rectangle(&sprite, texels_per_pixel)
         } else {
-            self.square_rectangle(projector.clamped_to_near_plane(centre), radius, stretch)
+            self.square_rectangle(projector.clamped_to_near_plane(center), radius, stretch)
         };
         Some(SpriteSetup {
-            centre,
+            center,
             view_depth,
             radius,
             rotation: Vec2::new(particle.rotation.cos(), particle.rotation.sin()),
@@ -137,7 +137,7 @@ impl VisibleSystem<'_> {
             age: particle.age,
             erosion: erosion_of(&self.system, particle),
             fineness: self.fineness_of(radius, view_depth, texels_per_pixel),
-            optical_depths: self.optical_depths_of(particle, centre),
+            optical_depths: self.optical_depths_of(particle, center),
             heat: self.heat_of(particle),
             tint: self.tint_of(particle),
             weight: self.order_weight(view_depth),
@@ -146,14 +146,14 @@ impl VisibleSystem<'_> {
         })
     }
 
-    /// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `centre`: view space.
-    fn optical_depths_of(&self, particle: &Particle, centre: Vec3) -> Vec3 {
+    /// Optical depths of the smoke before a particle's sprite, towards the lights with shadow. `center`: view space.
+    fn optical_depths_of(&self, particle: &Particle, center: Vec3) -> Vec3 {
         let system = &self.system;
         let Some(depths) = self.optical_depths.as_ref().filter(|_| system.shadow_strength > 0.0) else {
             return Vec3::ZERO;
         };
         let own = own_optical_depth(density_radius(system, particle), sprite_optical_depth(system, particle));
-        foreign_optical_depths(depths.sample(0, system.grid_from_view.transform_point3(centre)), own)
+        foreign_optical_depths(depths.sample(0, system.grid_from_view.transform_point3(center)), own)
     }
 
     /// Texels of the grain's first octave per texel of the target, on a sprite of this radius.
@@ -199,7 +199,7 @@ impl VisibleSystem<'_> {
             BlendOrder::Sorted => 1.0,
             BlendOrder::Weighted => {
                 let (near, far) = (system.smoke_near, system.smoke_far);
-                let in_front = optical_depth_in_front(&system.front_knots, view_depth, near, far);
+                let in_front = optical_depth_in_front(&system.optical_depth_knots, view_depth, near, far);
                 order_weight(system.depth_weight, in_front)
             }
         }
@@ -210,11 +210,11 @@ impl VisibleSystem<'_> {
         SpriteProjector { view: &self.view, system: &self.system, technique: self.settings.technique, trim: &self.trim }
     }
 
-    fn square_rectangle(&self, centre: Vec3, radius: f32, stretch: Vec2) -> (Vec2, Vec2) {
+    fn square_rectangle(&self, center: Vec3, radius: f32, stretch: Vec2) -> (Vec2, Vec2) {
         // Half the diagonal contains the sprite at every rotation.
         let ratio = 1.0 / (1.0 - stretch.length_squared()).max(1.0e-4);
         let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2 * ratio);
-        let (a, b) = (self.pixel_from_view(centre - reach), self.pixel_from_view(centre + reach));
+        let (a, b) = (self.pixel_from_view(center - reach), self.pixel_from_view(center + reach));
         (a.min(b), a.max(b))
     }
 
@@ -224,7 +224,7 @@ impl VisibleSystem<'_> {
         if technique.is_sphere() {
             return self.sphere_fragment(sprite, pixel, scene);
         }
-        let drawn = self.projector().clamped_to_near_plane(sprite.centre);
+        let drawn = self.projector().clamped_to_near_plane(sprite.center);
         let offset = self.view_position(pixel, -drawn.z) - drawn;
         let local = unrotate(unstretched(offset.xy(), sprite.stretch), sprite.rotation) / sprite.radius;
         let (low, high) = (trimmed_corner(Vec2::NEG_ONE, sprite.reach), trimmed_corner(Vec2::ONE, sprite.reach));
@@ -333,7 +333,7 @@ impl VisibleSystem<'_> {
             if self.view.orthographic > 0.5 { (ray.with_z(0.0), Vec3::NEG_Z) } else { (Vec3::ZERO, ray.normalize()) };
         let per_depth = -1.0 / along.z;
         let end = (scene + system.show_through_distance) * per_depth;
-        let interval = ray_sphere(origin, along, sprite.centre, sprite.radius, self.view.near * per_depth, end);
+        let interval = ray_sphere(origin, along, sprite.center, sprite.radius, self.view.near * per_depth, end);
         let stretch = interval.leave - interval.enter;
         if stretch <= 0.0 || interval.axis.length_squared() >= sprite.radius * sprite.radius {
             return None;
@@ -366,7 +366,7 @@ impl VisibleSystem<'_> {
         for i in 0..march_steps {
             let [begin, end] = [i, i + 1].map(|step| march_boundary(step as f32 / march_steps as f32));
             let position = origin + along * (interval.enter + 0.5 * (begin + end) * span);
-            let place = (position - sprite.centre) / sprite.radius;
+            let place = (position - sprite.center) / sprite.radius;
             let from_eye = rotation.transpose() * position;
             let coordinate = noise_coordinate(from_eye, system.noise_size, system.noise_offset);
             let texel = sample_noise_octaves(&self.material.noise, coordinate, noise_octaves);

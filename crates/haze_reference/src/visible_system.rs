@@ -3,9 +3,6 @@
 use std::sync::Arc;
 
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
-
-use super::input::{FrameInput, ParticleSystem};
-use super::optical_depths::OpticalDepths;
 use haze_core::assets::image::Image;
 use haze_core::assets::material_assets::{MaterialAssets, MaterialInfo};
 use haze_core::error::FieldError;
@@ -22,6 +19,9 @@ use haze_core::view_setup::{
     ParticleMeasures, ParticleSpace, ResolvedSettings, ScaleChoice, SmokeShadow, SpriteTrim, Support, SystemBoxes,
     SystemInput, SystemSetup, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
+
+use super::input::{FrameInput, ParticleSystem};
+use super::optical_depths::OpticalDepths;
 
 /// Visible system, with the input of its passes.
 pub struct VisibleSystem<'a> {

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use haze_core::settings::RenderPath;
+
 use super::path_model::{PathModel, PathModelSource};
 use super::workload::PathWorkload;
-use haze_core::settings::RenderPath;
 
 /// Frames for which the other path must look better before a switch: 0.5 s at 60 frames per second.
 const SWITCH_DELAY_FRAMES: u32 = 30;
@@ -144,7 +145,7 @@ mod tests {
 
     #[test]
     fn first_choice_is_immediate_and_a_switch_is_delayed() {
-        let model = PathModel::of_class(wgpu::DeviceType::Cpu);
+        let model = PathModel::for_device_type(wgpu::DeviceType::Cpu);
         let [few, many] = [workload(2.0), workload(2000.0)];
         let mut chooser = PathChooser::default();
         assert_eq!(chooser.choose(&model, &few).path, RenderPath::Raster);
@@ -160,7 +161,7 @@ mod tests {
 
     #[test]
     fn small_gain_does_not_cause_a_switch() {
-        let mut model = PathModel::of_class(wgpu::DeviceType::Cpu);
+        let mut model = PathModel::for_device_type(wgpu::DeviceType::Cpu);
         let mut chooser = PathChooser::default();
         model.tiled = model.raster.scaled(2.0);
         let workload = PathWorkload { optical_depth: 0.0, ..workload(10.0) };

@@ -1,10 +1,10 @@
 //! Cost model of both accumulation paths.
 
 use glam::UVec2;
-
-use super::workload::PathWorkload;
 use haze_core::error::FieldError;
 use haze_core::settings::Technique;
+
+use super::workload::PathWorkload;
 
 /// Side of the squares that [`PathCosts::entry`] counts, texels.
 const BIN: f64 = 32.0;
@@ -194,7 +194,7 @@ impl PathModel {
     }
 
     /// Returns the default model of a device type.
-    pub fn of_class(device_type: wgpu::DeviceType) -> Self {
+    pub fn for_device_type(device_type: wgpu::DeviceType) -> Self {
         if device_type != wgpu::DeviceType::Cpu {
             return Self::GPU;
         }

@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use haze_core::frame::Particle;
-use haze_core::settings::{BlendOrder, Layers, Settings, Technique};
+use haze_core::settings::{BlendOrder, Settings, Technique, Traversal};
 use haze_core::view_setup::{AttachmentSet, SpriteProjector, TexelGrid, optical_depth};
 
 /// Maximum number of sprites sampled; the estimate takes about ten microseconds.
@@ -61,7 +61,7 @@ pub(crate) fn estimate_workload(
             (areas * step as f64 * f64::from(each), depths / f64::max(areas, 1.0e-9))
         }
     };
-    let stops = settings.accumulate.layers == Layers::Visible && settings.order() == BlendOrder::Sorted;
+    let stops = settings.accumulate.layers == Traversal::UntilOpaque && settings.order() == BlendOrder::Sorted;
     PathWorkload {
         technique: settings.technique,
         sprites: f64::from(sprites) * loops,

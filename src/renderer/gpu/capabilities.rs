@@ -1,7 +1,7 @@
 //! Capabilities in which devices and backends differ.
 
 /// Returns true if a pass of this device can test and sample the same depth buffer. OpenGL and WebGL2 cannot: there,
-/// supply a linear target to sample, or set [`Descriptor::depth_format`](crate::Descriptor::depth_format) to `None`, so
+/// supply a linear target to sample, or set [`RendererDescriptor::depth_format`](crate::RendererDescriptor::depth_format) to `None`, so
 /// that only the shaders hide smoke behind the scene.
 pub fn read_only_depth_is_supported(device: &wgpu::Device) -> bool {
     device.adapter_info().backend != wgpu::Backend::Gl

@@ -1,8 +1,9 @@
 //! Formats of the host's render pass, which pipelines that draw into it must match.
 
+use haze_core::error::FieldError;
+
 use super::error_scopes::with_error_scopes;
 use super::pipeline::read_only_depth;
-use haze_core::error::FieldError;
 
 /// Maximum number of color attachments of a pass.
 pub(crate) const MAX_ATTACHMENTS: usize = 8;
@@ -73,7 +74,7 @@ impl HostPass {
         for (index, &format) in self.further[..self.further_count].iter().enumerate() {
             let one = color_only.with_further(&[format]).map_or(Ok(()), |pass| pass.probe(device));
             if let (Some(format), Err(reason)) = (format, one) {
-                let field = format!("further_color_formats[{index}]");
+                let field = format!("other_color_formats[{index}]");
                 let expected = "a format that this device can render to as a further attachment";
                 return refuse(field, format!("{format:?}"), &reason, expected);
             }

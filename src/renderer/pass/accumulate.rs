@@ -8,6 +8,8 @@
 use std::sync::Arc;
 
 use glam::UVec2;
+use haze_core::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
+use haze_core::view_setup::AttachmentSet;
 
 use super::depth_downsample::{DEPTH_COPY, REDUCED_DEPTH};
 use super::groups::Groups;
@@ -23,8 +25,6 @@ use crate::renderer::gpu::record::{color_attachment, set_viewport_and_scissor, t
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::{attachment_constants, attachments};
-use haze_core::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
-use haze_core::view_setup::AttachmentSet;
 
 /// Key of an accumulation pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

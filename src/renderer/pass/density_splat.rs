@@ -4,6 +4,7 @@
 //! Writes: optical depths across the cells, in fixed-point steps.
 
 use glam::UVec2;
+use haze_core::formula::uniforms::SplatUniform;
 
 use super::groups::Groups;
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
@@ -11,7 +12,6 @@ use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::SplatUniform;
 
 /// Key of the only pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

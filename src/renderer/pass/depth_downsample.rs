@@ -6,10 +6,11 @@
 //! Blend: none.
 //! Source: OTEE "Transfer & lighting", option 1.
 
+use haze_core::settings::DepthDownsample;
+
 use super::texel_pass::TexelKey;
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use crate::renderer::targets::{Extent, SystemTextures, Target};
-use haze_core::settings::DepthDownsample;
 
 /// A depth format if it is drawn, so that it can be attached and the hardware rejects hidden sprites. Every backend can
 /// render to it, which does not hold for `R32Float`. No device can write it by compute shaders.

@@ -3,13 +3,14 @@
 //! Reads: particles; after the sort, the sorted particle indices.
 //! Writes: keys and particle indices; after the sort, sorted particles.
 
+use haze_core::formula::uniforms::TilesUniform;
+
 use super::groups::Groups;
 use super::sort::Sort;
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::TilesUniform;
 
 /// Key of a pipeline: the step before the sort, and the step after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -7,6 +7,9 @@
 
 use std::sync::Arc;
 
+use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::settings::{Backlight, DiffuseMode, RampFilter};
+
 use super::groups::Groups;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, color_target, enum_constant};
@@ -14,8 +17,6 @@ use crate::renderer::gpu::record::color_attachment;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
-use haze_core::formula::diffuse_bake::baked_size_and_layers;
-use haze_core::settings::{Backlight, DiffuseMode, RampFilter};
 
 /// Key of a baking pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

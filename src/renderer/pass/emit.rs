@@ -3,11 +3,12 @@
 //! Reads: the emitter at a time.
 //! Writes: particles.
 
+use haze_core::formula::uniforms::EmitterUniform;
+
 use crate::renderer::gpu::binding::{WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::EmitterUniform;
 
 /// Key of the only pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -5,6 +5,8 @@
 //! Blend: alpha, additive or multiply.
 //! Source: OTEE "Typical game particles so far".
 
+use haze_core::settings::{Backlight, BlendMode, SoftScatterMode};
+
 use super::groups::Groups;
 use super::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::HostPass;
@@ -14,7 +16,6 @@ use crate::renderer::gpu::pipeline::{
 };
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::settings::{Backlight, BlendMode, SoftScatterMode};
 
 /// Key of a forward pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

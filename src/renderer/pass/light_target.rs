@@ -6,13 +6,14 @@
 //! Blend: none.
 //! Source: OTEE "Transfer & lighting", at the target's resolution.
 
+use haze_core::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
+use haze_core::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
+
 use super::depth_downsample::REDUCED_DEPTH;
 use super::texel_pass::TexelKey;
 use crate::renderer::gpu::binding::{LOADED, texture};
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use crate::renderer::targets::{Extent, SystemTextures, Target, attachment_constants};
-use haze_core::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
-use haze_core::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 /// Light times amount in rgb, amount in a. Light is HDR, whatever the format of the normals.
 pub(crate) const LIT: Target = Target {

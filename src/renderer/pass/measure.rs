@@ -5,25 +5,26 @@
 
 use std::mem::offset_of;
 
+use haze_core::formula::uniforms::{MeasureUniform, SystemUniform};
+
 use super::groups::Groups;
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::{MeasureUniform, SystemUniform};
 
 /// Invocations of a workgroup, and the largest number of workgroups: WORKGROUP in `shaders/measure.wgsl`.
 pub(crate) const WORKGROUP: u32 = 256;
 
-/// Bytes of the extent that are copied: `centre`, `smoke_near`, `smoke_far` and `smoke_depth_limit` of the uniforms, in
+/// Bytes of the extent that are copied: `center`, `smoke_near`, `smoke_far` and `smoke_depth_limit` of the uniforms, in
 /// this order.
 const EXTENT_BYTES: u64 = 24;
 
 const _: () = assert!(
-    offset_of!(SystemUniform, smoke_near) == offset_of!(SystemUniform, centre) + 12
-        && offset_of!(SystemUniform, smoke_far) == offset_of!(SystemUniform, centre) + 16
-        && offset_of!(SystemUniform, smoke_depth_limit) == offset_of!(SystemUniform, centre) + 20
+    offset_of!(SystemUniform, smoke_near) == offset_of!(SystemUniform, center) + 12
+        && offset_of!(SystemUniform, smoke_far) == offset_of!(SystemUniform, center) + 16
+        && offset_of!(SystemUniform, smoke_depth_limit) == offset_of!(SystemUniform, center) + 20
 );
 
 /// Key of a pipeline: the step.
@@ -82,7 +83,7 @@ impl Measure {
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(workgroups, 1, 1);
         }
-        let place = offset_of!(SystemUniform, centre) as u64;
+        let place = offset_of!(SystemUniform, center) as u64;
         encoder.commands().copy_buffer_to_buffer(&self.measured, 0, &self.system, place, EXTENT_BYTES);
     }
 }

@@ -33,12 +33,13 @@ pub(crate) mod transfer_lit;
 pub(crate) mod upsample_lit;
 pub(crate) mod volume_slices;
 
+use haze_core::error::Error;
+
 use super::gpu::pipeline::{PipelineStore, Shader};
 use super::layouts::Layouts;
 use super::targets::{PlannedTargets, planned_targets};
 use depth_downsample::{DepthCopyKey, DepthDownsampleKey};
 use depth_slopes::DepthSlopesKey;
-use haze_core::error::Error;
 use light_target::LightingKey;
 use mark_cells::MarkCellsKey;
 use texel_pass::{Planned, TexelInputs, TexelPass, TexelPipelines};

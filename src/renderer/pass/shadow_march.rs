@@ -5,6 +5,7 @@
 //! Writes: texture of the density; optical depths towards the lights; openness to sky and ground.
 
 use glam::UVec3;
+use haze_core::formula::uniforms::ShadowMarchUniform;
 
 use crate::renderer::gpu::binding::{READ_BUFFER, SAMPLER, texture, uniform, written_texture};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
@@ -12,7 +13,6 @@ use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::layouts::SHADOW_FORMAT;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::ShadowMarchUniform;
 
 /// Cells of a workgroup along each axis: SIDE in `shaders/shadow_march.wgsl`.
 const SIDE: u32 = 4;

@@ -4,12 +4,13 @@
 //! Writes: optical depths towards the lights; openness to sky and ground.
 //! Blend: none.
 
+use haze_core::formula::uniforms::ShadowMarchUniform;
+
 use super::volume_slices::volume_slice;
 use crate::renderer::gpu::binding::{texture, uniform};
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant};
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::ShadowMarchUniform;
 
 /// Ends of the marches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

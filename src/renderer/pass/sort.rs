@@ -5,11 +5,12 @@
 //! Source: Merrill and Grimshaw, "High performance and scalable radix sorting", 2011; rank sort: Knuth, "The art of
 //! computer programming" 3, 5.2 (comparison counting).
 
+use haze_core::formula::uniforms::TilesUniform;
+
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::TilesUniform;
 
 /// Keys per workgroup: `ROUNDS` in `shaders/sort.wgsl` times its invocations.
 pub(crate) const BLOCK: u32 = 1024;

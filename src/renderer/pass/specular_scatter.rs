@@ -5,6 +5,8 @@
 //! Blend: ONE, ONE.
 //! Source: OTEE "Specular scattering".
 
+use haze_core::settings::{DebugView, RampFilter, Upsample};
+
 use super::depth_slopes::DEPTH_SLOPES;
 use super::groups::Groups;
 use super::light_target::LIT;
@@ -16,7 +18,6 @@ use crate::renderer::gpu::pipeline::{
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{InputGroups, SystemTextures};
-use haze_core::settings::{DebugView, RampFilter, Upsample};
 
 /// Key of a specular scatter pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

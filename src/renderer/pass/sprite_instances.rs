@@ -1,10 +1,11 @@
 //! Sprites, shared by accumulate and forward, and the variants of `shaders/lib/sprite_vertex.wgsl` and
 //! `sprite_fragment.wgsl`.
 
-use crate::frame::ParticleBuffer;
-use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use haze_core::frame::Particle;
 use haze_core::settings::{FadeCurve, RampFilter, Settings, SpriteAnimation, Technique, Volumetric};
+
+use crate::frame::ParticleBuffer;
+use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 
 /// Layout of the instance buffer: one [`Particle`] per sprite.
 pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {

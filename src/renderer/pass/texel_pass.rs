@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::hash::Hash;
 
 use glam::UVec2;
+use haze_core::error::Error;
 
 use super::groups::Groups;
 use crate::renderer::gpu::binding::written_texture;
@@ -16,7 +17,6 @@ use crate::renderer::gpu::record::{color_attachment, set_viewport_and_scissor, w
 use crate::renderer::layouts::{GroupSet, Layouts};
 use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{InputGroups, PlannedTarget, SystemTextures, Target};
-use haze_core::error::Error;
 
 /// Declaration of a texel pass, in its file: the key of its pipelines implements it.
 pub(crate) trait TexelKey: Copy + Debug + Eq + Hash {

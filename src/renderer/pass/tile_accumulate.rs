@@ -5,6 +5,9 @@
 //! Source: OTEE "Accumulating the particles"; Porter and Duff, "Compositing digital images", 1984.
 
 use glam::UVec2;
+use haze_core::formula::uniforms::TilesUniform;
+use haze_core::settings::{AccumulationFormat, NormalEncoding};
+use haze_core::view_setup::{AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 use super::groups::Groups;
 use super::sprite_instances::SpriteKey;
@@ -14,9 +17,6 @@ use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant, 
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, attachment_constants, tiled_formats};
-use haze_core::formula::uniforms::TilesUniform;
-use haze_core::settings::{AccumulationFormat, NormalEncoding};
-use haze_core::view_setup::{AttachmentSet, MAX_TARGET_ATTACHMENTS};
 
 /// Texels per workgroup of the entry points `cooperative` and `split`, of `split_finely`, and of `per_invocation`, in
 /// `shaders/tile_accumulate.wgsl`.
@@ -27,7 +27,7 @@ const PER_INVOCATION_TILE: UVec2 =
 
 /// Division of the work on a texel among invocations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Traversal {
+pub(crate) enum TraversalMode {
     /// On CPUs: each traverses the list for texels of its own.
     PerInvocation,
     /// On GPUs: a workgroup reads the list together.
@@ -38,7 +38,7 @@ pub(crate) enum Traversal {
     SplitFinely,
 }
 
-impl Traversal {
+impl TraversalMode {
     /// The traversals of GPUs.
     pub const COOPERATIVE: [Self; 3] = [Self::Cooperative, Self::Split, Self::SplitFinely];
 
@@ -64,7 +64,7 @@ pub(crate) struct TileAccumulateKey {
     pub host_depth: bool,
     /// True if the traversal stops where a texel is opaque.
     pub stops: bool,
-    pub traversal: Traversal,
+    pub traversal: TraversalMode,
 }
 
 impl TileAccumulateKey {
@@ -75,7 +75,7 @@ impl TileAccumulateKey {
 
     /// True for a traversal of GPUs.
     pub fn is_cooperative(&self) -> bool {
-        self.traversal != Traversal::PerInvocation
+        self.traversal != TraversalMode::PerInvocation
     }
 }
 
@@ -91,10 +91,10 @@ impl PipelineKey for TileAccumulateKey {
     fn describe(self) -> ComputePipelineDescription {
         ComputePipelineDescription {
             entry_point: match self.traversal {
-                Traversal::PerInvocation => "per_invocation",
-                Traversal::Cooperative => "cooperative",
-                Traversal::Split => "split",
-                Traversal::SplitFinely => "split_finely",
+                TraversalMode::PerInvocation => "per_invocation",
+                TraversalMode::Cooperative => "cooperative",
+                TraversalMode::Split => "split",
+                TraversalMode::SplitFinely => "split_finely",
             },
             constants: self.sprite.constants(attachment_constants(self.attachments).chain([
                 enum_constant!("NORMAL_ENCODING", self.encoding),
@@ -125,7 +125,7 @@ pub(crate) struct TileAccumulate {
     pub inputs: wgpu::BindGroup,
     /// Size of the part in use, texels.
     pub size: UVec2,
-    pub traversal: Traversal,
+    pub traversal: TraversalMode,
 }
 
 impl TileAccumulate {

@@ -3,11 +3,12 @@
 //! Reads: sorted sprite indices and rectangles.
 //! Writes: sprite lists, and the start of each.
 
+use haze_core::formula::uniforms::TilesUniform;
+
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::TilesUniform;
 
 /// Up to this many sprites, one dispatch makes all lists: the number of bits of `touching` in `shaders/tile_bin.wgsl`.
 pub(crate) const MAX_SPRITES_SINGLE_DISPATCH: u32 = 1 << 15;

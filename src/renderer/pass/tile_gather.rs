@@ -3,11 +3,12 @@
 //! Reads: sorted keys and sprite indices, rectangles.
 //! Writes: sorted rectangles, the count, and the indirect dispatch size for it.
 
+use haze_core::formula::uniforms::TilesUniform;
+
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::TilesUniform;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

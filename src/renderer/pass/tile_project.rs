@@ -3,13 +3,14 @@
 //! Reads: particles.
 //! Writes: sprites, their rectangles, and the keys and indices to sort.
 
+use haze_core::formula::uniforms::TilesUniform;
+
 use super::groups::Groups;
 use super::sprite_instances::SpriteKey;
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::TilesUniform;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,6 +4,7 @@
 //! Writes: one bit per sprite and tile.
 
 use glam::UVec2;
+use haze_core::formula::uniforms::TilesUniform;
 
 use super::groups::Groups;
 use super::sprite_instances::SpriteKey;
@@ -11,7 +12,6 @@ use crate::renderer::gpu::binding::{LOADED, READ_BUFFER, WRITTEN_BUFFER, uniform
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, bool_constant};
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
-use haze_core::formula::uniforms::TilesUniform;
 
 /// Texels of a tile: `PER_INVOCATION_TILE` in `shaders/lib/tiles.wgsl`.
 pub(crate) const PER_INVOCATION_TILE: UVec2 = UVec2::new(8, 4);

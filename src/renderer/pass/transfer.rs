@@ -5,6 +5,8 @@
 //! Blend: ONE, ONE_MINUS_SRC_ALPHA.
 //! Source: OTEE "Transfer & lighting".
 
+use haze_core::settings::{CoverageMode, DebugView, Upsample};
+
 use super::groups::Groups;
 use super::light_target::{self, LightingKey, accumulated};
 use crate::renderer::gpu::host_pass::HostPass;
@@ -15,7 +17,6 @@ use crate::renderer::gpu::pipeline::{
 use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{InputGroups, SystemTextures};
-use haze_core::settings::{CoverageMode, DebugView, Upsample};
 
 /// Vertices of the box: twelve triangles.
 const BOX_VERTICES: u32 = 36;

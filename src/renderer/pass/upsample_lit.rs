@@ -6,6 +6,8 @@
 //! Blend: none.
 //! Source: OTEE "Transfer & lighting".
 
+use haze_core::settings::{CoverageMode, RampFilter, Upsample};
+
 use super::depth_downsample::REDUCED_DEPTH;
 use super::depth_slopes::{DEPTH_SLOPES, SLOPE_CELLS};
 use super::light_target::{GLOWS, LIT, SMOKE_CELLS};
@@ -13,7 +15,6 @@ use super::texel_pass::TexelKey;
 use crate::renderer::gpu::binding::{FILTERED, LOADED};
 use crate::renderer::gpu::pipeline::{Constant, bool_constant, enum_constant};
 use crate::renderer::targets::{AccumulationTarget, Extent, SystemTextures, Target};
-use haze_core::settings::{CoverageMode, RampFilter, Upsample};
 
 /// Lit smoke at full resolution.
 pub(crate) const PIXELS: Target = Target { label: "haze lit pixels", extent: Extent::Pixels, ..LIT };

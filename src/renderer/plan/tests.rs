@@ -1,8 +1,9 @@
 //! Tests of planning.
 
+use haze_core::settings::{DiffuseMode, FadeCurve, RenderPath};
+
 use super::*;
 use crate::renderer::pass::upsample_lit::PIXELS;
-use haze_core::settings::{DiffuseMode, FadeCurve, RenderPath};
 use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
 
 fn inputs() -> PipelineInputs<'static> {
@@ -12,7 +13,7 @@ fn inputs() -> PipelineInputs<'static> {
         read_only_depth: true,
         tiles: Some(true),
         computes_pixels: false,
-        scene_depth: SceneDepthKind::Both(Depth24Plus),
+        scene_depth: SceneDepthKind::BufferAndLinear(Depth24Plus),
         reversed: false,
         mirrored: false,
         debug_views: &[DebugView::Final],
@@ -33,7 +34,9 @@ fn deferred<'a>(inputs: &PipelineInputs<'a>, settings: &Settings) -> DeferredPla
 #[test]
 fn planned_depth_reads_and_tests_match_the_table_in_the_docs() {
     let table = include_str!("../../../docs/depth.md");
-    let rows = table.lines().filter(|line| ["| Buffer ", "| Linear ", "| Both "].iter().any(|k| line.starts_with(k)));
+    let rows = table
+        .lines()
+        .filter(|line| ["| Buffer ", "| Linear ", "| BufferAndLinear "].iter().any(|k| line.starts_with(k)));
     let mut seen = 0;
     for row in rows {
         let cells: Vec<_> = row.trim_matches('|').split('|').map(str::trim).collect();
@@ -42,7 +45,7 @@ fn planned_depth_reads_and_tests_match_the_table_in_the_docs() {
             scene_depth: match depth {
                 "Buffer" => SceneDepthKind::Buffer(Depth24Plus),
                 "Linear" => SceneDepthKind::Linear,
-                _ => SceneDepthKind::Both(Depth24Plus),
+                _ => SceneDepthKind::BufferAndLinear(Depth24Plus),
             },
             read_only_depth: backend != "OpenGL",
             ..inputs()

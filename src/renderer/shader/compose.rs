@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::sources::{File, IMPORT_COLUMN, Sources, import, is_inside};
 use haze_core::error::{Error, one_line};
+
+use super::sources::{File, IMPORT_COLUMN, Sources, import, is_inside};
 
 /// A shader text without imports.
 #[derive(Debug, Default)]

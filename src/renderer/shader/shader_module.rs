@@ -2,12 +2,13 @@
 
 use std::convert::Infallible;
 
+use haze_core::error::Error;
+
 use super::naga_messages::{marked_location, to_wgsl_terms};
 use super::nesting::check_nesting;
 use super::sources::Sources;
 use crate::renderer::gpu::error_scopes::{poll_once, with_error_scopes};
 use crate::renderer::gpu::pipeline::{Shader, create_module};
-use haze_core::error::Error;
 
 /// Creates the embedded shader of a pass.
 pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Result<Shader, Infallible> {

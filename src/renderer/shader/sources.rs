@@ -5,10 +5,11 @@ use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use super::embedded::SOURCES;
-use super::naga_messages::find_unclosed_bracket;
 use haze_core::assets::bounded_read;
 use haze_core::error::{Error, builtin_path, one_line};
+
+use super::embedded::SOURCES;
+use super::naga_messages::find_unclosed_bracket;
 
 /// Maximum size of a file, bytes. The longest of haze's own has about 10,000.
 const MAX_BYTES: u64 = 1 << 20;

@@ -2,8 +2,9 @@
 
 use std::mem::offset_of;
 
-use crate::frame::{AliveCount, ParticleBuffer, Particles};
 use haze_core::formula::uniforms::SystemUniform;
+
+use crate::frame::{AliveCount, ParticleBuffer, Particles};
 
 /// Copy of one number from a host's buffer.
 #[derive(Debug)]

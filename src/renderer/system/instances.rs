@@ -1,12 +1,13 @@
 //! Instance buffer of a system whose particles are in CPU memory.
 
+use haze_core::frame::Particle;
+use haze_core::settings::{BlendOrder, Settings};
+use haze_core::view_setup::{DrawingOrder, ParticleSpace};
+
 use crate::frame::Particles;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::pass::sprite_instances::Sprites;
-use haze_core::frame::Particle;
-use haze_core::settings::{BlendOrder, Settings};
-use haze_core::view_setup::{DrawingOrder, ParticleSpace};
 
 /// Processor that sorts particles. If the CPU also draws (software adapters), sorting on the CPU directly is faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

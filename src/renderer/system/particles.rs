@@ -1,5 +1,9 @@
 //! Particles of one system: measured on the CPU, uploaded, evaluated or sorted.
 
+use haze_core::frame::{Particle, SpriteExtent};
+use haze_core::settings::{BlendOrder, RenderPath, Settings};
+use haze_core::view_setup::{ParticleMeasures, ParticleSpace, SystemBoxes, ViewGeometry};
+
 use super::instances::{Instances, ParticleUse, SortedBy};
 use super::passes::ParticlePass;
 use crate::frame::{ParticleSystem, Particles};
@@ -13,9 +17,6 @@ use crate::renderer::pass::measure::Measure;
 use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::support::{exceeds_tiled_limits, is_readable_by_compute};
 use crate::renderer::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
-use haze_core::frame::{Particle, SpriteExtent};
-use haze_core::settings::{BlendOrder, RenderPath, Settings};
-use haze_core::view_setup::{ParticleMeasures, ParticleSpace, SystemBoxes, ViewGeometry};
 
 /// Number of particles from which the GPU sorts for a path that draws: the CPU needs 0.2 ms to sort them.
 const MIN_GPU_SORTED: u32 = 32_768;
@@ -58,7 +59,7 @@ impl SystemParticles {
         let (known, _) = known_particles(system.particles, &self.sample).unwrap_or((&[], 1));
         self.measures.measure(space, view.depth.near, known, settings);
         let known = system.bounds.or(match system.particles {
-            Particles::Emitter(emission) => Some(emission.bounds(SpriteExtent::of(system.settings))),
+            Particles::Emitter(emission) => Some(emission.bounds(SpriteExtent::from_settings(system.settings))),
             // `validate` refuses a buffer without bounds.
             Particles::Slice(_) | Particles::Buffer(_) => None,
         });

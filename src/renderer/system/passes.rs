@@ -2,6 +2,10 @@
 
 use std::sync::Arc;
 
+use haze_core::formula::smoke_tiles::{tile_counts, tile_side};
+use haze_core::settings::DebugView;
+use haze_core::view_setup::SystemSetup;
+
 use crate::renderer::auto::PathWorkload;
 use crate::renderer::frame_bindings::DepthBindings;
 use crate::renderer::gpu::Gpu;
@@ -22,9 +26,6 @@ use crate::renderer::pipelines::{DrawnPipelines, Pipelines};
 use crate::renderer::plan::{DeferredPlan, ForwardPlan};
 use crate::renderer::targets::{InputGroups, SystemTextures};
 use crate::renderer::tiled::{TiledInputs, TiledPasses, TiledSystem};
-use haze_core::formula::smoke_tiles::{tile_counts, tile_side};
-use haze_core::settings::DebugView;
-use haze_core::view_setup::SystemSetup;
 
 /// Pass that produces a system's particles on the GPU, if their buffer cannot be drawn as is.
 #[derive(Debug)]

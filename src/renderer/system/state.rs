@@ -1,6 +1,14 @@
 //! State of one particle system in a renderer: its buffers, its targets, and its passes of the current frame.
 
 use glam::{UVec2, Vec2, Vec3};
+use haze_core::assets::material_assets::MaterialInfo;
+use haze_core::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
+use haze_core::frame::{Bounds, Particle};
+use haze_core::settings::{RenderPath, Technique};
+use haze_core::view_setup::{
+    LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
+    SystemSetup, TexelGrid, ViewGeometry, caster_uniform, light_uniforms, system_setup,
+};
 
 use super::alive_copy::AliveCopy;
 use super::particles::SystemParticles;
@@ -24,14 +32,6 @@ use crate::renderer::plan::{Plan, plan};
 use crate::renderer::support::tiled_unavailable_reason;
 use crate::renderer::targets::{SystemTextures, TargetViews};
 use crate::renderer::tiled::{TiledPasses, TiledSystem};
-use haze_core::assets::material_assets::MaterialInfo;
-use haze_core::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use haze_core::frame::{Bounds, Particle};
-use haze_core::settings::{RenderPath, Technique};
-use haze_core::view_setup::{
-    LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
-    SystemSetup, TexelGrid, ViewGeometry, caster_uniform, light_uniforms, system_setup,
-};
 
 /// Buffers and targets of one system, and its passes of the current frame.
 #[derive(Debug)]
@@ -198,7 +198,7 @@ impl SystemState {
         self.prepared.as_ref()?.scale_choice
     }
 
-    /// Returns the view depth of the smoke's centre, metres.
+    /// Returns the view depth of the smoke's center, metres.
     pub fn distance(&self) -> f32 {
         self.prepared.as_ref().map_or(0.0, |prepared| prepared.setup.distance)
     }

@@ -1,13 +1,13 @@
 //! Textures that one system is accumulated into and lit from.
 
 use glam::UVec2;
+use haze_core::settings::DepthSource;
+use haze_core::view_setup::{AttachmentSet, ResolvedSettings};
 
 use crate::renderer::plan::DeferredPlan;
 use crate::renderer::targets::{
     AccumulationKey, AccumulationTarget, BakedDiffuse, Extent, InputGroups, SystemTextures,
 };
-use haze_core::settings::DepthSource;
-use haze_core::view_setup::{AttachmentSet, ResolvedSettings};
 
 /// Textures of one system, and their bind groups, which are recreated with the textures.
 #[derive(Debug, Default)]

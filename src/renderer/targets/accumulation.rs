@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use glam::UVec2;
+use haze_core::settings::AccumulationFormat;
+use haze_core::view_setup::AttachmentSet;
 use wgpu::TextureUsages;
 
 use super::attachments::{Attachment, attachments};
 use super::target::{Extent, PlannedTargets, Target};
 use super::texture_allocator::TextureAllocator;
 use crate::renderer::gpu::idle_counter::IdleCounter;
-use haze_core::settings::AccumulationFormat;
-use haze_core::view_setup::AttachmentSet;
 
 /// Properties that decide, in addition to the size, whether a system's textures can be reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,11 @@
 //! Textures of the accumulation target by role: formats, blend states and shader constants. Every texture is cleared to
 //! zero.
 
-use crate::renderer::gpu::pipeline::{ADD_ALL, Constant, PREMULTIPLIED_OVER, WEIGHTED_SUM};
 use haze_core::error::FieldError;
 use haze_core::settings::{AccumulationFormat, BlendOrder, Settings};
 use haze_core::view_setup::{AttachmentRole, AttachmentSet, MAX_TARGET_ATTACHMENTS};
+
+use crate::renderer::gpu::pipeline::{ADD_ALL, Constant, PREMULTIPLIED_OVER, WEIGHTED_SUM};
 
 /// Properties of a texture of the accumulation target.
 #[derive(Clone, Copy, Debug)]

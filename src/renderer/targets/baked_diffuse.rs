@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use glam::UVec2;
+use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::settings::DiffuseMode;
 
 use super::texture_allocator::TextureAllocator;
 use crate::renderer::gpu::capabilities::array_layers;
-use haze_core::formula::diffuse_bake::baked_size_and_layers;
-use haze_core::settings::DiffuseMode;
 
 pub(crate) const BAKED_DIFFUSE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 

@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::UVec2;
+use haze_core::error::Error;
+use haze_core::view_setup::MAX_TARGET_ATTACHMENTS;
 
 use crate::renderer::gpu::pipeline::{PipelineStore, Shader};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
 use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
 use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, single_target};
-use haze_core::error::Error;
-use haze_core::view_setup::MAX_TARGET_ATTACHMENTS;
 
 /// Variants of tile_accumulate.
 #[derive(Debug)]

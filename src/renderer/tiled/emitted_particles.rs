@@ -1,13 +1,14 @@
 //! Evaluation of an emitter's particles on the GPU.
 
+use haze_core::formula::uniforms::EmitterUniform;
+use haze_core::frame::{EmitterSnapshot, Particle};
+
 use super::tiled_pipelines::TiledPipelines;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::pass::emit::{Emit, EmitKey};
 use crate::renderer::pass::sprite_instances::Sprites;
-use haze_core::formula::uniforms::EmitterUniform;
-use haze_core::frame::{EmitterSnapshot, Particle};
 
 /// Buffer for the particles of one system, kept between frames.
 #[derive(Debug, Default)]

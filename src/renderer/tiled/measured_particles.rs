@@ -1,5 +1,7 @@
 //! Measurement of a host's particles on the GPU.
 
+use haze_core::formula::uniforms::MeasureUniform;
+
 use super::storage_buffers::storage;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
@@ -8,7 +10,6 @@ use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::measure::{Measure, MeasureKey, WORKGROUP};
 use crate::renderer::pass::sprite_instances::Sprites;
-use haze_core::formula::uniforms::MeasureUniform;
 
 /// Bytes of ExtentSums and of MeasuredExtent in `shaders/measure.wgsl`.
 const SUMS_BYTES: u64 = 32;
@@ -31,7 +32,7 @@ struct MeasureBuffers {
 
 impl MeasuredParticles {
     /// Prepares the buffers and the pass that measures `sprites` and writes to the uniforms `system`. `keeps_depth`:
-    /// true if the host has chosen the depth of the centre. `fade_distance`: length of the fade, metres.
+    /// true if the host has chosen the depth of the center. `fade_distance`: length of the fade, metres.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,

@@ -1,6 +1,8 @@
 //! Density grid of a frame, optical depths towards its lights, and the splats of its systems.
 
 use glam::UVec2;
+use haze_core::formula::uniforms::{ShadowMarchUniform, SplatUniform};
+use haze_core::view_setup::SmokeShadow;
 
 use super::storage_buffers::storage;
 use super::tile_buffers::ParticleRange;
@@ -16,8 +18,6 @@ use crate::renderer::pass::shadow_march::{ShadowMarch, ShadowMarchKey};
 use crate::renderer::pass::shadow_visibility::{ShadowVisibility, ShadowVisibilityKey};
 use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::shadow_map_bindings::ShadowMapBindings;
-use haze_core::formula::uniforms::{ShadowMarchUniform, SplatUniform};
-use haze_core::view_setup::SmokeShadow;
 
 /// Bytes of a cell: two words.
 const CELL_BYTES: u64 = 8;

@@ -1,5 +1,8 @@
 //! Sort of a host's particles back to front on the GPU.
 
+use haze_core::formula::uniforms::TilesUniform;
+use haze_core::frame::Particle;
+
 use super::sort_buffers::SortBuffers;
 use super::tile_buffers::ParticleRange;
 use super::tiled_pipelines::TiledPipelines;
@@ -10,8 +13,6 @@ use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
 use crate::renderer::pass::sort::{BLOCK, Sort};
 use crate::renderer::pass::sprite_instances::Sprites;
-use haze_core::formula::uniforms::TilesUniform;
-use haze_core::frame::Particle;
 
 /// Buffers for the sorted particles of one system, kept between frames.
 #[derive(Debug, Default)]

@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use haze_core::formula::uniforms::TilesUniform;
+use haze_core::view_setup::MAX_TARGET_ATTACHMENTS;
+
 use super::sort_buffers::SortBuffers;
 use super::storage_buffers::{WORD_BYTES, storage, workgroups};
 use super::tiled_pipelines::TiledPipelines;
@@ -9,8 +12,6 @@ use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::targets::TiledFormats;
-use haze_core::formula::uniforms::TilesUniform;
-use haze_core::view_setup::MAX_TARGET_ATTACHMENTS;
 
 /// Bytes of a sprite: `TileSprite` in `shaders/lib/tile_sprite.wgsl`.
 pub(crate) const TILE_SPRITE_BYTES: u64 = 64;

@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use haze_core::error::Error;
+
 use super::accumulate_variants::AccumulateVariants;
 use crate::renderer::gpu::pipeline::{PipelineStore, Shader};
 use crate::renderer::layouts::Layouts;
@@ -12,13 +14,12 @@ use crate::renderer::pass::measure::MeasureKey;
 use crate::renderer::pass::shadow_march::ShadowMarchKey;
 use crate::renderer::pass::shadow_visibility::ShadowVisibilityKey;
 use crate::renderer::pass::sort::{self, SortKey};
-use crate::renderer::pass::tile_accumulate::{TileAccumulateKey, Traversal};
+use crate::renderer::pass::tile_accumulate::{TileAccumulateKey, TraversalMode};
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_gather::TileGatherKey;
 use crate::renderer::pass::tile_project::TileProjectKey;
 use crate::renderer::pass::tile_refine::TileRefineKey;
 use crate::renderer::pipeline_variants::pipeline_set;
-use haze_core::error::Error;
 
 pipeline_set! {
     /// Compute passes, but for those over texels and for tile_accumulate.
@@ -120,8 +121,8 @@ impl TiledPipelines {
         }
         keys.refine().into_iter().try_for_each(|key| self.passes.refine.check(key))?;
         // The size of the target decides which one is used.
-        let of_gpus = Traversal::COOPERATIVE;
-        let traversals = if keys.accumulate.is_cooperative() { &of_gpus[..] } else { &[Traversal::PerInvocation] };
+        let of_gpus = TraversalMode::COOPERATIVE;
+        let traversals = if keys.accumulate.is_cooperative() { &of_gpus[..] } else { &[TraversalMode::PerInvocation] };
         for &traversal in traversals {
             self.accumulate.check(TileAccumulateKey { traversal, ..keys.accumulate })?;
         }

@@ -4,6 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::UVec2;
+use haze_core::formula::tiles::{BITS_PER_WORD, run_count};
+use haze_core::formula::uniforms::TilesUniform;
 
 use super::storage_buffers::WORD_BYTES;
 use super::tile_buffers::{Capacity, ParticleRange, TileBuffers};
@@ -16,13 +18,11 @@ use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
 use crate::renderer::pass::sprite_instances::Sprites;
-use crate::renderer::pass::tile_accumulate::{COOPERATIVE_TILE, TileAccumulate, TileAccumulateKey, Traversal};
+use crate::renderer::pass::tile_accumulate::{COOPERATIVE_TILE, TileAccumulate, TileAccumulateKey, TraversalMode};
 use crate::renderer::pass::tile_bin::TileBin;
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::TileRefine;
-use haze_core::formula::tiles::{BITS_PER_WORD, run_count};
-use haze_core::formula::uniforms::TilesUniform;
 
 /// Minimum number of entries of all lists together.
 const MIN_ENTRIES: u32 = 1 << 16;
@@ -174,17 +174,17 @@ impl TiledSystem {
 
 /// Returns how many invocations of a GPU should share each texel of a target. They keep it busy where there are few texels;
 /// elsewhere they cost time, as they do where the smoke in front hides the parts behind.
-fn shared_traversal(size: UVec2, workload: &PathWorkload) -> Traversal {
+fn shared_traversal(size: UVec2, workload: &PathWorkload) -> TraversalMode {
     let tiles = size.x.div_ceil(COOPERATIVE_TILE.x) * size.y.div_ceil(COOPERATIVE_TILE.y);
     let is_deep = workload.layers() >= MANY_LAYERS;
     let (few, fewest) = if is_deep { SPLIT_TILES_OF_MANY_LAYERS } else { SPLIT_TILES };
     let is_hidden = workload.layers() * workload.optical_depth > OPAQUE_DEPTH;
     if tiles > few || workload.sprites < MIN_SPLIT_SPRITES || is_hidden {
-        Traversal::Cooperative
+        TraversalMode::Cooperative
     } else if tiles > fewest {
-        Traversal::Split
+        TraversalMode::Split
     } else {
-        Traversal::SplitFinely
+        TraversalMode::SplitFinely
     }
 }
 

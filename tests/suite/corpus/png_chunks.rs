@@ -54,7 +54,7 @@ enum ChunkMutation {
     Copy(Index, Index),
     /// Inserts a chunk of any content.
     Insert(Index, [u8; 4], Vec<u8>),
-    /// Sets bit depth and colour type.
+    /// Sets bit depth and color type.
     Header(u8, u8),
 }
 

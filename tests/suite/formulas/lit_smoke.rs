@@ -137,11 +137,11 @@ fn accumulated() -> Vec<Formula> {
             reference: |x| {
                 let mut visible = visible_system(&DEFAULTS);
                 visible.view.orthographic = f32::from(x[2] > 0.5);
-                visible.view_position(v2(x), -visible.system.centre.z).to_array().to_vec()
+                visible.view_position(v2(x), -visible.system.center.z).to_array().to_vec()
             },
             cases: random(60, &[(0.0, 8.0), (0.0, 4.0), (0.0, 1.0)]),
             tolerance: 1e-5,
-            mutants: &[("-system.centre.z, view.orthographic", "1.0, view.orthographic")],
+            mutants: &[("-system.center.z, view.orthographic", "1.0, view.orthographic")],
         },
     ]
 }
@@ -311,12 +311,12 @@ fn diffuse() -> Vec<Formula> {
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 (
-                    "shadow_position(of_slot(slot, shade.optical_depths), to_light",
-                    "shadow_position(of_slot(slot, shade.optical_depths), -to_light",
+                    "shadow_position(select_slot(slot, shade.optical_depths), to_light",
+                    "shadow_position(select_slot(slot, shade.optical_depths), -to_light",
                 ),
                 ("|| slot < 0.5", ""),
                 (", system.shadow_strength);", ", 1.0);"),
-                ("through * of_slot(slot, shade.visible)", "through"),
+                ("through * select_slot(slot, shade.visible)", "through"),
             ],
         },
         Formula {

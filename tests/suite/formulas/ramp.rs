@@ -15,7 +15,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| ramp::sample_ramp_2d(&test_ramp(), RampFilter::Bilinear, v2(x)).to_array().to_vec(),
             cases: random(200, &[(-0.1, 1.1); 2]),
             tolerance: 1e-5,
-            // Mutants: swapped axes; 0 and 1 at the image's edges instead of the outer texel centres.
+            // Mutants: swapped axes; 0 and 1 at the image's edges instead of the outer texel centers.
             mutants: &[("saturate(coordinate)", "saturate(coordinate.yx)"), ("* (size - 1.0)", "* size - 0.5")],
         },
         Formula {

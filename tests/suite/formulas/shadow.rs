@@ -148,10 +148,10 @@ fn lookups() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "of_slot",
+            name: "select_slot",
             file: "lib/shadow.wgsl",
-            wgsl: "y(0, of_slot(x(0), vec3f(x(1), x(2), x(3))));",
-            reference: |x| vec![shadow::of_slot(x[0], v3(&x[1..]))],
+            wgsl: "y(0, select_slot(x(0), vec3f(x(1), x(2), x(3))));",
+            reference: |x| vec![shadow::select_slot(x[0], v3(&x[1..]))],
             cases: with_choices(16, &[(0.1, 3.0), (0.1, 3.0), (0.1, 3.0)]),
             tolerance: ARITHMETIC,
             mutants: &[
@@ -267,7 +267,7 @@ fn on_screen() -> Vec<Formula> {
             },
             cases: random(60, &[(-0.3, 0.3); 4]),
             tolerance: TRANSCENDENTAL * 10.0,
-            mutants: &[("cross(across, up)", "cross(up, across)"), ("centre - left", "left - centre")],
+            mutants: &[("cross(across, up)", "cross(up, across)"), ("center - left", "left - center")],
         },
         Formula {
             name: "share_of_light",

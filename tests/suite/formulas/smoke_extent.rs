@@ -47,7 +47,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![smoke_extent::reach_behind(x[0], x[1], x[2])],
             cases: random(100, &[(0.0, 0.1), (2.0, 9.0), (4.0, 6.0)]),
             tolerance: ARITHMETIC * 10.0,
-            mutants: &[("max(back - centre_depth, 0.0)", "(back - centre_depth)"), (", 1.0);", ", 2.0);")],
+            mutants: &[("max(back - center_depth, 0.0)", "(back - center_depth)"), (", 1.0);", ", 2.0);")],
         },
     ]
 }

@@ -14,10 +14,10 @@ use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v2, v3, with_choi
 use super::sprite_vertex::technique;
 
 /// A sprite straight ahead, with frame 0.7 of the flipbook.
-fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
+fn sprite(center: Vec3, radius: f32, lod: f32) -> SpriteSetup {
     SpriteSetup {
-        centre,
-        view_depth: -centre.z,
+        center,
+        view_depth: -center.z,
         radius,
         rotation: Vec2::new(0.6, 0.8),
         stretch: Vec2::new(0.5, -0.3),
@@ -37,11 +37,11 @@ fn sprite(centre: Vec3, radius: f32, lod: f32) -> SpriteSetup {
     }
 }
 
-/// WGSL of [`sprite`]: the centre in numbers 1 to 3, the radius in number 4.
+/// WGSL of [`sprite`]: the center in numbers 1 to 3, the radius in number 4.
 macro_rules! with_sprite {
     ($wgsl:literal) => {
         concat!(
-            "TECHNIQUE = u32(x(0)); var in: SpriteVertex; in.centre_radius = vec4f(x(1), x(2), x(3), x(4)); \
+            "TECHNIQUE = u32(x(0)); var in: SpriteVertex; in.center_radius = vec4f(x(1), x(2), x(3), x(4)); \
              in.amount_lod_frame_erosion = vec4f(0.8, x(5), 0.7, 0.5); in.rotation = vec2f(0.6, 0.8); in.stretch = vec2f(0.5, -0.3); STRETCH = true; \
              let frames = flipbook_frames(0.7, 3.0); ",
             $wgsl
@@ -180,7 +180,7 @@ fn texels() -> Vec<Formula> {
             ("eroded(fragment.amount, grain.z, in.amount_lod_frame_erosion.w)", "fragment.amount"),
             ("fragment.thickness = fragment.amount;", ""),
             ("(f32(frames.first) + frames.blend) / system.frame_count", "f32(frames.first) / system.frame_count"),
-            ("* distance / in.centre_radius.w", "* in.centre_radius.w"),
+            ("* distance / in.center_radius.w", "* in.center_radius.w"),
             ("stretched_normal(normal, in.stretch)", "normal"),
             ("if !DEBUG_SPRITE {", "if true {"),
             ("uv, frames, motion, lod);\n    }\n    var normal", "uv, frames, -motion, lod);\n    }\n    var normal"),
@@ -188,10 +188,10 @@ fn texels() -> Vec<Formula> {
     }]
 }
 
-/// Centre, radius, mip level, pixel and scene depth.
+/// Center, radius, mip level, pixel and scene depth.
 const RANGES: [(f32, f32); 8] =
     [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -1.0), (1.0, 2.5), (0.0, 1.0), (2.0, 6.0), (1.0, 3.0), (1.0, 7.0)];
-/// Centre, radius, mip level, entry and length of the interval on the ray, and scene depth.
+/// Center, radius, mip level, entry and length of the interval on the ray, and scene depth.
 const MARCH: [(f32, f32); 8] =
     [(-0.3, 0.3), (-0.3, 0.3), (-5.0, -3.0), (1.0, 2.0), (0.0, 1.0), (1.5, 3.0), (0.5, 2.0), (1.0, 7.0)];
 
@@ -214,9 +214,9 @@ fn techniques() -> Vec<Formula> {
                 "\
                 let ray = ndc_from_pixel(vec2f(x(6), x(7)), view.size) * view.ray_scale + view.ray_offset; \
                 in.view_position = view_position(ray, 1.0, view.orthographic); \
-                let depth = max(-in.centre_radius.z, view.near); \
-                let offset = unstretched(ray * depth - in.centre_radius.xy, in.stretch); \
-                let local = unrotate(offset, in.rotation) / in.centre_radius.w; \
+                let depth = max(-in.center_radius.z, view.near); \
+                let offset = unstretched(ray * depth - in.center_radius.xy, in.stretch); \
+                let local = unrotate(offset, in.rotation) / in.center_radius.w; \
                 in.uv = sprite_uv(local); \
                 if !is_sphere() && any(abs(local) > vec2f(1.0)) { return; } \
                 let f = technique_fragment(in, frames, x(8)); if f.hidden { return; } y3(0, f.normal); y(3, f.amount); y(4, f.thickness);"

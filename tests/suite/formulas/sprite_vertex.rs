@@ -69,10 +69,10 @@ fn particles() -> Vec<Vec<f32>> {
     cases
 }
 
-/// A sprite in view space: radius in number 4, centre in numbers 1 to 3.
+/// A sprite in view space: radius in number 4, center in numbers 1 to 3.
 fn sprite_at(x: &[f32]) -> ProjectedSprite {
     ProjectedSprite {
-        centre: v3(&x[1..]),
+        center: v3(&x[1..]),
         radius: x[4],
         amount: 1.0,
         frames: flipbook_frames(0.0, 3.0),
@@ -82,7 +82,7 @@ fn sprite_at(x: &[f32]) -> ProjectedSprite {
     }
 }
 
-fn centres() -> Vec<Vec<f32>> {
+fn centers() -> Vec<Vec<f32>> {
     with_choices(count(Technique::ALL), &[(-1.0, 1.0), (-1.0, 1.0), (-6.0, -2.0), (0.1, 1.5)])
 }
 
@@ -142,7 +142,7 @@ fn corners() -> Vec<Formula> {
             cases: with_choices(count(Technique::ALL), &[(-1.0, 1.0), (-1.0, 1.0), (-3.0, 0.5), (0.1, 1.5)]),
             tolerance: ARITHMETIC,
             mutants: &[
-                ("- sprite_thickness(centre_radius.w), view.near", ", view.near"),
+                ("- sprite_thickness(center_radius.w), view.near", ", view.near"),
                 (", view.near);\n}", ", 0.0);\n}"),
             ],
         },
@@ -159,11 +159,11 @@ fn corners() -> Vec<Formula> {
                 let (low, high) = visible.projector().sphere_rectangle(&sprite_at(x), 0.5);
                 [low.to_array(), high.to_array()].concat()
             },
-            cases: centres(),
+            cases: centers(),
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("vec2f(x.y, y.y), corner", "vec2f(x.x, y.y), corner"),
-                ("centre.xy + corner * radius", "centre.xy"),
+                ("center.xy + corner * radius", "center.xy"),
                 (
                     "clamp((ray - view.ray_offset) / view.ray_scale, -edge, edge)",
                     "(ray - view.ray_offset) / view.ray_scale",
@@ -179,7 +179,7 @@ fn projection() -> Vec<Formula> {
             name: "project_sprite",
             file: "lib/sprite_vertex.wgsl",
             wgsl: with_particle!(
-                "let s = project_sprite(p, 0.5); if s.hidden { return; } y(0, 1.0); y4(1, s.centre_radius); \
+                "let s = project_sprite(p, 0.5); if s.hidden { return; } y(0, 1.0); y4(1, s.center_radius); \
                  y2(5, s.amount_lod_frame_erosion.xy); \
                  let f = flipbook_frames(s.amount_lod_frame_erosion.z, system.frame_count); \
                  y3(7, vec3f(f32(f.first), f32(f.second), f.blend)); y2(10, s.stretch);"
@@ -188,9 +188,9 @@ fn projection() -> Vec<Formula> {
                 let settings = technique(x);
                 let sprite = changed(&settings).projector().project(&particle(x), 0.5);
                 sprite.map_or(vec![0.0; 12], |sprite| {
-                    let ProjectedSprite { centre, radius, amount, frames, lod, stretch, .. } = sprite;
+                    let ProjectedSprite { center, radius, amount, frames, lod, stretch, .. } = sprite;
                     let frames = [frames.first as f32, frames.second as f32, frames.blend];
-                    [&[1.0][..], &centre.to_array(), &[radius, amount, lod], &frames, &stretch.to_array()].concat()
+                    [&[1.0][..], &center.to_array(), &[radius, amount, lod], &frames, &stretch.to_array()].concat()
                 })
             },
             cases: particles(),
@@ -230,7 +230,7 @@ fn projection() -> Vec<Formula> {
                 let pixel = projector.corners(&sprite, reach, x[5])[[2, 3, 1, 0][index]];
                 let corner = haze_core::formula::sprite::sprite_corner(index as u32);
                 let uv = sprite_uv(trimmed_corner(corner, reach));
-                vec![pixel.x, pixel.y, uv.x, uv.y, -projector.clamped_to_near_plane(sprite.centre).z]
+                vec![pixel.x, pixel.y, uv.x, uv.y, -projector.clamped_to_near_plane(sprite.center).z]
             },
             cases: {
                 let corners = random(particles().len() as u32, &[(0.0, 3.99), (0.0, 8.99)]);
@@ -241,7 +241,7 @@ fn projection() -> Vec<Formula> {
             mutants: &[
                 ("place.x * out.rotation.x - place.y", "place.x * out.rotation.x + place.y"),
                 ("turned = stretched(turned, out.stretch)", "turned = unstretched(turned, out.stretch)"),
-                ("min(centre.z, -view.near)", "centre.z"),
+                ("min(center.z, -view.near)", "center.z"),
                 (" || index >= system.alive_count", ""),
                 ("let place = trimmed_corner(corner, ", "let place = trimmed_corner(corner, 0.5 * "),
             ],

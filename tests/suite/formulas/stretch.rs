@@ -34,8 +34,8 @@ fn motion() -> Vec<Formula> {
             tolerance: ARITHMETIC,
             mutants: &[
                 ("velocity.z * (1.0 - orthographic)", "velocity.z"),
-                ("velocity.xy + centre.xy * approach", "velocity.xy"),
-                ("velocity.xy + centre.xy * approach", "velocity.xy - centre.xy * approach"),
+                ("velocity.xy + center.xy * approach", "velocity.xy"),
+                ("velocity.xy + center.xy * approach", "velocity.xy - center.xy * approach"),
             ],
         },
         Formula {

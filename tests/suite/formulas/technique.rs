@@ -96,11 +96,11 @@ fn spheres() -> Vec<Formula> {
                 cases.retain(|x| x[1] + x[2] > x[3]);
                 cases
             },
-            // Tangents that touch close to the near plane are steep and meet it far from the centre of the sphere.
+            // Tangents that touch close to the near plane are steep and meet it far from the center of the sphere.
             tolerance: 2e-3,
             mutants: &[
-                ("vec2f(centre.x - cut, centre.x + cut)", "vec2f(centre.x, centre.x)"),
-                ("cosine * centre.x - sine * centre.y", "cosine * centre.x + sine * centre.y"),
+                ("vec2f(center.x - cut, center.x + cut)", "vec2f(center.x, center.x)"),
+                ("cosine * center.x - sine * center.y", "cosine * center.x + sine * center.y"),
                 ("!clipped || upper.y", "upper.y < 0.0 || upper.y"),
             ],
         },

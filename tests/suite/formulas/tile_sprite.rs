@@ -17,12 +17,12 @@ fn uv_from_texels(x: &[f32]) -> Vec4 {
     v4(x) * 0.1
 }
 
-/// WGSL of [`uv_from_texels`], and of the centre in numbers 4 and 5.
+/// WGSL of [`uv_from_texels`], and of the center in numbers 4 and 5.
 macro_rules! with_sprite {
     ($wgsl:literal) => {
         concat!(
             "var s: TileSprite; s.uv_from_texels = vec4f(x(0), x(1), x(2), x(3)) * 0.1; \
-             s.centre_radius = vec4f(x(4), x(5), -5.0, 1.0); ",
+             s.center_radius = vec4f(x(4), x(5), -5.0, 1.0); ",
             $wgsl
         )
     };
@@ -247,16 +247,16 @@ fn sprites() -> Vec<Formula> {
                 "TECHNIQUE = select(TECHNIQUE_SOFT, TECHNIQUE_SPHERICAL_BILLBOARD, x(8) > 0.5); \
                  s.amount = 0.25; s.frames_lod = 0x3001002u; s.rotation = vec2f(0.6, 0.8); s.weight = 0.75; \
                  let f = fragment_of(s, vec2f(9.0, 7.0), vec2f(0.2, 0.4), vec2f(x(6), x(7))); y2(0, f.uv); \
-                 y3(2, f.view_position); y4(5, f.amount_lod_frame_erosion); y4(9, f.centre_radius); y2(13, f.rotation); \
+                 y3(2, f.view_position); y4(5, f.amount_lod_frame_erosion); y4(9, f.center_radius); y2(13, f.rotation); \
                  y(15, f.weight); y4(16, f.position);"
             ),
             reference: |x| {
                 let is_sphere = x[8] > 0.5;
                 let uv = if is_sphere { [0.0; 2] } else { [x[6], x[7]] };
                 let ray = if is_sphere { [0.2, 0.4, -1.0] } else { [0.0; 3] };
-                let (fade, centre) = ([0.25, 3.0, 0.0, 0.0], [x[4], x[5], -5.0, 1.0]);
+                let (fade, center) = ([0.25, 3.0, 0.0, 0.0], [x[4], x[5], -5.0, 1.0]);
                 let rest = [0.6, 0.8, 0.75, 9.0, 7.0, 0.0, 1.0];
-                [&uv[..], &ray, &fade, &centre, &rest].concat()
+                [&uv[..], &ray, &fade, &center, &rest].concat()
             },
             cases: random(40, &[SIDE, SIDE, SIDE, SIDE, TEXEL, TEXEL, TEXEL, TEXEL, (0.0, 1.0)]),
             tolerance: ARITHMETIC,

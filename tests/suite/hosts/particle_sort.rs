@@ -238,10 +238,10 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         // The camera looks along z. In this order, the sorted and the unsorted way draw alike, and only light can differ.
         scene.particles.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
         let slice = scene.on_gpu(gpu()).picture;
-        let tight = particle_bounds(&scene.particles, SpriteExtent::of(&scene.settings));
+        let tight = particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings));
         // A generous box, as a host without knowledge of its particles gives.
-        let (centre, half) = (tight.centre(), 2.0 * (tight.max - tight.min));
-        scene.bounds = Some(Bounds { min: centre - half, max: centre + half });
+        let (center, half) = (tight.center(), 2.0 * (tight.max - tight.min));
+        scene.bounds = Some(Bounds { min: center - half, max: center + half });
         let mut host = Host::new(gpu(), &scene).unwrap();
         let buffer = buffer(gpu(), &scene.particles, 0, READ);
         let count = scene.particles.len() as u32;

@@ -1,7 +1,7 @@
 //! Host passes with every supported format and sample count, and the passes and resources that are rejected.
 
 use glam::Vec4;
-use haze::{Context, Descriptor, Error, Renderer, wgpu};
+use haze::{Context, Error, Renderer, RendererDescriptor, wgpu};
 use haze_core::settings::*;
 
 use super::{SIZE, device_with_optional_features, encoder, rejected_field, slice};
@@ -219,30 +219,30 @@ fn srgb_view_of_a_gamma_target_blends_smoke_and_glow_in_linear_light() {
 #[test]
 fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
     use wgpu::TextureFormat as Format;
-    let context = Context::new(&gpu().device, &gpu().queue, None);
-    let new = |descriptor: &Descriptor<'_>| Renderer::new(&context, descriptor);
-    let refused = |descriptor: Descriptor<'_>| rejected_field(new(&descriptor));
-    let plain = Descriptor::default();
+    let context = Context::new(&gpu().device, &gpu().queue);
+    let new = |descriptor: &RendererDescriptor<'_>| Renderer::new(&context, descriptor);
+    let refused = |descriptor: RendererDescriptor<'_>| rejected_field(new(&descriptor));
+    let plain = RendererDescriptor::default();
     new(&plain).unwrap();
     for color_format in
         [Format::Rgba8Uint, Format::Rgba8Snorm, Format::Rgb9e5Ufloat, Format::Depth32Float, Format::Bc1RgbaUnorm]
     {
-        assert_eq!(refused(Descriptor { color_format, ..plain }), "color_format", "{color_format:?}");
+        assert_eq!(refused(RendererDescriptor { color_format, ..plain }), "color_format", "{color_format:?}");
     }
-    assert_eq!(refused(Descriptor { depth_format: Some(Format::Rgba8Unorm), ..plain }), "depth_format");
-    assert_eq!(refused(Descriptor { depth_format: Some(Format::Stencil8), ..plain }), "depth_format");
+    assert_eq!(refused(RendererDescriptor { depth_format: Some(Format::Rgba8Unorm), ..plain }), "depth_format");
+    assert_eq!(refused(RendererDescriptor { depth_format: Some(Format::Stencil8), ..plain }), "depth_format");
     for sample_count in [0, 3, 64] {
-        assert_eq!(refused(Descriptor { sample_count, ..plain }), "sample_count", "{sample_count}");
+        assert_eq!(refused(RendererDescriptor { sample_count, ..plain }), "sample_count", "{sample_count}");
     }
     let additional_attachments = [None, Some(Format::Rgb9e5Ufloat)];
     assert_eq!(
-        refused(Descriptor { further_color_formats: &additional_attachments, ..plain }),
-        "further_color_formats[1]"
+        refused(RendererDescriptor { other_color_formats: &additional_attachments, ..plain }),
+        "other_color_formats[1]"
     );
-    assert_eq!(refused(Descriptor { further_color_formats: &[None; 8], ..plain }), "further_color_formats");
+    assert_eq!(refused(RendererDescriptor { other_color_formats: &[None; 8], ..plain }), "other_color_formats");
     let scene_color_format = Some(Format::Rgba8Uint);
-    assert_eq!(refused(Descriptor { scene_color_format, ..plain }), "scene_color_format");
-    let error = new(&Descriptor { color_format: Format::Rgba8Uint, ..plain }).unwrap_err().to_string();
+    assert_eq!(refused(RendererDescriptor { scene_color_format, ..plain }), "scene_color_format");
+    let error = new(&RendererDescriptor { color_format: Format::Rgba8Uint, ..plain }).unwrap_err().to_string();
     assert!(error.contains("Rgba8Uint") && error.contains("Rgba16Float") && !error.contains('\n'), "{error}");
     // The host's error handler received no error.
     gpu().check().unwrap();
@@ -256,7 +256,7 @@ fn resources_of_another_device_are_rejected() {
         return;
     }
     let (device, queue) = pollster::block_on(here.adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap();
-    let context = Context::new(&device, &queue, None);
+    let context = Context::new(&device, &queue);
     let mut host = Host::new(here, &scene).unwrap();
     let material = context.create_material(&scene.material).unwrap();
     let own = std::mem::replace(&mut host.material, material);

@@ -1,7 +1,7 @@
 //! Pipelines that are compiled ahead of time, on another thread, or loaded from a pipeline cache.
 
 use glam::Vec3;
-use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, WarmUp, wgpu};
+use haze::{Bounds, Context, Renderer, RendererDescriptor, SceneDepthKind, Settings, WarmUp, wgpu};
 use haze_core::formula::hash::{pcg3d, unit};
 use haze_core::settings::*;
 
@@ -15,7 +15,7 @@ pub fn warm_up<'a>(scene: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a>
         DepthKind::Buffer => SceneDepthKind::Buffer(scene.host.depth_format),
         DepthKind::Multisampled => SceneDepthKind::Multisampled,
         DepthKind::Linear => SceneDepthKind::Linear,
-        DepthKind::Both => SceneDepthKind::Both(scene.host.depth_format),
+        DepthKind::Both => SceneDepthKind::BufferAndLinear(scene.host.depth_format),
     };
     WarmUp { view: scene.view, scene_depth, settings, debug_views: std::slice::from_ref(&scene.debug_view) }
 }
@@ -59,7 +59,7 @@ fn warm_up_can_run_on_another_thread() {
     std::thread::scope(|scope| {
         scope.spawn(|| {
             let depth_format = attach_depth.then_some(wgpu::TextureFormat::Depth32Float);
-            let own = Descriptor { depth_format, exact_filtering: true, ..Descriptor::default() };
+            let own = RendererDescriptor { depth_format, exact_filtering: true, ..RendererDescriptor::default() };
             Renderer::new(&context, &own).unwrap().warm_up(&expected).unwrap();
         });
     });
@@ -81,7 +81,7 @@ fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
         let descriptor = wgpu::PipelineCacheDescriptor { label: None, data, fallback: true };
         let cache = unsafe { gpu.device.create_pipeline_cache(&descriptor) };
         let empty = cache.get_data().map_or(0, |data| data.len());
-        let context = Context::new(&gpu.device, &gpu.queue, Some(&cache));
+        let context = Context::with_pipeline_cache(&gpu.device, &gpu.queue, &cache);
         let scene = TestScene::new(SIZE);
         let mut host = Host::with_context(gpu, &scene, Some(&context)).unwrap();
         host.draw(gpu, &scene).unwrap();

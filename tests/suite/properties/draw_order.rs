@@ -84,7 +84,7 @@ fn particle_amounts_above_1_are_drawn_as_1() {
     let mut host = Host::new(gpu(), &scene).unwrap();
     let mut draw = |amount: f32| {
         scene.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
-        scene.bounds = Some(particle_bounds(&scene.particles, SpriteExtent::of(&scene.settings)));
+        scene.bounds = Some(particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings)));
         host.draw(gpu(), &scene).unwrap();
         let slice = host.picture(gpu()).unwrap();
         host.draw_buffer(gpu(), &scene, &scene.particles).unwrap();

@@ -20,7 +20,7 @@ fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
             scene.lights.clone_from(&preset.lights);
             scene.settings = system.settings;
             scene.settings.path = RenderPath::Raster;
-            scene.material = system.material.load(std::path::Path::new("")).unwrap();
+            scene.material = system.material.load(haze_preset::ImageSource::BuiltIn).unwrap();
             system.emitter.evaluate(preset.time, &mut scene.particles);
             assert_all_finite(&scene, &scene.on_gpu(gpu()), &preset.name);
         }

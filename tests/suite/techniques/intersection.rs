@@ -1,4 +1,4 @@
-//! Documented behaviour of each technique where a sprite meets the scene, the near plane or the far plane.
+//! Documented behavior of each technique where a sprite meets the scene, the near plane or the far plane.
 
 use glam::camera::rh::proj::directx;
 use haze_core::settings::*;
@@ -25,7 +25,7 @@ fn amount(scene: &TestScene) -> f32 {
 fn amount_in(host: &Host) -> f32 {
     let picture = host.picture(gpu()).unwrap();
     let middle = picture.load((SIZE / 2).as_ivec2());
-    // The debug view of the amount is grey, and is drawn over the backdrop wherever the amount is above 0.
+    // The debug view of the amount is gray, and is drawn over the backdrop wherever the amount is above 0.
     if middle == BACKDROP { 0.0 } else { middle.x }
 }
 
@@ -44,7 +44,7 @@ fn only_the_curve_always_shows_smoke_behind_a_surface() {
                 let amount = amount_in(&host);
                 let name = format!("{} {} at {depth:.2} m: {amount}", technique.name(), curve.name());
                 let shows_through = curve == FadeCurve::Always && technique.is_soft();
-                // Distance by which the sprite extends in front of its centre, metres.
+                // Distance by which the sprite extends in front of its center, metres.
                 let reach = if technique.is_sphere() || technique.is_depth_sprite() || technique == Technique::Density {
                     0.7
                 } else {
@@ -73,7 +73,7 @@ fn largest_step(technique: Technique) -> f32 {
     let mut largest = 0.0_f32;
     let mut host = Host::with_shared_context(gpu(), &one_sprite(technique, 0.9)).unwrap();
     for step in 0..=88 {
-        // From 0.9 m in front of the sprite's centre to 0.75 m behind it. Near plane at 0.1 m, radius 0.7 m.
+        // From 0.9 m in front of the sprite's center to 0.75 m behind it. Near plane at 0.1 m, radius 0.7 m.
         let scene = one_sprite(technique, 0.9 - 1.2 * step as f32 / 64.0);
         host.draw(gpu(), &scene).unwrap();
         let picture = host.picture(gpu()).unwrap();
@@ -122,7 +122,7 @@ fn slabs_vanish_when_their_far_side_passes_the_near_plane() {
 #[test]
 fn volumes_are_clipped_by_the_scene_and_the_near_plane() {
     for technique in [Technique::VolumetricHard, Technique::VolumetricSoft, Technique::SphericalBillboard] {
-        // Optical depth through the middle of a sphere at `depth`. With its centre on the wall, about half is left.
+        // Optical depth through the middle of a sphere at `depth`. With its center on the wall, about half is left.
         let through = |depth: f32| {
             let mut scene = wall(technique, depth);
             scene.settings.soft_fade.fade_scale = 1000.0;
@@ -133,7 +133,7 @@ fn volumes_are_clipped_by_the_scene_and_the_near_plane() {
         println!("{}: optical depth {whole:.3} whole, {half:.3} half", technique.name());
         // Half, within a quarter either way because the noise is uneven. Without clipping it would be the whole.
         assert!((0.25..0.75).contains(&(half / whole)), "{}: optical depth {half} of {whole}", technique.name());
-        // With the camera at the sphere's centre, the part beyond the near plane is left, and both renderers agree.
+        // With the camera at the sphere's center, the part beyond the near plane is left, and both renderers agree.
         let inside = one_sprite(technique, 0.0);
         let ahead = -(1.0 - amount(&inside)).ln();
         println!("{}: optical depth {ahead:.3} from inside", technique.name());
@@ -181,7 +181,10 @@ fn soft_linear_requires_and_reads_the_linear_target() {
     scene.depth = DepthKind::Buffer;
     scene.attach_depth = haze::read_only_depth_is_supported(&gpu().device);
     let error = scene.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
-    assert!(error.starts_with("systems[0].settings.technique: \"soft_linear\"") && error.contains("Both"), "{error}");
+    assert!(
+        error.starts_with("systems[0].settings.technique: \"soft_linear\"") && error.contains("BufferAndLinear"),
+        "{error}"
+    );
     // With an empty linear target, a technique that reads it shows smoke that the depth buffer hides.
     let mut scene = wall(Technique::Soft, 6.4);
     scene.empty_linear = true;

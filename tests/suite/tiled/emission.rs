@@ -37,7 +37,7 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
             let mut scene = scene(Technique::Soft);
             emission.evaluate(&mut scene.particles);
             // The same bounding box for both, so that both are lit on the same plane.
-            scene.bounds = Some(emission.bounds(SpriteExtent::of(&scene.settings)));
+            scene.bounds = Some(emission.bounds(SpriteExtent::from_settings(&scene.settings)));
             scene.settings.accumulate.order = BlendOrder::Sorted;
             let mut host = Host::new(gpu(), &scene).unwrap();
             let particles = scene.particles.clone();

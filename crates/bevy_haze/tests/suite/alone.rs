@@ -10,7 +10,7 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy_haze::haze::preset::Preset;
 use bevy_haze::haze::settings::Ambient;
 use bevy_haze::haze::{
-    Context, Descriptor, FrameInput, Light, LightKind, ParticleSystem, Particles, Renderer, SceneDepth, Settings, View,
+    Context, RendererDescriptor, FrameInput, Light, LightKind, ParticleSystem, Particles, Renderer, SceneDepth, Settings, View,
     glam, wgpu,
 };
 
@@ -90,8 +90,8 @@ pub fn draw(host: &Host, frames: u32) -> (Picture, Vec<Duration>) {
     let depth = texture(&device, wgpu::TextureFormat::Depth32Float, usage | wgpu::TextureUsages::TEXTURE_BINDING);
     let (color_view, depth_view) = (color.create_view(&Default::default()), depth.create_view(&Default::default()));
 
-    let context = Context::new(&device, queue, None);
-    let mut renderer = Renderer::new(&context, &Descriptor::default()).unwrap();
+    let context = Context::new(&device, queue);
+    let mut renderer = Renderer::new(&context, &RendererDescriptor::default()).unwrap();
     let preset = Preset::load("column").unwrap();
     let images = preset.load_materials("column".as_ref()).unwrap();
     let material = context.create_material(&images[0]).unwrap();

@@ -21,7 +21,7 @@ const RED: [f32; 3] = [1.0, 0.0, 0.0];
 const BLUE: [f32; 3] = [0.0, 0.0, 1.0];
 /// Light of a value of 1 in a map, cd/m²: half of white at the exposure of the tests.
 const INTENSITY: f32 = 75.0;
-/// Height of the camera's centre: of both balls.
+/// Height of the camera's center: of both balls.
 const HEIGHT: f32 = 1.6;
 const PLACES: [f32; 2] = [-1.0, 1.6];
 const RADIUS: f32 = 0.9;
@@ -73,7 +73,7 @@ fn matte_smoke() -> SmokeAsset {
     asset
 }
 
-/// Mean color of a disc on a ball, at this share of its radius above its centre.
+/// Mean color of a disc on a ball, at this share of its radius above its center.
 fn color(picture: &Picture, ball: usize, above: f32) -> [f32; 3] {
     let pixels_per_metre = SIZE.y as f32 / VIEW_HEIGHT;
     let right = 0.5 * SIZE.x as f32 + PLACES[ball] * pixels_per_metre;

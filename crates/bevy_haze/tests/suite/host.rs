@@ -32,7 +32,7 @@ pub const EXPOSURE: Exposure = Exposure { ev100: 7.0 };
 pub const CAMERA: Vec3 = Vec3::new(0.6, 1.8, 7.0);
 pub const TARGET: Vec3 = Vec3::new(0.3, 1.6, 0.0);
 
-/// Boxes of the scene: centre, size, color of their own light.
+/// Boxes of the scene: center, size, color of their own light.
 pub const BOXES: [(Vec3, Vec3, [f32; 3]); 2] = [
     (Vec3::new(0.0, -0.1, 0.0), Vec3::new(12.0, 0.2, 12.0), [0.18, 0.17, 0.16]),
     (Vec3::new(0.9, 0.6, 0.7), Vec3::new(0.9, 1.2, 0.9), [0.12, 0.22, 0.14]),

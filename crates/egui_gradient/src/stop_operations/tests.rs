@@ -7,14 +7,14 @@ use haze_author::ramp::gradient::add_stop;
 use haze_author::ramp::{HexColor, RampRecipe, RampRow};
 
 fn stops(list: &[(f32, u8, Curve)]) -> Vec<RampStop> {
-    list.iter().map(|&(at, grey, curve)| RampStop { curve, ..RampStop::new(at, HexColor([grey; 3])) }).collect()
+    list.iter().map(|&(at, gray, curve)| RampStop { curve, ..RampStop::new(at, HexColor([gray; 3])) }).collect()
 }
 
 fn places(stops: &[RampStop]) -> Vec<f32> {
     stops.iter().map(|stop| stop.at).collect()
 }
 
-fn greys(stops: &[RampStop]) -> Vec<u8> {
+fn grays(stops: &[RampStop]) -> Vec<u8> {
     stops.iter().map(|stop| stop.color.0[0]).collect()
 }
 
@@ -44,12 +44,12 @@ fn all() -> Selection {
 fn a_stop_changes_order_only_if_it_moves_past_another() {
     let mut list = stops(&[(0.0, 0, SMOOTH), (0.5, 1, SMOOTH), (0.5, 2, SMOOTH), (1.0, 3, SMOOTH)]);
     assert_eq!(moved(&mut list, 0, 0.5), 0);
-    assert_eq!(greys(&list), [0, 1, 2, 3]);
+    assert_eq!(grays(&list), [0, 1, 2, 3]);
     assert_eq!(moved(&mut list, 0, 0.6), 2);
-    assert_eq!(greys(&list), [1, 2, 0, 3]);
+    assert_eq!(grays(&list), [1, 2, 0, 3]);
     assert_eq!(moved(&mut list, 2, 0.5), 2, "from above it stays above");
     assert_eq!(moved(&mut list, 2, -3.0), 0);
-    assert_eq!((greys(&list), list[0].at), (vec![0, 1, 2, 3], 0.0));
+    assert_eq!((grays(&list), list[0].at), (vec![0, 1, 2, 3], 0.0));
     assert_eq!(moved(&mut list, 3, f32::NAN), 3);
     assert_eq!(list[3].at, 1.0);
 }
@@ -58,7 +58,7 @@ fn a_stop_changes_order_only_if_it_moves_past_another() {
 fn added_stops_are_inserted_in_order_and_the_last_stop_cannot_be_removed() {
     let mut list = stops(&[(0.2, 0, Curve::Ease), (0.2, 1, Curve::Constant), (0.8, 2, SMOOTH)]);
     assert_eq!(add_stop(&mut list, 0.2, HexColor([9; 3])), 2);
-    assert_eq!((greys(&list), list[2].curve), (vec![0, 1, 9, 2], Curve::Constant));
+    assert_eq!((grays(&list), list[2].curve), (vec![0, 1, 9, 2], Curve::Constant));
     assert_eq!(add_stop(&mut list, 0.1, HexColor([8; 3])), 0);
     assert_eq!(list[0].curve, Curve::Ease);
     assert_eq!(removed(&mut list, 4), 3);
@@ -99,7 +99,7 @@ fn nudging_moves_by_thousandths_hundredths_or_equal_parts() {
 fn stops_are_distributed_between_the_first_and_the_last() {
     let mut list = stops(&[(0.2, 0, SMOOTH), (0.3, 1, SMOOTH), (0.3, 2, SMOOTH), (0.8, 3, SMOOTH)]);
     distribute(&mut list, &mut all());
-    assert_eq!(greys(&list), [0, 1, 2, 3]);
+    assert_eq!(grays(&list), [0, 1, 2, 3]);
     for (at, expected) in places(&list).into_iter().zip([0.2, 0.4, 0.6, 0.8]) {
         assert!((at - expected).abs() < 1.0e-6, "{at}");
     }
@@ -116,20 +116,20 @@ fn selected_stops_move_together_and_keep_their_distances() {
     let mut list = stops(&[(0.0, 0, SMOOTH), (0.2, 1, SMOOTH), (0.2, 2, SMOOTH), (0.5, 3, SMOOTH), (1.0, 4, SMOOTH)]);
     let mut selection = Selection::between(3, 1);
     move_to(&mut list, &mut selection, 0.7);
-    assert_eq!((greys(&list), selected(&selection), selection.lead()), (vec![0, 1, 2, 3, 4], vec![1, 2, 3], 1));
+    assert_eq!((grays(&list), selected(&selection), selection.lead()), (vec![0, 1, 2, 3, 4], vec![1, 2, 3], 1));
     assert_eq!([list[1].at, list[2].at], [0.7, 0.7], "those at one place stay together");
     assert!((list[3].at - 1.0).abs() < 1.0e-6);
     // At the end of the gradient they stop and keep their distances.
     move_to(&mut list, &mut selection, 5.0);
     assert!((list[1].at - 0.7).abs() < 1.0e-6 && list[3].at <= 1.0, "{:?}", places(&list));
     move_to(&mut list, &mut selection, -5.0);
-    assert_eq!((greys(&list), list[2].at), (vec![0, 1, 2, 3, 4], 0.0));
+    assert_eq!((grays(&list), list[2].at), (vec![0, 1, 2, 3, 4], 0.0));
     // Selected stops that are not adjacent can pass unselected ones between them.
     let mut list = stops(&[(0.1, 0, SMOOTH), (0.2, 1, SMOOTH), (0.3, 2, SMOOTH), (0.9, 3, SMOOTH)]);
     let mut selection = Selection::one(0);
     selection.toggle(2);
     move_to(&mut list, &mut selection, 0.45);
-    assert_eq!((greys(&list), selected(&selection), selection.lead()), (vec![1, 0, 2, 3], vec![1, 2], 2));
+    assert_eq!((grays(&list), selected(&selection), selection.lead()), (vec![1, 0, 2, 3], vec![1, 2], 2));
 }
 
 #[test]
@@ -139,16 +139,16 @@ fn selected_stops_are_removed_copied_and_scaled() {
     selection.toggle(3);
     let (mut list, mut of) = (from.clone(), selection.clone());
     remove(&mut list, &mut of);
-    assert_eq!((greys(&list), selected(&of)), (vec![0, 2], vec![1]));
+    assert_eq!((grays(&list), selected(&of)), (vec![0, 2], vec![1]));
     let (mut list, mut of) = (from.clone(), Selection::between(0, 3));
     remove(&mut list, &mut of);
-    assert_eq!((greys(&list), selected(&of)), (vec![3], vec![0]), "one stays: the lead");
+    assert_eq!((grays(&list), selected(&of)), (vec![3], vec![0]), "one stays: the lead");
     let (mut list, mut of) = (from.clone(), selection.clone());
     copy(&mut list, &mut of);
-    assert_eq!((greys(&list), selected(&of), of.lead()), (vec![0, 1, 1, 2, 3, 3], vec![2, 5], 5));
+    assert_eq!((grays(&list), selected(&of), of.lead()), (vec![0, 1, 1, 2, 3, 3], vec![2, 5], 5));
     let (mut list, mut of) = (from, selection);
     scale(&mut list, &mut of, 2.5);
-    assert_eq!((greys(&list), places(&list)), (vec![0, 2, 1, 3], vec![0.0, 0.4, 0.5, 1.0]));
+    assert_eq!((grays(&list), places(&list)), (vec![0, 2, 1, 3], vec![0.0, 0.4, 0.5, 1.0]));
     assert_eq!(selected(&of), [2, 3]);
 }
 
@@ -159,7 +159,7 @@ fn operations_on_a_part_leave_the_other_stops_unchanged() {
     let check = |change: &dyn Fn(&mut Vec<RampStop>, &mut Selection), expected: &[(f32, u8)], which: &[usize]| {
         let (mut list, mut of) = (from.clone(), part.clone());
         change(&mut list, &mut of);
-        assert_eq!(greys(&list), expected.iter().map(|(_, grey)| *grey).collect::<Vec<_>>());
+        assert_eq!(grays(&list), expected.iter().map(|(_, gray)| *gray).collect::<Vec<_>>());
         for (at, (expected, _)) in places(&list).into_iter().zip(expected) {
             assert!((at - expected).abs() < 1.0e-6, "{at} {expected}");
         }
@@ -178,7 +178,7 @@ fn flipping_constant_steps_keeps_their_number() {
     let hard = Curve::Constant;
     let mut list = stops(&[(0.0, 1, hard), (0.45, 2, hard), (0.72, 3, hard)]);
     flip(&mut list, &mut all());
-    assert_eq!(greys(&list), [3, 2, 1]);
+    assert_eq!(grays(&list), [3, 2, 1]);
     for (at, expected) in places(&list).into_iter().zip([0.0, 0.28, 0.55]) {
         assert!((at - expected).abs() < 1.0e-6, "{at}");
     }
@@ -191,7 +191,7 @@ proptest! {
     ) {
         let mut list: Vec<_> = list
             .into_iter()
-            .map(|(at, grey, curve)| (f32::from(at) / 20.0, grey, Curve::ALL[curve]))
+            .map(|(at, gray, curve)| (f32::from(at) / 20.0, gray, Curve::ALL[curve]))
             .collect();
         list.sort_by(|a, b| a.0.total_cmp(&b.0));
         let row = stops(&list);
@@ -214,7 +214,7 @@ proptest! {
     fn a_mirrored_gradient_is_the_original_and_its_mirror_image(
         list in prop::collection::vec((0u8..=20, any::<u8>(), 0usize..4), 1..8),
     ) {
-        let list = list.into_iter().map(|(at, grey, curve)| (f32::from(at) / 20.0, grey, Curve::ALL[curve]));
+        let list = list.into_iter().map(|(at, gray, curve)| (f32::from(at) / 20.0, gray, Curve::ALL[curve]));
         let mut row = stops(&list.collect::<Vec<_>>());
         sort(&mut row);
         let mut mirrored = row.clone();

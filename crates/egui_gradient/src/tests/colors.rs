@@ -18,7 +18,7 @@ fn type_into(harness: &mut Harness<'_, Host>, name: &str, text: &str) {
 fn hue_saturation_and_value_can_be_typed() {
     let mut harness = host(&[(0.0, 100), (1.0, 20)]);
     for (name, number, expected) in [
-        // A grey remembers its hue and shows it once it has a saturation.
+        // A gray remembers its hue and shows it once it has a saturation.
         ("hue", "210", [100, 100, 100]),
         ("saturation", "50", [50, 75, 100]),
         ("value", "100", [128, 191, 255]),
@@ -28,7 +28,7 @@ fn hue_saturation_and_value_can_be_typed() {
         type_into(&mut harness, name, number);
         assert_eq!(color(&harness, 0), expected, "{name} {number}");
     }
-    // Changing only the hue of a grey is not a step.
+    // Changing only the hue of a gray is not a step.
     assert_eq!(steps(&harness), ["color of a stop"; 4]);
     // The remembered hue belongs to one stop only.
     harness.get_by_label("next stop").click();
@@ -148,5 +148,5 @@ fn the_eyedropper_has_a_magnifier_and_is_moved_by_keys() {
     }
     key(&mut harness, Key::Enter, NONE);
     assert_eq!(steps(&harness), ["color of a stop", "gradient of a stroke"]);
-    assert!(greys(&harness).is_sorted(), "{:?}", greys(&harness));
+    assert!(grays(&harness).is_sorted(), "{:?}", grays(&harness));
 }

@@ -38,7 +38,7 @@ fn with_shift_a_stop_snaps_to_another_stop() {
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.29 * width, Modifiers::SHIFT);
     assert_eq!(
-        (harness.state().row.stops[1].at, greys(&harness)),
+        (harness.state().row.stops[1].at, grays(&harness)),
         (harness.state().row.stops[2].at, vec![0, 10, 20, 30])
     );
     // It snaps only to a stop nearby.
@@ -86,7 +86,7 @@ fn a_drag_with_alt_moves_a_copy() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.2 * width, Modifiers::ALT);
-    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.3, 0.5, 1.0], vec![0, 10, 10, 30]));
+    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.3, 0.5, 1.0], vec![0, 10, 10, 30]));
     assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["copy a stop"], 2));
 }
 
@@ -155,12 +155,12 @@ fn a_stop_dragged_off_the_strip_is_removed_and_comes_back_with_the_pointer() {
         let says = harness.query_all_by_label_contains("Release to delete #141414").next().is_some();
         assert_eq!(says, counts[index] == 2, "{index}");
     });
-    assert_eq!((greys(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop"]));
+    assert_eq!((grays(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop"]));
     // Brought back before the release, it is moved.
     let from = handle(&harness, 1).center();
     let (off, near) = (from + Vec2::new(-40.0, -90.0), from - Vec2::new(40.0, 0.0));
     drag_through(&mut harness, from, &[off, near], |_, _| {});
-    assert_eq!((greys(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop", "move a stop"]));
+    assert_eq!((grays(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop", "move a stop"]));
     // Escape restores it, and the last stop cannot be removed.
     let from = handle(&harness, 1).center();
     hold(&mut harness, from, 0.0);
@@ -170,11 +170,11 @@ fn a_stop_dragged_off_the_strip_is_removed_and_comes_back_with_the_pointer() {
     key(&mut harness, Key::Escape, NONE);
     button(&mut harness, from, false, NONE);
     harness.run_steps(2);
-    assert_eq!((greys(&harness), steps(&harness).len()), (vec![0, 30], 2));
+    assert_eq!((grays(&harness), steps(&harness).len()), (vec![0, 30], 2));
     let mut harness = host(&[(0.5, 20)]);
     let from = handle(&harness, 0).center();
     drag_through(&mut harness, from, &[from + Vec2::new(0.0, 90.0)], |_, _| {});
-    assert_eq!(greys(&harness), [20]);
+    assert_eq!(grays(&harness), [20]);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn the_middle_between_two_stops_is_dragged() {
         gradient_strip::color_at(&gradient, 0.2).0[0]
     };
     drag(&mut harness, middle, 0.1 * width, NONE);
-    assert_eq!((greys(&harness), steps(&harness)), (vec![0, color, 200, 30], vec!["add a stop"]));
+    assert_eq!((grays(&harness), steps(&harness)), (vec![0, color, 200, 30], vec!["add a stop"]));
     assert!((places(&harness)[1] - 0.3).abs() < 0.01, "{:?}", places(&harness));
     // No mark where there is no room for it.
     assert!(harness.query_by_label("middle between stop 2 and 3").is_none());

@@ -19,7 +19,7 @@ pub struct Host {
 }
 
 pub fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
-    let stop = |&(at, grey): &(f32, u8)| RampStop::new(at, HexColor([grey; 3]));
+    let stop = |&(at, gray): &(f32, u8)| RampStop::new(at, HexColor([gray; 3]));
     let row = RampRow { at: 0.5, stops: stops.iter().map(stop).collect(), ..RampRow::default() };
     let show = |ui: &mut Ui, host: &mut Host| {
         let bins = [0.0, 1.0, 0.25];
@@ -44,7 +44,7 @@ pub fn places(harness: &Harness<'_, Host>) -> Vec<f32> {
     harness.state().row.stops.iter().map(|stop| (stop.at * 1000.0).round() / 1000.0).collect()
 }
 
-pub fn greys(harness: &Harness<'_, Host>) -> Vec<u8> {
+pub fn grays(harness: &Harness<'_, Host>) -> Vec<u8> {
     harness.state().row.stops.iter().map(|stop| stop.color.0[0]).collect()
 }
 

@@ -57,7 +57,7 @@ fn selected_stops_are_dragged_together_in_one_step() {
     click_handle(&mut harness, 2, SHIFT);
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.4 * width, NONE);
-    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.6, 0.7, 0.8, 1.0], vec![0, 10, 30, 20, 40]));
+    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.6, 0.7, 0.8, 1.0], vec![0, 10, 30, 20, 40]));
     assert_eq!((selected(&harness), steps(&harness)), (vec![1, 3], vec!["move stops"]));
     let from = handle(&harness, 3).center();
     drag(&mut harness, from, 9.0 * width, NONE);
@@ -86,7 +86,7 @@ fn keys_select_and_change_several_stops() {
     key(&mut harness, Key::Space, NONE);
     assert_eq!(selected(&harness), [1, 2, 4]);
     key(&mut harness, Key::Delete, NONE);
-    assert_eq!((greys(&harness), selected(&harness)), (vec![0, 30], vec![1]));
+    assert_eq!((grays(&harness), selected(&harness)), (vec![0, 30], vec![1]));
     key(&mut harness, Key::A, CTRL);
     assert_eq!(selected(&harness), [0, 1]);
     key(&mut harness, Key::Escape, NONE);
@@ -105,9 +105,9 @@ fn buttons_and_fields_change_several_stops() {
     press(&mut harness, "Distribute");
     assert_eq!(places(&harness), [0.0, 0.2, 0.45, 0.7, 1.0]);
     press(&mut harness, "Flip");
-    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.2, 0.45, 0.7, 1.0], vec![0, 30, 20, 10, 40]));
+    assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.2, 0.45, 0.7, 1.0], vec![0, 30, 20, 10, 40]));
     press(&mut harness, "Mirror");
-    assert_eq!(greys(&harness), [0, 30, 20, 10, 20, 30, 40]);
+    assert_eq!(grays(&harness), [0, 30, 20, 10, 20, 30, 40]);
     assert_eq!(selected(&harness), [1, 2, 3, 4, 5]);
     harness.get_by_role_and_label(Role::TextInput, "Color").click();
     harness.run_steps(2);
@@ -115,9 +115,9 @@ fn buttons_and_fields_change_several_stops() {
     harness.event(Event::Text("#070707".into()));
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
-    assert_eq!(greys(&harness), [0, 7, 7, 7, 7, 7, 40]);
+    assert_eq!(grays(&harness), [0, 7, 7, 7, 7, 7, 40]);
     press(&mut harness, "Remove");
-    assert_eq!(greys(&harness), [0, 40]);
+    assert_eq!(grays(&harness), [0, 40]);
     assert_eq!(
         steps(&harness),
         ["distribute a part", "flip a part", "mirror a part", "color of stops", "remove stops"]
@@ -135,7 +135,7 @@ fn the_middle_button_removes_a_stop() {
         harness.step();
     }
     harness.run_steps(2);
-    assert_eq!((greys(&harness), steps(&harness)), (vec![0, 20, 30, 40], vec!["remove a stop"]));
+    assert_eq!((grays(&harness), steps(&harness)), (vec![0, 20, 30, 40], vec!["remove a stop"]));
 }
 
 fn type_place(harness: &mut Harness<'_, Host>, text: &str) {
@@ -175,5 +175,5 @@ fn relative_color_changes_apply_to_each_selected_stop() {
     harness.run_steps(2);
     key(&mut harness, Key::Enter, NONE);
     harness.run_steps(3);
-    assert_eq!((greys(&harness), steps(&harness)), (vec![100, 50, 40], vec!["color of stops"]));
+    assert_eq!((grays(&harness), steps(&harness)), (vec![100, 50, 40], vec!["color of stops"]));
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use haze::{Context, Descriptor, Error, FrameInput, ParticleSystem, Particles, Renderer, SceneDepth, wgpu};
+use haze::{Context, Error, FrameInput, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth, wgpu};
 use haze_author::particle_files;
 use haze_core::settings::BlendOrder;
 use haze_demo::headless::Headless;
@@ -19,7 +19,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {
         return Ok(Vec::new());
     };
-    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue, None));
+    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue));
     let depth = gpu.target("depth", shot.size, wgpu::TextureFormat::Depth32Float);
     let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
     let view = shot.preset.camera.view(shot.size);
@@ -27,7 +27,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     for order in [BlendOrder::Sorted, BlendOrder::Weighted] {
         let mut settings = system.settings;
         settings.accumulate.order = order;
-        let renderer = Renderer::new(&context, &Descriptor::default())?;
+        let renderer = Renderer::new(&context, &RendererDescriptor::default())?;
         let material = context.create_material(pictures)?;
         renderers.push((renderer, material, settings));
     }

@@ -3,8 +3,8 @@
 use glam::{UVec2, Vec3};
 use haze::{Error, Light};
 use haze_core::settings::{
-    AccumulationFormat, BlendOrder, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, RenderPath,
-    Settings, Technique, Upsample,
+    AccumulationFormat, BlendOrder, DepthDownsample, FadeCurve, LightingResolution, NormalEncoding, RenderPath,
+    Settings, Technique, Traversal, Upsample,
 };
 use haze_demo::shot::Shot;
 use haze_preset::builtin;
@@ -22,15 +22,15 @@ fn paths() -> impl Iterator<Item = RenderPath> {
 }
 
 /// Returns the same paths, each with every choice of layers that it supports.
-fn paths_and_layers() -> impl Iterator<Item = (RenderPath, Layers)> {
+fn paths_and_layers() -> impl Iterator<Item = (RenderPath, Traversal)> {
     paths().flat_map(|path| {
-        let layers = if path == RenderPath::Tiled { Layers::ALL } else { &Layers::ALL[..1] };
+        let layers = if path == RenderPath::Tiled { Traversal::ALL } else { &Traversal::ALL[..1] };
         layers.iter().map(move |&layers| (path, layers))
     })
 }
 
 /// Name of a path in rows.
-fn path_name((path, layers): (RenderPath, Layers)) -> String {
+fn path_name((path, layers): (RenderPath, Traversal)) -> String {
     if path == RenderPath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
 }
 
@@ -96,7 +96,7 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let depths: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
     let alphas: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
     let group = |shot: Shot, sprites: String, work: f64| {
-        let case = |way: (RenderPath, Layers)| Case {
+        let case = |way: (RenderPath, Traversal)| Case {
             name: format!("{} {sprites}", path_name(way)),
             shot: changed(&shot, |settings| {
                 at_scale(way.0, 1)(settings);

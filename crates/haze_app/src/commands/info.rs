@@ -26,9 +26,9 @@ pub fn run() -> Result<(), Error> {
 
 /// Returns the choices of the path `auto` for few layers and for many, from the measured costs of this adapter.
 fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
-    let context = Context::new(&gpu.device, &gpu.queue, None);
+    let context = Context::new(&gpu.device, &gpu.queue);
     let model = context.measure_paths(|encoder| gpu.submit(encoder))?;
-    if !context.has_tiles() {
+    if !context.supports_tiled() {
         return Ok(vec![PathChoice { path: RenderPath::Raster, reason: PathReason::TiledUnsupported }]);
     }
     let size = UVec2::new(1280, 720);

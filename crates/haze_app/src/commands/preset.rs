@@ -137,7 +137,7 @@ fn moments(preset: &Preset) -> Vec<Preset> {
     times.push(preset.time);
     times.sort_by(f32::total_cmp);
     times.dedup();
-    times.into_iter().map(|time| preset.at(time)).collect()
+    times.into_iter().map(|time| preset.evaluate(time)).collect()
 }
 
 /// Describes a track: `keyframes at 0, 2.5 s; flickers`.
@@ -182,6 +182,6 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
     }
     let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
     copy_assets(&preset, &folder(from), &folder(&path))?;
-    write_file(&path, preset.to_text("").as_bytes())?;
+    write_file(&path, preset.to_json("").as_bytes())?;
     print_line!("{}: a copy of {}; open it with `haze {0}`", path.display(), from.display())
 }

@@ -43,7 +43,7 @@ pub fn followed(motion: &Image<Vec4>, frames: [&Image<Vec4>; 2]) -> Image<Vec4> 
     followed
 }
 
-/// Bilinear filter; `place` in texels, 0 at the centre of the first.
+/// Bilinear filter; `place` in texels, 0 at the center of the first.
 fn sample(image: &Image<Vec4>, place: Vec2) -> Vec4 {
     let (low, share) = (place.floor(), place - place.floor());
     let last = image.size.as_ivec2() - 1;
@@ -72,9 +72,9 @@ mod tests {
     use super::*;
 
     /// A soft disc.
-    fn disc(centre: Vec2) -> Image<Vec4> {
+    fn disc(center: Vec2) -> Image<Vec4> {
         let mut image = Image::new(UVec2::splat(48), Vec4::ZERO);
-        image.for_each(|at, texel| *texel = Vec4::splat((1.2 - at.as_vec2().distance(centre) / 10.0).clamp(0.0, 1.0)));
+        image.for_each(|at, texel| *texel = Vec4::splat((1.2 - at.as_vec2().distance(center) / 10.0).clamp(0.0, 1.0)));
         image
     }
 

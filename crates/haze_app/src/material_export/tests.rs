@@ -9,7 +9,7 @@ use haze_core::formula::response::{diffuse_response, fire_response, soft_scatter
 use haze_core::settings::{Backlight, CoverageMode, RampFilter, SoftScatterMode};
 use haze_demo::headless::Headless;
 
-use haze_preset::Preset;
+use haze_preset::{ImageSource, Preset};
 
 use super::*;
 
@@ -36,12 +36,12 @@ fn all_settings() -> [Settings; 3] {
 }
 
 fn assets() -> MaterialAssets {
-    let names = haze_preset::MaterialNames {
+    let names = haze_preset::MaterialSources {
         diffuse_ramp: "diffuse_soft_toon".into(),
         backlight_ramp: "backlight_traced_steam".into(),
-        ..haze_preset::MaterialNames::default()
+        ..haze_preset::MaterialSources::default()
     };
-    names.load("".as_ref()).unwrap()
+    names.load(ImageSource::BuiltIn).unwrap()
 }
 
 /// Normal, vectors to light and viewer, amount and heat.

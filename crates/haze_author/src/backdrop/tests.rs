@@ -399,7 +399,7 @@ fn a_preset_names_its_backdrop_in_its_folder() {
     let load = |scene: &str, sky: &str| {
         let mut preset = Preset::default();
         (preset.environment.scene_file, preset.environment.sky_file) = (scene.into(), sky.into());
-        Backdrop::load(&preset, Path::new("my.json"), &AssetFolders::at(folder.path()))
+        Backdrop::load(&preset, Path::new("my.json"), &AssetFolders::new(folder.path()))
             .map_err(|error| error.to_string())
     };
     assert!(load("court.glb", "").unwrap().scene.is_some() && load("", "").unwrap() == Backdrop::default());

@@ -1,10 +1,10 @@
 //! Columns of a particle file: roles by name, and the valid range of each.
 
 use glam::Vec3;
+use haze_core::error::one_line;
 
 use super::column_role::{ColumnRole, ROLE_COUNT, column_role};
 use super::particle_frame::{FileParticle, ProvidedAttributes};
-use haze_core::error::one_line;
 
 /// Maximum number of columns in a file.
 pub const MAX_COLUMNS: usize = 1024;

@@ -3,7 +3,7 @@
 use glam::{UVec3, Vec3};
 use haze_core::assets::noise::{pcg3d, unit};
 use haze_core::frame::Particle;
-use haze_preset::{EndBehaviour, ParticleFiles, UpAxis};
+use haze_preset::{EndBehavior, ParticleFiles, UpAxis};
 
 use super::particle_frames::{FramePair, ParticleFrames};
 
@@ -12,7 +12,7 @@ impl ParticleFrames {
     pub fn evaluate(&self, source: &ParticleFiles, time: f32, particles: &mut Vec<Particle>) {
         particles.clear();
         let mut frame = (f64::from(time) - f64::from(source.start)) * f64::from(source.fps);
-        if source.after == EndBehaviour::Loop {
+        if source.after == EndBehavior::Loop {
             frame = frame.rem_euclid(f64::from(self.frame_count()));
         }
         let Some(FramePair { before, after, share }) = self.frames_around(frame) else { return };
@@ -83,14 +83,14 @@ mod tests {
             source.after = after;
             at(&source, &frames, time).iter().map(|particle| (particle.position.x, particle.amount)).collect::<Vec<_>>()
         };
-        assert_eq!(seen(EndBehaviour::Hold, 0.9), []);
-        assert_eq!(seen(EndBehaviour::Hold, 1.0), [(0.0, 0.4)]);
-        assert_eq!(seen(EndBehaviour::Hold, 1.25), [(0.5, 0.4), (0.0, 0.2)]);
-        assert_eq!(seen(EndBehaviour::Hold, 1.75), [(1.0, 0.2), (2.0, 0.4)]);
-        assert_eq!(seen(EndBehaviour::Hold, 50.0), [(4.0, 0.4)]);
-        assert_eq!(seen(EndBehaviour::Loop, 2.25), [(4.0, 0.4)]);
+        assert_eq!(seen(EndBehavior::Hold, 0.9), []);
+        assert_eq!(seen(EndBehavior::Hold, 1.0), [(0.0, 0.4)]);
+        assert_eq!(seen(EndBehavior::Hold, 1.25), [(0.5, 0.4), (0.0, 0.2)]);
+        assert_eq!(seen(EndBehavior::Hold, 1.75), [(1.0, 0.2), (2.0, 0.4)]);
+        assert_eq!(seen(EndBehavior::Hold, 50.0), [(4.0, 0.4)]);
+        assert_eq!(seen(EndBehavior::Loop, 2.25), [(4.0, 0.4)]);
         for turn in [-3.0, 0.0, 3.0] {
-            assert_eq!(seen(EndBehaviour::Loop, 2.75 + turn), [(0.5, 0.4), (0.0, 0.2)]);
+            assert_eq!(seen(EndBehavior::Loop, 2.75 + turn), [(0.5, 0.4), (0.0, 0.2)]);
         }
     }
 

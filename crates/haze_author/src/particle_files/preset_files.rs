@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::particle_frames::{Limits, ParticleFrames};
 use haze_core::emitter::MAX_PARTICLES;
 use haze_core::error::{Error, FieldError, one_line};
 use haze_core::frame::{EmitterSnapshot, Particle};
 use haze_preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};
+
+use super::particle_frames::{Limits, ParticleFrames};
 
 /// Maximum memory of the particle files of a preset, bytes.
 pub const MAX_PARTICLE_FILE_BYTES: u64 = 1 << 30;
@@ -119,7 +120,7 @@ mod tests {
             }
             preset
         };
-        let folders = AssetFolders::at(folder.path());
+        let folders = AssetFolders::new(folder.path());
         let check = |paths: &[&str]| check_particle_files(&preset(paths), Path::new("my.json"), &folders);
         let loaded = check(&["good.csv", "", "good.csv"]).unwrap();
         let [Some(first), None, Some(second)] = &loaded[..] else { panic!("two files") };

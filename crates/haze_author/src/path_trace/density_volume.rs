@@ -19,9 +19,9 @@ pub(super) struct Corners {
 }
 
 impl DensityVolume {
-    /// Returns the centre of a voxel.
-    pub fn voxel_centre(&self, voxel: UVec3) -> Vec3 {
-        voxel_centre(self.size, voxel)
+    /// Returns the center of a voxel.
+    pub fn voxel_center(&self, voxel: UVec3) -> Vec3 {
+        voxel_center(self.size, voxel)
     }
 
     /// Returns the trilinearly interpolated density at a position in the cube.
@@ -52,8 +52,8 @@ impl DensityVolume {
     }
 }
 
-/// Returns the centre of a voxel in the cube from -1 to 1, for a grid of `size`.
-pub(crate) fn voxel_centre(size: UVec3, voxel: UVec3) -> Vec3 {
+/// Returns the center of a voxel in the cube from -1 to 1, for a grid of `size`.
+pub(crate) fn voxel_center(size: UVec3, voxel: UVec3) -> Vec3 {
     let p = (voxel.as_vec3() + 0.5) * (2.0 / size.as_vec3()) - 1.0;
     Vec3::new(p.x, -p.y, -p.z)
 }

@@ -38,7 +38,7 @@ pub struct NamedMedium {
 /// Common media. Albedo and anisotropy are of the order of measured values; the density suits a puff.
 pub const MEDIA: &[NamedMedium] = &[
     medium("steam", "white vapour, scatters nearly all light forwards", [0.99, 0.99, 0.995], 0.7, 6.0),
-    medium("ash", "grey, coarse, scatters evenly", [0.72, 0.71, 0.70], 0.2, 8.0),
+    medium("ash", "gray, coarse, scatters evenly", [0.72, 0.71, 0.70], 0.2, 8.0),
     medium("soot", "black, absorbs most of the light", [0.28, 0.25, 0.23], 0.3, 10.0),
     medium("dust", "sand and earth, brown", [0.95, 0.85, 0.70], 0.45, 6.0),
     medium("diesel", "thin, dark and bluish", [0.55, 0.58, 0.63], 0.5, 3.0),

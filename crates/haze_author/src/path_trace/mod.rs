@@ -13,7 +13,7 @@ mod random;
 mod shadows;
 
 pub use density_volume::DensityVolume;
-pub(crate) use density_volume::voxel_centre;
+pub(crate) use density_volume::voxel_center;
 pub use medium::{MEDIA, Medium, NamedMedium};
 
 use glam::{UVec2, Vec3};

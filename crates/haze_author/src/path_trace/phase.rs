@@ -3,9 +3,9 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
+use haze_core::formula::six_way::henyey_greenstein;
 
 use super::random::Random;
-use haze_core::formula::six_way::henyey_greenstein;
 
 /// Returns the phase function for the cosine of a scattering angle, per steradian.
 pub(super) fn phase_function(cos: f32, g: f32) -> f32 {

@@ -1,9 +1,9 @@
 //! Precomputed shadows: integrated density between every voxel and every light.
 
 use glam::{UVec2, UVec3, Vec3};
-
-use super::density_volume::{DensityVolume, exit_distance, trilinear_corners, voxel_centre};
 use haze_core::assets::image::Image;
+
+use super::density_volume::{DensityVolume, exit_distance, trilinear_corners, voxel_center};
 
 /// Integrated density from each voxel towards each light. The entries of a voxel are adjacent.
 pub(super) struct ShadowVolume {
@@ -24,7 +24,7 @@ impl ShadowVolume {
         depths.for_bands(|first, band| {
             for (row, line) in (first..).zip(band.chunks_mut(width as usize * count)) {
                 for (x, depths) in (0..width).zip(line.chunks_mut(count)) {
-                    let from = voxel_centre(size, UVec3::new(x, row % height, row / height));
+                    let from = voxel_center(size, UVec3::new(x, row % height, row / height));
                     for (depth, &light) in depths.iter_mut().zip(lights) {
                         let distance = exit_distance(from, light);
                         let steps = (distance / step).ceil().max(1.0);

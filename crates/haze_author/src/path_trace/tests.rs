@@ -10,7 +10,7 @@ fn ball(size: u32) -> DensityVolume {
     let mut volume = DensityVolume { size: UVec3::splat(size), densities: Vec::new() };
     for index in 0..size.pow(3) {
         let voxel = UVec3::new(index % size, index / size % size, index / (size * size));
-        let r = volume.voxel_centre(voxel).length();
+        let r = volume.voxel_center(voxel).length();
         volume.densities.push(((1.0 - r / 0.95) / 0.4).clamp(0.0, 1.0));
     }
     volume

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use haze_preset::{AssetFolders, ImageCache, ImageSource, MaterialNames, Preset, with_system_context};
+use haze_core::error::Error;
+use haze_preset::{AssetFolders, ImageCache, ImageSource, MaterialSources, Preset, with_system_context};
 
 use super::role_check::role_warnings;
 use crate::backdrop::Backdrop;
 use crate::particle_files::check_particle_files;
-use haze_core::error::Error;
 
 /// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
 /// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
@@ -16,7 +16,7 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
     let mut pictures = ImageCache::new(ImageSource::Folders(folders.clone()));
     let (mut errors, mut warnings) = (Vec::new(), Vec::new());
     for (index, system) in preset.systems.iter().enumerate() {
-        let found = match system.material.load_from(&mut pictures) {
+        let found = match system.material.load_with_cache(&mut pictures) {
             Ok(material) => {
                 let fits = material.info().validate(index, &system.settings);
                 errors.extend(fits.err().map(|error| Error::JsonField { path: path.into(), error }));
@@ -37,9 +37,13 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
 }
 
 /// Warnings about the images of all fields but some.
-fn role_warnings_except(names: &MaterialNames, fields: &[&str], folders: &AssetFolders) -> Vec<(&'static str, String)> {
+fn role_warnings_except(
+    names: &MaterialSources,
+    fields: &[&str],
+    folders: &AssetFolders,
+) -> Vec<(&'static str, String)> {
     let others = names.with_defaults_for(fields);
-    let loaded = others.load_from(&mut ImageCache::new(ImageSource::Folders(folders.clone())));
+    let loaded = others.load_with_cache(&mut ImageCache::new(ImageSource::Folders(folders.clone())));
     loaded.map(|material| role_warnings(&others, &material)).unwrap_or_default()
 }
 
@@ -68,7 +72,7 @@ mod tests {
         name(2, |system| system.material.sprite = "clear.png".into());
         name(3, |system| system.cache.path = "gone.csv".into());
         image::RgbaImage::new(16, 16).save(folder.path().join("clear.png")).unwrap();
-        let (errors, warnings) = check_files(&preset, Path::new("my.json"), &AssetFolders::at(folder.path()));
+        let (errors, warnings) = check_files(&preset, Path::new("my.json"), &AssetFolders::new(folder.path()));
         let errors: Vec<_> = errors.iter().map(ToString::to_string).collect();
         for (said, begins) in errors.iter().zip([
             "my.json: systems[0].material.sprite: ",

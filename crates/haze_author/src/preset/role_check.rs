@@ -1,17 +1,17 @@
 //! Checks images against their role: files that load, but were probably made for another purpose.
 
 use glam::{UVec2, Vec2, Vec3Swizzles as _};
-
-use crate::sprite::lint::{EMPTY_MESSAGE, describe_non_normals, is_clear};
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::ramp::Ramp;
-use haze_preset::MaterialNames;
+use haze_preset::MaterialSources;
+
+use crate::sprite::lint::{EMPTY_MESSAGE, describe_non_normals, is_clear};
 
 /// Largest difference between channels of linear colors that count as equal.
 const SAME: f32 = 1.0 / 64.0;
 
 /// Warnings about images that do not seem to fit their role: the field, and the warning.
-pub fn role_warnings(names: &MaterialNames, loaded: &MaterialAssets) -> Vec<(&'static str, String)> {
+pub fn role_warnings(names: &MaterialSources, loaded: &MaterialAssets) -> Vec<(&'static str, String)> {
     let ramps = [
         ("soft_scatter_ramp", &names.soft_scatter_ramp, &loaded.soft_scatter_ramp),
         ("age_ramp", &names.age_ramp, &loaded.age_ramp),
@@ -141,7 +141,7 @@ mod tests {
     use image::{Rgb, RgbImage};
 
     use super::*;
-    use haze_preset::builtin;
+    use haze_preset::{ImageSource, builtin};
 
     #[test]
     fn images_in_the_wrong_role_are_reported() {
@@ -154,12 +154,12 @@ mod tests {
         save("down.png", (4, 64), |_, y| [4 * y as u8; 3]);
         save("both.png", (64, 64), |x, y| [(x * y / 16) as u8; 3]);
         save("normals.png", (32, 32), |x, y| [112 + x as u8, 112 + y as u8, 240]);
-        let warnings = |change: fn(&mut MaterialNames)| {
-            let mut names = MaterialNames::default();
+        let warnings = |change: fn(&mut MaterialSources)| {
+            let mut names = MaterialSources::default();
             change(&mut names);
-            role_warnings(&names, &names.load(folder.path()).unwrap())
+            role_warnings(&names, &names.load(ImageSource::folder(folder.path())).unwrap())
         };
-        let one = |change: fn(&mut MaterialNames), field: &str, text: &str| {
+        let one = |change: fn(&mut MaterialSources), field: &str, text: &str| {
             let found = warnings(change);
             let [(found_field, found)] = &found[..] else { panic!("{text}: {found:?}") };
             assert!(*found_field == field && found.contains(text), "{found_field}: {found}");

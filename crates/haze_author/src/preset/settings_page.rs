@@ -5,15 +5,15 @@ use std::fmt::{Display, Write as _};
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
-
-use super::no_effect::effect_conditions;
-use super::schema::preset_with_widest_ranges;
-use super::tooltips::Tooltips;
 use haze_core::frame::Light;
 use haze_core::settings::{
     BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, MAX_CURVE_POINTS, field_values,
 };
 use haze_preset::{Ease, Flicker, MAX_KEYFRAMES, Preset, PresetSystem, builtin};
+
+use super::no_effect::effect_conditions;
+use super::schema::preset_with_widest_ranges;
+use super::tooltips::Tooltips;
 
 const HEAD: &str = "\
 # Settings
@@ -21,7 +21,7 @@ const HEAD: &str = "\
 `haze preset settings > docs/settings.md` generates this page from the tables in the code that the sliders of the window use too.
 [Another page](looks.md) says which settings to move for which look. A field that is left out of a preset has its default. Fields of
 lights are those of each entry of `lights`, fields of systems those of each entry of `systems`. A setting with a *When* has no effect
-otherwise: `haze preset check` reports such settings of your preset, and the window greys them out.
+otherwise: `haze preset check` reports such settings of your preset, and the window grays them out.
 ";
 
 /// Returns the page as Markdown.

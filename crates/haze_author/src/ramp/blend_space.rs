@@ -2,10 +2,10 @@
 //! `deterministic_math.rs` for powers, so bakes are bit-identical on every machine.
 
 use glam::Vec3;
-
-use crate::deterministic_math::{power, power_f64};
 use haze_core::error::one_line;
 use haze_core::settings::choice;
+
+use crate::deterministic_math::{power, power_f64};
 
 choice! {
     /// Color space in which a gradient is blended.

@@ -3,12 +3,12 @@
 use std::ops::{Range, RangeInclusive};
 
 use glam::Vec3;
+use haze_core::error::FieldError;
+use haze_core::formula::color::srgb_from_linear;
 use image::DynamicImage;
 
 use super::gradient::PreparedRows;
 use super::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
-use haze_core::error::FieldError;
-use haze_core::formula::color::srgb_from_linear;
 
 /// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's color.
 pub const DEFAULT_MAX_ERROR: f32 = 1.5;

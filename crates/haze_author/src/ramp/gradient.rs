@@ -1,10 +1,10 @@
 //! Gradients: stops and the interpolation between them.
 
 use glam::Vec3;
-
-use super::blend_space::{Blend, HexColor, oklab_from_linear};
 use haze_core::error::FieldError;
 use haze_core::settings::{FieldVisitor, Fields, choice};
+
+use super::blend_space::{Blend, HexColor, oklab_from_linear};
 
 choice! {
     /// Interpolation from one stop to the next, or from one row to the next.
@@ -161,7 +161,7 @@ fn points(blend: Blend, stops: &[RampStop]) -> Vec<ControlPoint> {
     points
 }
 
-/// Unwraps hues so that each is reached from the previous one along the shorter or longer arc. A grey takes the hue of
+/// Unwraps hues so that each is reached from the previous one along the shorter or longer arc. A gray takes the hue of
 /// the previous color, or of the first color with a hue; black takes its saturation too.
 fn unwrap_hues(points: &mut [ControlPoint], far: bool) {
     let has_hue = |point: &&ControlPoint| point.value.y > 0.0 && point.value.z > 0.0;

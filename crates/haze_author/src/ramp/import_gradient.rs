@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use glam::Vec4;
+use haze_core::assets::bounded_read;
+use haze_core::assets::image::read_color_png;
+use haze_core::error::{Error, FieldError, one_line};
 
 use super::blend_space::srgb_from_linear;
 use super::fit_stops::{RampFit, fit_image, validate_max_error};
 use super::gimp;
 use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
 use super::ramp_recipe::{Blend, Curve, HexColor, RampStop};
-use haze_core::assets::bounded_read;
-use haze_core::assets::image::read_color_png;
-use haze_core::error::{Error, FieldError, one_line};
 
 /// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;

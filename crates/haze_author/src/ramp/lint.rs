@@ -1,11 +1,11 @@
 //! Checks a ramp's image for visible defects.
 
 use glam::Vec3;
+use haze_core::assets::ramp::RampRole;
+use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use image::DynamicImage;
 
 use crate::finding::Finding;
-use haze_core::assets::ramp::RampRole;
-use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 
 /// Minimum jump in luminance that counts as a step or a seam, of 255: a twentieth of white.
 const JUMP: f32 = 12.0;
@@ -156,7 +156,7 @@ mod tests {
     fn built_in_ramps_and_templates_have_no_findings() {
         for ramp in builtin::RAMPS {
             let picture = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
-            let role = RampRole::of_name(ramp.name);
+            let role = RampRole::from_name(ramp.name);
             assert!(role.is_some());
             assert_eq!(lint_ramp(&picture, role), [], "{}", ramp.name);
         }
@@ -170,35 +170,35 @@ mod tests {
         }
     }
 
-    fn grey(width: u32, height: u32, value: impl Fn(u32, u32) -> u32) -> DynamicImage {
+    fn gray(width: u32, height: u32, value: impl Fn(u32, u32) -> u32) -> DynamicImage {
         DynamicImage::ImageRgb8(ImageBuffer::from_fn(width, height, |x, y| Rgb([value(x, y) as u8; 3])))
     }
 
     #[test]
     fn every_finding_is_found() {
         // 40 codes over 256 texels, without and with dithering.
-        assert_eq!(names(&grey(256, 1, |x, _| 20 + x * 40 / 256), None), ["banding"]);
-        assert_eq!(names(&grey(16, 256, |x, y| 20 + x * 8 + y * 40 / 256), None), ["banding"]);
-        let stop = |at, grey| RampStop::new(at, HexColor([grey; 3]));
+        assert_eq!(names(&gray(256, 1, |x, _| 20 + x * 40 / 256), None), ["banding"]);
+        assert_eq!(names(&gray(16, 256, |x, y| 20 + x * 8 + y * 40 / 256), None), ["banding"]);
+        let stop = |at, gray| RampStop::new(at, HexColor([gray; 3]));
         let rows = vec![RampRow { stops: vec![stop(0.0, 20), stop(1.0, 60)], ..RampRow::default() }];
         assert!(names(&RampRecipe { bits: 8, rows, ..RampRecipe::default() }.bake().unwrap(), None).is_empty());
 
-        let toon = grey(256, 1, |x, _| if x < 100 { 30 } else { 200 });
+        let toon = gray(256, 1, |x, _| if x < 100 { 30 } else { 200 });
         assert_eq!(names(&toon, Some(RampRole::Scatter)), ["step"]);
         assert!(names(&toon, Some(RampRole::Diffuse)).is_empty() && names(&toon, None).is_empty());
         let hard = Curve::Constant;
-        let rows = [(0.0, 0), (0.5, 90)].map(|(at, grey)| RampRow {
+        let rows = [(0.0, 0), (0.5, 90)].map(|(at, gray)| RampRow {
             at,
             curve: hard,
-            stops: vec![stop(0.0, grey), stop(1.0, 0)],
+            stops: vec![stop(0.0, gray), stop(1.0, 0)],
         });
         let rings = RampRecipe { width: 64, height: 64, rows: rows.into(), ..RampRecipe::default() };
         assert_eq!(names(&rings.bake().unwrap(), Some(RampRole::Specular)), ["step"]);
 
-        let framed = grey(64, 1, |x, _| if x == 63 { 0 } else { 60 + x * 3 });
+        let framed = gray(64, 1, |x, _| if x == 63 { 0 } else { 60 + x * 3 });
         assert_eq!(names(&framed, None), ["seam"]);
         assert_eq!(names(&framed.fliph(), None), ["seam"]);
-        let turned = grey(1, 64, |_, y| y * 4);
+        let turned = gray(1, 64, |_, y| y * 4);
         assert_eq!(names(&turned, Some(RampRole::Diffuse)), ["turned"]);
 
         let recipe = TEMPLATES.iter().find(|template| template.role == RampRole::Specular).unwrap().recipe();
@@ -220,14 +220,14 @@ mod tests {
     #[test]
     fn images_of_few_texels_do_not_panic() {
         for (width, height) in [(1, 1), (2, 1), (1, 2), (3, 3), (4, 1), (5, 5), (6, 6)] {
-            names(&grey(width, height, |x, y| (x * 97 + y * 61) % 256), Some(RampRole::Specular));
+            names(&gray(width, height, |x, y| (x * 97 + y * 61) % 256), Some(RampRole::Specular));
         }
     }
 
     #[test]
     fn the_role_follows_from_the_file_name() {
-        assert_eq!(RampRole::of_name("specular_moon.png"), Some(RampRole::Specular));
-        assert_eq!(RampRole::of_name("age.ramp.json"), Some(RampRole::Age));
-        assert_eq!(RampRole::of_name("moon.png"), None);
+        assert_eq!(RampRole::from_name("specular_moon.png"), Some(RampRole::Specular));
+        assert_eq!(RampRole::from_name("age.ramp.json"), Some(RampRole::Age));
+        assert_eq!(RampRole::from_name("moon.png"), None);
     }
 }

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec2, Vec3};
-use image::DynamicImage;
-
-use super::blend_space::{HexColor, srgb16_from_linear};
-use super::ramp_recipe::image_of;
 use haze_core::assets::image::Image;
 use haze_core::assets::json;
 use haze_core::error::{Error, FieldError};
 use haze_core::formula::diffuse_bake::motif_normal;
 use haze_core::formula::saturate;
 use haze_core::settings::{FieldVisitor, Fields, validate};
+use image::DynamicImage;
+
+use super::blend_space::{HexColor, srgb16_from_linear};
+use super::ramp_recipe::image_of;
 
 /// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;

@@ -1,7 +1,8 @@
 //! Parses and evaluates formulas for the position on a ramp, such as `smoothstep(0, 0.2 + v, u)`.
 
-use crate::deterministic_math::{exp, power};
 use haze_core::error::{FieldError, one_line};
+
+use crate::deterministic_math::{exp, power};
 
 /// Maximum length of a formula, bytes.
 const MAX_LENGTH: usize = 1000;

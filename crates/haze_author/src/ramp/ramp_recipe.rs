@@ -3,6 +3,10 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec2, Vec3};
+use haze_core::assets::image::{Image, MAX_BYTES, MAX_SIDE};
+use haze_core::assets::json;
+use haze_core::error::{Error, FieldError};
+use haze_core::settings::{FieldVisitor, Fields, validate};
 use image::{DynamicImage, ImageBuffer};
 
 use super::blend_space::srgb16_from_linear;
@@ -10,10 +14,6 @@ pub use super::blend_space::{Blend, HexColor};
 pub use super::gradient::{Curve, RampRow, RampStop};
 use super::gradient::{PreparedRows, check_not_empty};
 use super::place_formula::Formula;
-use haze_core::assets::image::{Image, MAX_BYTES, MAX_SIDE};
-use haze_core::assets::json;
-use haze_core::error::{Error, FieldError};
-use haze_core::settings::{FieldVisitor, Fields, validate};
 
 /// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
@@ -115,7 +115,7 @@ impl RampRecipe {
 
     /// Returns the recipe as JSON that [`RampRecipe::parse`] reads, ending with a line break. Each stop takes one line;
     /// fields at their default are omitted.
-    pub fn to_text(&self) -> String {
+    pub fn to_json(&self) -> String {
         // Numbers and strings only, so serialisation cannot fail.
         let pretty = serde_json::to_string_pretty(self).unwrap_or_default();
         let mut text = String::new();

@@ -1,7 +1,8 @@
 //! Templates for new ramps.
 
-use super::ramp_recipe::{Curve, HexColor, RampRecipe, RampRow, RampStop};
 use haze_core::assets::ramp::RampRole;
+
+use super::ramp_recipe::{Curve, HexColor, RampRecipe, RampRow, RampStop};
 
 /// A position, 0 to 1, and an sRGB color, `0xrrggbb`.
 type Stop = (f32, u32);
@@ -38,7 +39,7 @@ pub const TEMPLATES: &[Template] = &[
     one_axis(
         RampRole::Diffuse,
         "neutral",
-        "grey, even to the eye",
+        "gray, even to the eye",
         Curve::Monotone,
         &[(0.0, 0x1a1a1a), (0.5, 0x7a7a7a), (1.0, 0xffffff)],
     ),
@@ -66,7 +67,7 @@ pub const TEMPLATES: &[Template] = &[
     one_axis(
         RampRole::Diffuse,
         "ash",
-        "warm greys, never bright",
+        "warm grays, never bright",
         Curve::Monotone,
         &[(0.0, 0x1d1a18), (0.35, 0x474240), (0.7, 0x8d8680), (1.0, 0xcfc7bd)],
     ),
@@ -166,7 +167,7 @@ pub const TEMPLATES: &[Template] = &[
     one_axis(
         RampRole::Age,
         "embers",
-        "born as fire, grey when old",
+        "born as fire, gray when old",
         Curve::Monotone,
         &[(0.0, 0xfff2c8), (0.1, 0xf09a3c), (0.3, 0x7a3018), (0.6, 0x4a4340), (1.0, 0x8a8580)],
     ),

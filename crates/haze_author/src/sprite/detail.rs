@@ -6,12 +6,12 @@
 //! of [`MOTION_RANGE`] sides for g and b.
 
 use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
-use image::Rgba;
-
-use crate::deterministic_math::exp;
 use haze_core::assets::image::Image;
 use haze_core::assets::sprite::Sprite;
 use haze_core::formula::sprite::MOTION_RANGE;
+use image::Rgba;
+
+use crate::deterministic_math::exp;
 
 /// Mip level of the sprite with the size of the detail map. Depth and motion are smooth enough for a quarter of the
 /// size.

@@ -6,7 +6,7 @@ use haze_core::assets::image::Image;
 
 pub fn map_pixels(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Image<f32> {
     let mut picture = Image::new(size, 0.0);
-    picture.for_each(|at, grey| *grey = value(at));
+    picture.for_each(|at, gray| *gray = value(at));
     picture
 }
 

@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec3, Vec4};
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
+use haze_core::formula::saturate;
+use haze_core::formula::six_way::SixWay;
+use haze_core::settings::choice;
 use image::{Rgba, RgbaImage, imageops};
 
 use super::height::{dome_heights, map_pixels, normal_of};
 use super::lint::{clear_borders, describe_non_normals};
 use super::six_way::{Packing, pack};
 use super::y_direction::{MIN_CONFIDENCE, YDirection, y_direction};
-use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_core::error::Error;
-use haze_core::formula::saturate;
-use haze_core::formula::six_way::SixWay;
-use haze_core::settings::choice;
 
 choice! {
     /// Contents of an imported image.
@@ -21,9 +21,9 @@ choice! {
         /// rgb = normals, a = amount.
         #[default]
         Normals = "normals",
-        /// Grey = height, a = amount.
+        /// Gray = height, a = amount.
         Height = "height",
-        /// a = amount, or grey if there is no alpha. Normals are those of a dome over the silhouette.
+        /// a = amount, or gray if there is no alpha. Normals are those of a dome over the silhouette.
         Alpha = "alpha",
         /// Two light maps in the layout of Unity's VFX Graph: right, top, back; left, bottom, front. Alpha of the first
         /// = amount.
@@ -233,8 +233,8 @@ mod tests {
         // A dome is not an exact hemisphere. For comparison, normals that all face the viewer have an error of 0.75.
         let alpha = balls(|_, amount| [1.0, 1.0, 1.0, amount]);
         assert!(off(&[alpha], ImportSource::Alpha, None, 1.0) < 0.45);
-        let grey = balls(|_, amount| [amount, amount, amount, 1.0]);
-        assert!(off(&[grey], ImportSource::Alpha, None, 1.0) < 0.45);
+        let gray = balls(|_, amount| [amount, amount, amount, 1.0]);
+        assert!(off(&[gray], ImportSource::Alpha, None, 1.0) < 0.45);
         // Light on a surface from each side.
         let light = |axis: Vec3| move |normal: Vec3| 0.1 + 0.9 * normal.dot(axis).max(0.0);
         let sheet = |axes: [Vec3; 3]| {
@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn frames_are_arranged_on_a_sheet_without_empty_cells() {
-        let frame = |grey: u8| (Path::new("a.png"), RgbaImage::from_pixel(4, 4, Rgba([grey; 4])));
+        let frame = |gray: u8| (Path::new("a.png"), RgbaImage::from_pixel(4, 4, Rgba([gray; 4])));
         let frames: Vec<_> = (0..6).map(|index| frame(index * 10)).collect();
         let (sheet, layout) = arrange_sheet(&frames).unwrap();
         assert_eq!((sheet.dimensions(), layout), ((12, 8), UVec2::new(3, 2)));

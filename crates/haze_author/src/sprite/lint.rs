@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
+use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
 use image::RgbaImage;
 
 use super::y_direction::{MIN_CONFIDENCE, normal, y_direction};
 use crate::finding::Finding;
-use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_core::error::Error;
 
 /// Minimum amount of a texel that is examined.
 const MIN_AMOUNT: f32 = 0.1;
@@ -25,7 +25,7 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 /// - `length`: normals do not have unit length.
 /// - `y_down`: green points in the other direction.
 /// - `border`: a frame is not clear at its border.
-/// - `premultiplied`: normals fade to black or grey with alpha.
+/// - `premultiplied`: normals fade to black or gray with alpha.
 /// - `loop`: the last frame differs from the first more than neighbouring frames differ.
 ///
 /// # Errors
@@ -59,7 +59,7 @@ pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Re
         let off = lengths.iter().filter(|length| !(LENGTHS[0]..LENGTHS[1]).contains(length)).count();
         off as f32 / lengths.len().max(1) as f32
     };
-    // Normals that are wrong only at small amounts are premultiplied or painted over grey.
+    // Normals that are wrong only at small amounts are premultiplied or painted over gray.
     let (faint, solid) = (lengths(MIN_AMOUNT, 0.6), lengths(0.9, 2.0));
     let fades = premultiplied(&sprite);
     if let Some(towards) = fades {
@@ -128,12 +128,12 @@ pub fn is_clear(sprite: &Sprite) -> bool {
 
 /// Returns a description of the sprite's contents if they are not normals.
 pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
-    let (mut count, mut sum, mut grey, mut away, mut unlike) = (0.0_f32, Vec3::ZERO, 0.0, 0.0, 0.0);
+    let (mut count, mut sum, mut gray, mut away, mut unlike) = (0.0_f32, Vec3::ZERO, 0.0, 0.0, 0.0);
     for texel in texels(sprite).filter(|texel| texel.w >= 0.5) {
         count += 1.0;
         sum += normal(texel);
         let color = texel.xyz();
-        grey += f32::from(color.max_element() - color.min_element() < 0.02);
+        gray += f32::from(color.max_element() - color.min_element() < 0.02);
         away += f32::from(color.z < 0.45);
         unlike += f32::from((normal(texel).length() - 1.0).abs() > 0.4);
     }
@@ -141,8 +141,8 @@ pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
     if count <= 0.0 || premultiplied(sprite).is_some() {
         return None;
     }
-    if grey > 0.9 * count {
-        return Some("shades of grey; expected normals: `haze sprite import` converts heights or alpha");
+    if gray > 0.9 * count {
+        return Some("shades of gray; expected normals: `haze sprite import` converts heights or alpha");
     }
     // The mean normal of a whole sprite points at the viewer; colors of a painting have another mean.
     let mean = sum / count;
@@ -152,22 +152,22 @@ pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
         .then_some("colors, not normals; expected x in red, y in green and z, mostly above 1/2, in blue")
 }
 
-/// Returns the color that normals fade to at small amounts: black if they were multiplied by alpha, grey if they were
-/// painted over grey. `None` for straight alpha.
+/// Returns the color that normals fade to at small amounts: black if they were multiplied by alpha, gray if they were
+/// painted over gray. `None` for straight alpha.
 fn premultiplied(sprite: &Sprite) -> Option<&'static str> {
-    let (mut count, mut straight, mut black, mut grey) = (0.0_f32, 0.0, 0.0, 0.0);
+    let (mut count, mut straight, mut black, mut gray) = (0.0_f32, 0.0, 0.0, 0.0);
     for texel in texels(sprite).filter(|texel| (MIN_AMOUNT..0.7).contains(&texel.w)) {
         let off = |normal: Vec3| (normal.length() - 1.0).abs();
         count += 1.0;
         straight += off(normal(texel));
         black += off(texel.xyz() / texel.w * 2.0 - 1.0);
-        grey += off(normal(texel) / texel.w);
+        gray += off(normal(texel) / texel.w);
     }
     // Undoing the multiplication restores unit length.
     let explains = |off: f32| count > 0.0 && straight > 0.15 * count && off < 0.5 * straight;
     match () {
-        () if explains(black) && black <= grey => Some("black"),
-        () if explains(grey) => Some("grey"),
+        () if explains(black) && black <= gray => Some("black"),
+        () if explains(gray) => Some("gray"),
         () => None,
     }
 }
@@ -244,11 +244,11 @@ mod tests {
             names(&changed(|[r, g, b, a]| [r * a / 255.0, g * a / 255.0, b * a / 255.0, a]), LAYOUT),
             ["premultiplied"]
         );
-        let over_grey = |[r, g, b, a]: [f32; 4]| {
+        let over_gray = |[r, g, b, a]: [f32; 4]| {
             let fade = scaled(a / 255.0);
             [fade(r), fade(g), fade(b), a]
         };
-        assert_eq!(names(&changed(over_grey), LAYOUT), ["premultiplied"]);
+        assert_eq!(names(&changed(over_gray), LAYOUT), ["premultiplied"]);
         assert_eq!(names(&changed(|[_, g, _, a]| [g, g, g, a]), LAYOUT), ["normals"]);
         // Colors of fire and of a sky.
         assert_eq!(names(&changed(|[r, g, _, a]| [255.0, g * 0.6, r * 0.2, a]), LAYOUT), ["normals"]);

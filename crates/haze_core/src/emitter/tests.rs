@@ -232,7 +232,7 @@ fn particles_bounce_off_the_floor_and_come_to_rest() {
 fn box_of_an_emission_contains_its_particles() {
     let mut stretched = Settings::default();
     (stretched.sprite.stretch, stretched.sprite.stretch_limit) = (0.2, 20.0);
-    for extent in [Settings::default(), stretched].map(|settings| SpriteExtent::of(&settings)) {
+    for extent in [Settings::default(), stretched].map(|settings| SpriteExtent::from_settings(&settings)) {
         for emitter in emitters() {
             for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
                 let (measured, promised) =

@@ -49,7 +49,7 @@ pub fn smoothstep_unit(x: f32) -> f32 {
     s * s * (3.0 - 2.0 * s)
 }
 
-/// Birth position relative to the centre of the shape, metres.
+/// Birth position relative to the center of the shape, metres.
 pub fn birth_offset(emitter: &EmitterUniform, random: Vec3) -> Vec3 {
     match emitter.shape {
         EMITTER_SHAPE_BOX => (random * 2.0 - 1.0) * emitter.extent,

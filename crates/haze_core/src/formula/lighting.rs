@@ -73,7 +73,7 @@ pub fn coverage(amount: f32, boost: f32) -> f32 {
 }
 
 /// Share that a color of a coverage or heat ramp stands for. It is the sRGB code of the color's luminance, so that a
-/// displayed middle grey is half.
+/// displayed middle gray is half.
 pub fn painted_share(paint: Vec3) -> f32 {
     srgb_from_linear(saturate(luminance(paint)))
 }
@@ -87,7 +87,7 @@ pub fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) 
 /// Number of taps of [`visibility_tap`].
 pub const VISIBILITY_TAPS: u32 = 9;
 
-/// Offset of a visibility tap from the centre of a light, pixels: 8 taps on a ring of `radius`, and the centre as the
+/// Offset of a visibility tap from the center of a light, pixels: 8 taps on a ring of `radius`, and the center as the
 /// last.
 pub fn visibility_tap(index: u32, radius: f32) -> Vec2 {
     if index == 8 { Vec2::ZERO } else { Vec2::from_angle(index as f32 * std::f32::consts::FRAC_PI_4) * radius }

@@ -4,8 +4,8 @@ use glam::Vec4;
 
 use super::saturate;
 
-/// Number of view depths for which the optical depth in front is stored. `FRONT_KNOTS` in order.wgsl.
-pub const FRONT_KNOTS: usize = 16;
+/// Number of view depths for which the optical depth in front is stored. `OPTICAL_DEPTH_KNOTS` in order.wgsl.
+pub const OPTICAL_DEPTH_KNOTS: usize = 16;
 
 /// Relative position of a view depth among the knots, 0..=1: `smoke_near` is at 0.25, `smoke_far` at 0.75.
 pub fn knot_coordinate(view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
@@ -16,8 +16,8 @@ pub fn knot_coordinate(view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 
 /// Optical depth of the smoke in front of a view depth, interpolated between the knots.
 pub fn optical_depth_in_front(knots: &[Vec4; 4], view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     let knots: &[f32] = bytemuck::cast_slice(knots);
-    let place = knot_coordinate(view_depth, smoke_near, smoke_far) * (FRONT_KNOTS - 1) as f32;
-    let low = (place as usize).min(FRONT_KNOTS - 2);
+    let place = knot_coordinate(view_depth, smoke_near, smoke_far) * (OPTICAL_DEPTH_KNOTS - 1) as f32;
+    let low = (place as usize).min(OPTICAL_DEPTH_KNOTS - 2);
     knots[low] + (knots[low + 1] - knots[low]) * (place - low as f32)
 }
 

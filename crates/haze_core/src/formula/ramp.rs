@@ -5,7 +5,7 @@ use glam::{UVec2, Vec2, Vec3, Vec4Swizzles};
 use super::texture::Texture2d;
 use crate::settings::RampFilter;
 
-/// Texel coordinate of a ramp coordinate: 0 and 1 map to the centres of the first and the last texel.
+/// Texel coordinate of a ramp coordinate: 0 and 1 map to the centers of the first and the last texel.
 pub fn ramp_texel(size: UVec2, coordinate: Vec2) -> Vec2 {
     coordinate.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0)
 }

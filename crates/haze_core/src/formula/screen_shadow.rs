@@ -9,9 +9,9 @@ pub fn smoother_step(a: Vec3, b: Vec3) -> Vec3 {
 }
 
 /// Normal of the scene at a pixel, towards the viewer, from the positions of the pixel and its four neighbours.
-pub fn scene_normal(centre: Vec3, left: Vec3, right: Vec3, above: Vec3, below: Vec3) -> Vec3 {
-    let across = smoother_step(centre - left, right - centre);
-    let up = smoother_step(centre - below, above - centre);
+pub fn scene_normal(center: Vec3, left: Vec3, right: Vec3, above: Vec3, below: Vec3) -> Vec3 {
+    let across = smoother_step(center - left, right - center);
+    let up = smoother_step(center - below, above - center);
     let normal = across.cross(up);
     normal / normal.length_squared().max(1.0e-30).sqrt()
 }

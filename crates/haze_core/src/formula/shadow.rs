@@ -42,7 +42,7 @@ pub fn light_disc_offset(step: u32, direction: Vec3) -> Vec3 {
     (right * angle.cos() + right.cross(direction) * angle.sin()) * place.x.sqrt()
 }
 
-/// Optical depth of a sprite's own smoke from its centre outwards, as a lookup at its centre finds it.
+/// Optical depth of a sprite's own smoke from its center outwards, as a lookup at its center finds it.
 ///
 /// It is c · mass / width². The variance r²/7 of the bump along each axis grows with the size of the cells and by the
 /// trilinear lookups of the march and of the result; `2.0` is fitted to the mean over places between cells. c is 7/4π for
@@ -84,7 +84,7 @@ pub fn channel_of_slot(slot: f32) -> Vec3 {
 }
 
 /// Value of a light with shadow: a channel of `values`, those of its block, by its slot; 0 without a slot.
-pub fn of_slot(slot: f32, values: Vec3) -> f32 {
+pub fn select_slot(slot: f32, values: Vec3) -> f32 {
     values.dot(channel_of_slot(slot - block_of_slot(slot) * LIGHTS_PER_BLOCK as f32))
 }
 

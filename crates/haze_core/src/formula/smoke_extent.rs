@@ -20,8 +20,8 @@ pub fn half_extent(mean_square: f32, mean: f32) -> f32 {
     (3.0 * (mean_square - mean * mean).max(0.0)).sqrt()
 }
 
-/// Distance that a sprite reaches behind the centre. A nearly transparent sprite contributes less, so that its death
+/// Distance that a sprite reaches behind the center. A nearly transparent sprite contributes less, so that its death
 /// causes no jump. `back`: view depth of the sprite's back.
-pub fn reach_behind(amount: f32, back: f32, centre_depth: f32) -> f32 {
-    (back - centre_depth).max(0.0) * (saturate(amount) / NEARLY_TRANSPARENT).min(1.0)
+pub fn reach_behind(amount: f32, back: f32, center_depth: f32) -> f32 {
+    (back - center_depth).max(0.0) * (saturate(amount) / NEARLY_TRANSPARENT).min(1.0)
 }

@@ -128,7 +128,7 @@ pub fn sprite_corner(index: u32) -> Vec2 {
 }
 
 /// Corner of a sprite's trimmed rectangle, −1..1, y up. `corner` is the one of the full square; `reach` is the extent
-/// from the centre to the left, bottom, right and top, as shares of half a side.
+/// from the center to the left, bottom, right and top, as shares of half a side.
 pub fn trimmed_corner(corner: Vec2, reach: Vec4) -> Vec2 {
     Vec2::select(corner.cmpgt(Vec2::ZERO), reach.zw(), -reach.xy())
 }

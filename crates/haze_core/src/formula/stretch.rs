@@ -10,15 +10,15 @@ pub fn stretch_ratio(length: f32, radius: f32, limit: f32) -> f32 {
     (1.0 + 0.5 * length / radius.max(1.0e-6)).min(limit)
 }
 
-/// Velocity across the line of sight at a particle's depth. `centre` and `velocity`: view space.
-pub fn velocity_on_screen(centre: Vec3, velocity: Vec3, orthographic: f32) -> Vec2 {
-    let approach = velocity.z * (1.0 - orthographic) / (-centre.z).max(1.0e-3);
-    velocity.xy() + centre.xy() * approach
+/// Velocity across the line of sight at a particle's depth. `center` and `velocity`: view space.
+pub fn velocity_on_screen(center: Vec3, velocity: Vec3, orthographic: f32) -> Vec2 {
+    let approach = velocity.z * (1.0 - orthographic) / (-center.z).max(1.0e-3);
+    velocity.xy() + center.xy() * approach
 }
 
 /// Stretch of a sprite. `seconds`: time for which the shutter is open.
-pub fn sprite_stretch(centre: Vec3, velocity: Vec3, seconds: f32, radius: f32, limit: f32, orthographic: f32) -> Vec2 {
-    let across = velocity_on_screen(centre, velocity, orthographic);
+pub fn sprite_stretch(center: Vec3, velocity: Vec3, seconds: f32, radius: f32, limit: f32, orthographic: f32) -> Vec2 {
+    let across = velocity_on_screen(center, velocity, orthographic);
     let speed = across.length();
     // Beside the viewer, a particle that comes closer passes faster than it moves.
     let ratio = stretch_ratio(speed.min(velocity.length()) * seconds, radius, limit);
@@ -35,7 +35,7 @@ pub fn widened_share(radius: f32, wide: f32, thin: Vec2, stretch: Vec2) -> f32 {
     (ratio * ratio * (1.0 - stretch.dot(stretch)) / (1.0 - thin.dot(thin)).max(1.0e-4)).min(1.0)
 }
 
-/// Position on a sprite at rest to its position on the stretched one, relative to the centre.
+/// Position on a sprite at rest to its position on the stretched one, relative to the center.
 pub fn stretched(place: Vec2, stretch: Vec2) -> Vec2 {
     place + stretch * (stretch.dot(place) / (1.0 - stretch.dot(stretch)).max(1.0e-4))
 }
@@ -57,9 +57,9 @@ mod tests {
 
     #[test]
     fn a_sprite_grows_by_its_path_up_to_the_limit() {
-        let centre = Vec3::new(0.0, 0.0, -5.0);
+        let center = Vec3::new(0.0, 0.0, -5.0);
         for (speed, expected) in [(0.0, 1.0), (2.0, 2.0), (6.0, 4.0), (1.0e6, 4.0)] {
-            let stretch = sprite_stretch(centre, Vec3::new(speed, 0.0, 0.0), 0.5, 0.5, 4.0, 0.0);
+            let stretch = sprite_stretch(center, Vec3::new(speed, 0.0, 0.0), 0.5, 0.5, 4.0, 0.0);
             let tip = stretched(Vec2::new(1.0, 1.0), stretch);
             assert!((tip - Vec2::new(expected, 1.0)).abs().max_element() < 1e-4, "{tip}");
             assert!((unstretched(tip, stretch) - Vec2::ONE).abs().max_element() < 1e-4);
@@ -68,8 +68,8 @@ mod tests {
 
     #[test]
     fn a_wider_sprite_hides_as_much_as_before() {
-        let centre = Vec3::new(0.0, 0.0, -5.0);
-        let of = |radius| sprite_stretch(centre, Vec3::X * 3.0, 0.1, radius, 100.0, 0.0);
+        let center = Vec3::new(0.0, 0.0, -5.0);
+        let of = |radius| sprite_stretch(center, Vec3::X * 3.0, 0.1, radius, 100.0, 0.0);
         let area = |radius: f32| radius * radius / (1.0 - of(radius).length_squared());
         let (radius, wide) = (0.01, 0.05);
         let kept = widened_share(radius, wide, of(radius), of(wide));

@@ -21,16 +21,16 @@ pub struct RayInterval {
     pub enter: f32,
     /// Distance at which the ray leaves. The interval is empty if this is not greater than `enter`.
     pub leave: f32,
-    /// Vector from the centre of the sphere to the nearest point of the ray's line.
+    /// Vector from the center of the sphere to the nearest point of the ray's line.
     pub axis: Vec3,
 }
 
 /// Intersects a ray of unit length with a sphere. `near` and `scene` are distances along the ray. Half the chord is w =
 /// √(r² − q²). (BLOG 2)
-pub fn ray_sphere(origin: Vec3, direction: Vec3, centre: Vec3, radius: f32, near: f32, scene: f32) -> RayInterval {
-    let to_centre = centre - origin;
-    let middle = to_centre.dot(direction);
-    let axis = direction * middle - to_centre;
+pub fn ray_sphere(origin: Vec3, direction: Vec3, center: Vec3, radius: f32, near: f32, scene: f32) -> RayInterval {
+    let to_center = center - origin;
+    let middle = to_center.dot(direction);
+    let axis = direction * middle - to_center;
     let half_chord = (radius * radius - axis.length_squared()).max(0.0).sqrt();
     RayInterval { enter: (middle - half_chord).max(near), leave: (middle + half_chord).min(scene), axis }
 }
@@ -58,7 +58,7 @@ pub fn density_amount(density: f32, thickness: f32) -> f32 {
     1.0 - (-density * thickness).exp()
 }
 
-/// Falloff of a volume from its centre. `place` is the position in the sphere, −1..1. (MS "March", step 3)
+/// Falloff of a volume from its center. `place` is the position in the sphere, −1..1. (MS "March", step 3)
 pub fn volumetric_falloff(place: Vec3) -> f32 {
     saturate(1.0 - place.length_squared())
 }
@@ -82,18 +82,18 @@ pub fn volumetric_normal(place: Vec3, gradient: Vec3) -> Vec3 {
     normal.with_z(normal.z.max(0.1)).normalize()
 }
 
-/// Lower and upper bound of a sphere's projection on one axis, as position / depth, clipped at the near plane. `centre`
+/// Lower and upper bound of a sphere's projection on one axis, as position / depth, clipped at the near plane. `center`
 /// is (position on the axis, depth). (Mara and McGuire, JCGT 2013)
-pub fn sphere_axis_bounds(centre: Vec2, radius: f32, near: f32) -> Vec2 {
-    let clipped = centre.y - radius < near;
-    let cut = (radius * radius - (near - centre.y) * (near - centre.y)).max(0.0).sqrt();
-    let mut bounds = Vec2::new(centre.x - cut, centre.x + cut) / near;
-    let tangent_squared = centre.length_squared() - radius * radius;
+pub fn sphere_axis_bounds(center: Vec2, radius: f32, near: f32) -> Vec2 {
+    let clipped = center.y - radius < near;
+    let cut = (radius * radius - (near - center.y) * (near - center.y)).max(0.0).sqrt();
+    let mut bounds = Vec2::new(center.x - cut, center.x + cut) / near;
+    let tangent_squared = center.length_squared() - radius * radius;
     if tangent_squared > 0.0 {
-        let distance = centre.length();
+        let distance = center.length();
         let (cosine, sine) = (tangent_squared.sqrt() / distance, radius / distance);
-        let lower = Vec2::new(cosine * centre.x - sine * centre.y, cosine * centre.y + sine * centre.x);
-        let upper = Vec2::new(cosine * centre.x + sine * centre.y, cosine * centre.y - sine * centre.x);
+        let lower = Vec2::new(cosine * center.x - sine * center.y, cosine * center.y + sine * center.x);
+        let upper = Vec2::new(cosine * center.x + sine * center.y, cosine * center.y - sine * center.x);
         if !clipped || lower.y * cosine > near {
             bounds.x = lower.x / lower.y;
         }
@@ -119,16 +119,16 @@ mod tests {
             (Vec2::new(0.4, -0.2), 0.35),
             (Vec2::new(2.0, 0.05), 1.0),
         ];
-        for (centre, radius) in spheres {
-            let bounds = sphere_axis_bounds(centre, radius, near);
-            let points = (0..100_000).map(|i| centre + Vec2::from_angle(i as f32 * 6.283_2e-5) * radius);
-            let cut = (radius * radius - (near - centre.y) * (near - centre.y)).max(0.0).sqrt();
-            let rim = [centre.x - cut, centre.x + cut].map(|x| Vec2::new(x, near));
-            let rim = rim.into_iter().filter(|_| (near - centre.y).abs() < radius);
+        for (center, radius) in spheres {
+            let bounds = sphere_axis_bounds(center, radius, near);
+            let points = (0..100_000).map(|i| center + Vec2::from_angle(i as f32 * 6.283_2e-5) * radius);
+            let cut = (radius * radius - (near - center.y) * (near - center.y)).max(0.0).sqrt();
+            let rim = [center.x - cut, center.x + cut].map(|x| Vec2::new(x, near));
+            let rim = rim.into_iter().filter(|_| (near - center.y).abs() < radius);
             let seen = points.filter(|point| point.y >= near).chain(rim).map(|point| point.x / point.y);
             let (low, high) = seen.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             let close = |a: f32, b: f32| (a - b).abs() < 1e-3 * (1.0 + b.abs());
-            assert!(close(bounds.x, low) && close(bounds.y, high), "{centre} {radius}: {bounds}, not {low}..{high}");
+            assert!(close(bounds.x, low) && close(bounds.y, high), "{center} {radius}: {bounds}, not {low}..{high}");
         }
     }
 }

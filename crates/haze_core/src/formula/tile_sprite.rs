@@ -49,9 +49,9 @@ pub fn bytes_below(count: u32) -> u32 {
     ((1_u64 << (8 * count)) - 1) as u32
 }
 
-/// uv in a sprite's square at a texel. `uv_from_texels`: rows of the matrix from texels, relative to the centre, to uv.
-pub fn uv_in_square(uv_from_texels: Vec4, centre: Vec2, texel: Vec2) -> Vec2 {
-    let offset = texel - centre;
+/// uv in a sprite's square at a texel. `uv_from_texels`: rows of the matrix from texels, relative to the center, to uv.
+pub fn uv_in_square(uv_from_texels: Vec4, center: Vec2, texel: Vec2) -> Vec2 {
+    let offset = texel - center;
     Vec2::new(uv_from_texels.xy().dot(offset), uv_from_texels.zw().dot(offset)) + 0.5
 }
 
@@ -78,7 +78,7 @@ pub fn touches(is_sphere: bool, cells: UVec2, uv: Vec2) -> bool {
     is_sphere || is_filled(cells, uv)
 }
 
-/// Approximate amount of a sprite at a position in its square: puffs are thick in the centre and thin out.
+/// Approximate amount of a sprite at a position in its square: puffs are thick in the center and thin out.
 pub fn approximate_amount(amount: f32, uv: Vec2) -> f32 {
     let thickness = (1.0 - (2.0 * uv - 1.0).length_squared()).max(0.0);
     amount * thickness * thickness

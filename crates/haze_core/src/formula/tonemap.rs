@@ -44,7 +44,7 @@ mod tests {
     fn tonemap_curve_keeps_black_and_white_and_is_monotonic() {
         assert!(aces_fitted(Vec3::ZERO).max_element() < 1e-3);
         assert!(aces_fitted(Vec3::splat(100.0)).min_element() > 0.99);
-        let greys: Vec<_> = (0..200).map(|step| aces_fitted(Vec3::splat(0.02 * step as f32)).x).collect();
-        assert!(greys.is_sorted());
+        let grays: Vec<_> = (0..200).map(|step| aces_fitted(Vec3::splat(0.02 * step as f32)).x).collect();
+        assert!(grays.is_sorted());
     }
 }

@@ -18,9 +18,9 @@ impl Bounds {
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// Grows the box to contain a sphere.
-    pub fn include(&mut self, centre: Vec3, radius: f32) {
-        self.min = self.min.min(centre - radius);
-        self.max = self.max.max(centre + radius);
+    pub fn include(&mut self, center: Vec3, radius: f32) {
+        self.min = self.min.min(center - radius);
+        self.max = self.max.max(center + radius);
     }
 
     /// True if the box is empty.
@@ -28,8 +28,8 @@ impl Bounds {
         self.min.cmpgt(self.max).any()
     }
 
-    /// Centre of the box.
-    pub fn centre(&self) -> Vec3 {
+    /// Center of the box.
+    pub fn center(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
 

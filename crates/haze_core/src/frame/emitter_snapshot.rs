@@ -117,7 +117,7 @@ impl EmitterSnapshot {
                     + e.rise.length() * reached_late.x)
                 + TURBULENCE_BOUND * 3.0_f32.sqrt() * e.turbulence / shortest;
             let radius = radius * (1.0 + e.radius_spread);
-            let margin = scattered + e.anchor * radius + extent.reach(radius, speed);
+            let margin = scattered + e.anchor * radius + extent.radius(radius, speed);
             bounds.include(low - born, margin);
             bounds.include(high + born, margin);
         }

@@ -12,7 +12,7 @@ use super::sprite_extent::SpriteExtent;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Particle {
-    /// Centre in world space, metres.
+    /// Center in world space, metres.
     pub position: Vec3,
     /// Half the side of the square sprite, metres. 0 draws nothing.
     pub radius: f32,
@@ -76,7 +76,7 @@ impl Particle {
 pub fn particle_bounds(particles: &[Particle], extent: SpriteExtent) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
-        bounds.include(particle.position, extent.reach(particle.radius, particle.velocity.length()));
+        bounds.include(particle.position, extent.radius(particle.radius, particle.velocity.length()));
     }
     bounds
 }

@@ -1,11 +1,11 @@
-//! Distance to which sprites extend from their particles' centres.
+//! Distance to which sprites extend from their particles' centers.
 
 use glam::Vec3;
 
 use crate::formula::stretch::stretch_ratio;
 use crate::settings::{Settings, Technique};
 
-/// Distance to which a system's sprites extend from their particles' centres, at any rotation.
+/// Distance to which a system's sprites extend from their particles' centers, at any rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpriteExtent {
     /// Multiplies the radius of every particle.
@@ -20,7 +20,7 @@ pub struct SpriteExtent {
 
 impl SpriteExtent {
     /// Extent of sprites with these settings.
-    pub fn of(settings: &Settings) -> Self {
+    pub fn from_settings(settings: &Settings) -> Self {
         let corner = match settings.technique {
             Technique::SphericalBillboard => settings.spherical_billboard.radius,
             Technique::VolumetricHard | Technique::VolumetricSoft => 1.0,
@@ -34,7 +34,7 @@ impl SpriteExtent {
 
     /// Distance to which the sprite of a particle extends at most, metres. `radius`: of the particle, metres. `speed`: its
     /// own, metres per second; counts only for stretched sprites.
-    pub fn reach(&self, radius: f32, speed: f32) -> f32 {
+    pub fn radius(&self, radius: f32, speed: f32) -> f32 {
         let (seconds, limit) = self.stretch;
         let speed = self.speed.unwrap_or(speed);
         let radius = radius * self.size;
@@ -52,14 +52,14 @@ mod tests {
     fn extent_contains_stretched_sprites() {
         let mut settings = Settings::default();
         (settings.sprite.size, settings.sprite.stretch, settings.sprite.stretch_limit) = (2.0, 0.1, 6.0);
-        let extent = SpriteExtent::of(&settings);
+        let extent = SpriteExtent::from_settings(&settings);
         let velocity = Vec3::new(3.0, -4.0, 2.0);
         for depth in [0.2_f32, 2.0, 30.0] {
             let stretch = sprite_stretch(Vec3::new(1.0, 2.0, -depth), velocity, 0.1, 0.2 * 2.0, 6.0, 0.0);
             let corner = 0.4 * std::f32::consts::SQRT_2 / (1.0 - stretch.length_squared());
-            assert!(corner <= extent.reach(0.2, velocity.length()) + 1e-6, "{corner} at {depth}");
+            assert!(corner <= extent.radius(0.2, velocity.length()) + 1e-6, "{corner} at {depth}");
         }
         settings.technique = Technique::VolumetricSoft;
-        assert!((SpriteExtent::of(&settings).reach(0.5, 1.0e9) - 1.0).abs() < 1.0e-6);
+        assert!((SpriteExtent::from_settings(&settings).radius(0.5, 1.0e9) - 1.0).abs() < 1.0e-6);
     }
 }

@@ -10,7 +10,7 @@ pub struct View {
     /// left-handed world, and for the camera of a mirror.
     pub view_from_world: Mat4,
     /// View space to clip space, depth 0..1: perspective or orthographic, standard or reversed, finite or infinite far
-    /// plane, off-centre or jittered. The viewer looks along −z or +z of view space, as the projection says. The
+    /// plane, off-center or jittered. The viewer looks along −z or +z of view space, as the projection says. The
     /// projection may flip the image horizontally or vertically. Near and far plane face the viewer. The projection
     /// must not roll the image; `view_from_world` can.
     pub clip_from_view: Mat4,

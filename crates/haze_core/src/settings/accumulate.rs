@@ -133,11 +133,11 @@ choice! {
 
 choice! {
     /// Layers that the path `tiled` adds up. `docs/tiled.md` has the error.
-    Layers {
+    Traversal {
         /// Stops where a texel lets less than a thousandth through. With the order `weighted` all layers are added up,
         /// because normals count there regardless of the smoke in front.
         #[default]
-        Visible = "visible",
+        UntilOpaque = "visible",
         /// All layers, as the path `raster` does.
         All = "all",
     }
@@ -159,7 +159,7 @@ settings! {
         /// Higher: the front of the smoke dominates. 0: all sprites count alike.
         depth_weight: f32 = 0.4, number(0.0..=4.0, "");
         /// Layers that the path `tiled` adds up: the visible ones, or all.
-        layers: Layers = Layers::default(), choice;
+        layers: Traversal = Traversal::default(), choice;
         /// Pixels of the picture per texel of the target, along each side. Higher: less sharp, and cheaper by the
         /// square.
         scale: u32 = 2, integer(1..=MAX_SCALE, "pixels");

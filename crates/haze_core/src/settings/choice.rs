@@ -17,7 +17,7 @@ pub trait Choice {
 /// Text that names no choice of a setting. The caller knows which field or option it was given for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} is not valid; expected one of {}", one_line(format!("{text:?}")), names.join(", "))]
-pub struct UnknownChoice {
+pub struct ParseChoiceError {
     /// Text that was given.
     pub text: String,
     /// Names of all choices.
@@ -60,7 +60,7 @@ macro_rules! choice {
         }
 
         impl std::str::FromStr for $name {
-            type Err = $crate::settings::choice::UnknownChoice;
+            type Err = $crate::settings::choice::ParseChoiceError;
 
             fn from_str(text: &str) -> Result<Self, Self::Err> {
                 let choice = Self::ALL.iter().copied().find(|choice| choice.name() == text);

@@ -66,7 +66,7 @@ impl Curve {
     }
 
     /// Largest value.
-    pub fn highest(&self) -> f32 {
+    pub fn max_value(&self) -> f32 {
         self.points.iter().fold(f32::NEG_INFINITY, |highest, point| highest.max(point.y))
     }
 

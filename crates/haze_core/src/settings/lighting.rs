@@ -85,7 +85,7 @@ settings! {
         /// Computation of diffuse light: exact, cheap for many lights, or painted.
         mode: DiffuseMode = DiffuseMode::default(), choice;
         /// Ramp for light from behind: the same as from all sides, or one of its own, for smoke that glows against the
-        /// sun and is grey beside it.
+        /// sun and is gray beside it.
         backlight: Backlight = Backlight::default(), choice;
         /// Multiplies the diffuse light of all lights. Higher: brighter smoke in the same scene.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
@@ -126,7 +126,7 @@ settings! {
         /// Share by which a puff is cooler where it faces the viewer: soot over the glow of its creases, as on a fireball. Not
         /// with six-way maps.
         crust: f32 = 0.0, number(0.0..=1.0, "");
-        /// Multiplies the light that the fire casts on smoke and scene. 0: none. A host asks for it, `haze::fire::light`.
+        /// Multiplies the light that the fire casts on smoke and scene. 0: none. A host asks for it, `haze::fire::FireLight`.
         light: f32 = 1.0, number(0.0..=100.0, "");
         /// Flicker of that light. 0: steady. 1: it nearly goes out.
         flicker: f32 = 0.3, number(0.0..=1.0, "");

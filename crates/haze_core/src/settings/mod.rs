@@ -20,13 +20,13 @@ mod traversal;
 
 pub use accumulate::COARSEST_AUTO_SCALE;
 pub use accumulate::{
-    Accumulate, AccumulationFormat, BlendOrder, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
-    NormalEncoding, ScaleMode, Upsample,
+    Accumulate, AccumulationFormat, BlendOrder, DepthDownsample, DepthSource, LightingResolution, NormalDecode,
+    NormalEncoding, ScaleMode, Traversal, Upsample,
 };
 pub use assign::is_field_named;
 pub use assign::set_field;
 pub use choice::choice;
-pub use choice::{Choice, UnknownChoice};
+pub use choice::{Choice, ParseChoiceError};
 pub use curve::{Curve, CurveError, MAX_CURVE_POINTS};
 pub use fields::{BackdropKind, FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
@@ -73,7 +73,7 @@ impl RenderPath {
 choice! {
     /// Blend mode of forward sprites: OTEE's three.
     BlendMode {
-        /// Greyish smoke: covers the background.
+        /// Grayish smoke: covers the background.
         #[default]
         Alpha = "alpha",
         /// Fire: adds light, hides nothing.
@@ -99,7 +99,7 @@ choice! {
         SpecularScatter = "specular_scatter",
         /// Decoded normals, n/2 + 1/2.
         Normals = "normals",
-        /// Accumulated amount, as grey.
+        /// Accumulated amount, as gray.
         Amount = "amount",
         /// Sprite layers per pixel: black 0, blue 4, green 8, yellow 16, red 32, white 64 and more.
         Overdraw = "overdraw",

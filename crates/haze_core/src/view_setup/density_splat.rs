@@ -14,9 +14,9 @@ use crate::frame::Particle;
 pub fn density_splat(system: &SystemUniform, particles: &[Particle], size: UVec3, density: &mut [u64]) {
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
         let in_view = system.view_from_particles.transform_point3(particle.position);
-        let centre = system.grid_from_view.transform_point3(in_view);
+        let center = system.grid_from_view.transform_point3(in_view);
         let (radius, depth) = (density_radius(system, particle), sprite_optical_depth(system, particle));
-        add_sprite(size, density, centre, radius, depth);
+        add_sprite(size, density, center, radius, depth);
     }
 }
 
@@ -43,18 +43,18 @@ pub fn sprite_optical_depth(system: &SystemUniform, particle: &Particle) -> f32 
     system.shadow_density * depth / (system.density_reach * system.density_reach)
 }
 
-fn add_sprite(size: UVec3, density: &mut [u64], centre: Vec3, radius: f32, depth: f32) {
+fn add_sprite(size: UVec3, density: &mut [u64], center: Vec3, radius: f32, depth: f32) {
     if radius.is_nan() || radius <= 0.0 {
         return;
     }
     let (last, reach) = (size.as_vec3() - 1.0, bump_radius(radius));
-    let low = (centre - reach).floor().clamp(Vec3::ZERO, last).as_uvec3();
-    let high = (centre + reach).floor().clamp(Vec3::ZERO, last).as_uvec3();
+    let low = (center - reach).floor().clamp(Vec3::ZERO, last).as_uvec3();
+    let high = (center + reach).floor().clamp(Vec3::ZERO, last).as_uvec3();
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             let row = ((z * size.y + y) * size.x) as usize;
             for x in low.x..=high.x {
-                let cell = UVec3::new(x, y, z).as_vec3() - centre;
+                let cell = UVec3::new(x, y, z).as_vec3() - center;
                 if let Some(sum) = density.get_mut(row + x as usize) {
                     *sum += u64::from(density_steps(cell_optical_depth(cell, radius, depth)));
                 }

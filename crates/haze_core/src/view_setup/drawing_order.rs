@@ -33,7 +33,7 @@ impl DrawingOrder {
         self.keys.clear();
     }
 
-    /// Adds a visible particle. `z`: of its centre in view space; it increases towards the viewer.
+    /// Adds a visible particle. `z`: of its center in view space; it increases towards the viewer.
     pub(super) fn push(&mut self, z: f32, index: u64) {
         self.keys.push((u64::from(ordered_bits(z)) << 32) | index);
     }

@@ -6,12 +6,12 @@ use glam::{DVec2, Vec3Swizzles, Vec4};
 use super::particle_space::ParticleSpace;
 use super::smoke_extent::SmokeExtent;
 use super::view_geometry::ViewGeometry;
-use crate::formula::order::{FRONT_KNOTS, knot_coordinate};
+use crate::formula::order::{OPTICAL_DEPTH_KNOTS, knot_coordinate};
 use crate::frame::Particle;
 use crate::settings::{Settings, Technique};
 
-/// Mean optical depth of a sprite over its square, relative to its centre: sprites thin out towards their borders.
-const MEAN_TO_CENTRE_RATIO: f32 = 0.375;
+/// Mean optical depth of a sprite over its square, relative to its center: sprites thin out towards their borders.
+const MEAN_TO_CENTER_RATIO: f32 = 0.375;
 
 /// Number of particles from which a share stands for all: sums over so many vary by less than a hundredth.
 const ENOUGH: usize = 16_384;
@@ -28,7 +28,7 @@ pub(super) fn optical_depths(
     settings: &Settings,
     extent: &SmokeExtent,
 ) -> [Vec4; 4] {
-    let mut knots = [0.0_f32; FRONT_KNOTS];
+    let mut knots = [0.0_f32; OPTICAL_DEPTH_KNOTS];
     // Distributes optical depth times area of every sprite to the two nearest knots, and sums the first two moments of
     // the view-space positions.
     let (mut total, mut sum, mut squares) = (0.0_f64, DVec2::ZERO, DVec2::ZERO);
@@ -36,12 +36,12 @@ pub(super) fn optical_depths(
     let particles_per_sample = particles_per_sample as f32 * step as f32;
     for particle in particles.iter().step_by(step).filter(|particle| particle.is_visible()) {
         let position = space.view_from_particles.transform_point3a(particle.position.into());
-        let (optical_depth, radius) = centre_optical_depth_and_radius(particle, settings);
+        let (optical_depth, radius) = center_optical_depth_and_radius(particle, settings);
         let in_front = ((-position.z - view.depth.near) / radius).clamp(0.0, 1.0);
         let area = 4.0 * radius * radius;
-        let share = MEAN_TO_CENTRE_RATIO * optical_depth * area * in_front;
-        let place = knot_coordinate(-position.z, extent.near, extent.far) * (FRONT_KNOTS - 1) as f32;
-        let low = (place as usize).min(FRONT_KNOTS - 2);
+        let share = MEAN_TO_CENTER_RATIO * optical_depth * area * in_front;
+        let place = knot_coordinate(-position.z, extent.near, extent.far) * (OPTICAL_DEPTH_KNOTS - 1) as f32;
+        let low = (place as usize).min(OPTICAL_DEPTH_KNOTS - 2);
         knots[low] += share * (1.0 - (place - low as f32));
         knots[low + 1] += share * (place - low as f32);
 
@@ -53,8 +53,9 @@ pub(super) fn optical_depths(
     }
     // NaN comes from sprites of size 0.
     if total.is_nan() || total <= 0.0 {
-        let of_place =
-            |knot: usize| (knot as f32 / (FRONT_KNOTS - 1) as f32 * 2.0 - 0.5).clamp(0.0, 1.0) * ASSUMED_OPTICAL_DEPTH;
+        let of_place = |knot: usize| {
+            (knot as f32 / (OPTICAL_DEPTH_KNOTS - 1) as f32 * 2.0 - 0.5).clamp(0.0, 1.0) * ASSUMED_OPTICAL_DEPTH
+        };
         return pack(std::array::from_fn(of_place));
     }
     // Approximates the smoke's outline by a rectangle: the variance along a side is its squared length divided by 12.
@@ -71,11 +72,11 @@ pub(super) fn optical_depths(
 
 /// Returns the mean optical depth of a sprite over its square.
 pub fn optical_depth(particle: &Particle, settings: &Settings) -> f32 {
-    MEAN_TO_CENTRE_RATIO * centre_optical_depth_and_radius(particle, settings).0
+    MEAN_TO_CENTER_RATIO * center_optical_depth_and_radius(particle, settings).0
 }
 
-/// Returns the optical depth through a sprite's centre, and its radius in metres.
-fn centre_optical_depth_and_radius(particle: &Particle, settings: &Settings) -> (f32, f32) {
+/// Returns the optical depth through a sprite's center, and its radius in metres.
+fn center_optical_depth_and_radius(particle: &Particle, settings: &Settings) -> (f32, f32) {
     let amount = particle.shown_amount() * settings.accumulate.opacity;
     let radius = particle.radius * settings.sprite.size;
     match settings.technique {
@@ -92,7 +93,7 @@ fn centre_optical_depth_and_radius(particle: &Particle, settings: &Settings) -> 
     }
 }
 
-fn pack(knots: [f32; FRONT_KNOTS]) -> [Vec4; 4] {
+fn pack(knots: [f32; OPTICAL_DEPTH_KNOTS]) -> [Vec4; 4] {
     bytemuck::cast(knots)
 }
 
@@ -119,7 +120,7 @@ mod tests {
         let wall = |(depth, amount)| (0..256).map(move |i| sprite(depth, amount, i));
         let walls = [8.0, 12.0].into_iter().zip(amounts).flat_map(wall);
         let particles: Vec<_> = walls.flat_map(|sprite| std::iter::repeat_n(sprite, copies)).collect();
-        let extent = SmokeExtent { centre: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
+        let extent = SmokeExtent { center: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
         let knots = optical_depths(
             (&view, &ParticleSpace::new(&view, &Mat4::IDENTITY)),
             &particles,

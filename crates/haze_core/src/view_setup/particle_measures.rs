@@ -71,7 +71,7 @@ impl ParticleMeasures {
     /// Measures particles; replaces all earlier measures. `near`: view depth of the near plane, metres. `settings`: their
     /// sizes are in metres of the world.
     pub fn measure(&mut self, space: &ParticleSpace, near: f32, particles: &[Particle], settings: &Settings) {
-        let (extent, size) = (SpriteExtent::of(settings), settings.sprite.size);
+        let (extent, size) = (SpriteExtent::from_settings(settings), settings.sprite.size);
         let is_in_world = space.world_from_particles == Mat4::IDENTITY;
         let mut dense = WorldBox::EMPTY;
         self.order.clear();
@@ -80,7 +80,7 @@ impl ParticleMeasures {
         for (index, particle) in (0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()) {
             let position = Vec3A::from(particle.position);
             let world = if is_in_world { position } else { space.world_from_particles.transform_point3a(position) };
-            let reach = extent.reach(particle.radius, particle.velocity.length() * space.scale);
+            let reach = extent.radius(particle.radius, particle.velocity.length() * space.scale);
             let sprite = WorldBox { low: world - reach, high: world + reach };
             if particle.amount < NEARLY_TRANSPARENT {
                 self.faint.push((sprite, particle.amount));

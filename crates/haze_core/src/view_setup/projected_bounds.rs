@@ -97,12 +97,12 @@ mod tests {
         ViewGeometry::new(&View::new(Mat4::IDENTITY, clip_from_view, size)).unwrap()
     }
 
-    fn cube(centre: Vec3, half: f32) -> Bounds {
-        Bounds { min: centre - half, max: centre + half }
+    fn cube(center: Vec3, half: f32) -> Bounds {
+        Bounds { min: center - half, max: center + half }
     }
 
     #[test]
-    fn box_in_front_of_the_camera_covers_the_image_centre() {
+    fn box_in_front_of_the_camera_covers_the_image_center() {
         let found = project_bounds(&cube(Vec3::new(0.0, 0.0, -10.0), 1.0), &view(UVec2::new(640, 360))).unwrap();
         assert!((found.near - 9.0).abs() < 1e-5 && (found.far - 11.0).abs() < 1e-5);
         assert!(found.min.x > 250 && found.max.x < 390 && found.min.y > 130 && found.max.y < 230, "{found:?}");

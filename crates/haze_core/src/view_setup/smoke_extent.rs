@@ -17,7 +17,7 @@ use crate::frame::{Bounds, Particle};
 pub struct SmokeExtent {
     /// Light is flattened to the plane through this point that faces the viewer; light by normal is baked for this
     /// point.
-    pub centre: Vec3,
+    pub center: Vec3,
     /// View depths between which most of the smoke lies, metres.
     pub near: f32,
     /// See `near`.
@@ -90,17 +90,17 @@ impl ExtentSums {
         (weights > 0.0).then(|| {
             let mean = (positions.truncate() / weights).as_vec3();
             let half = half_extent((squares / weights) as f32, mean.z);
-            let centre = Vec3::from(reference) + mean;
-            let reach = |(back, amount)| reach_behind(amount, back, -centre.z);
+            let center = Vec3::from(reference) + mean;
+            let reach = |(back, amount)| reach_behind(amount, back, -center.z);
             let faint = self.faint_backs.iter().copied().map(reach).fold(0.0, f32::max);
-            let farthest = -centre.z + reach((self.back, 1.0)).max(faint);
-            SmokeExtent { centre, near: -centre.z - half, far: -centre.z + half, farthest }
+            let farthest = -center.z + reach((self.back, 1.0)).max(faint);
+            SmokeExtent { center, near: -center.z - half, far: -center.z + half, farthest }
         })
     }
 }
 
 impl SmokeExtent {
-    /// Extent of measured particles, or that of the bounding box if there are none. `depth`: view depth of the centre
+    /// Extent of measured particles, or that of the bounding box if there are none. `depth`: view depth of the center
     /// that the host chose, metres.
     pub(super) fn new(
         view: &ViewGeometry,
@@ -111,16 +111,16 @@ impl SmokeExtent {
     ) -> Self {
         let mut extent = measured.unwrap_or_else(|| Self::of_bounds(view, bounds, projected));
         if let Some(depth) = depth {
-            extent.centre.z = -(depth + view.depth_offset).max(view.depth.near);
+            extent.center.z = -(depth + view.depth_offset).max(view.depth.near);
         }
         extent
     }
 
-    /// Returns the centre of the part of the box that is in front of the viewer.
+    /// Returns the center of the part of the box that is in front of the viewer.
     fn of_bounds(view: &ViewGeometry, bounds: &Bounds, projected: &ProjectedBounds) -> Self {
         let depth = 0.5 * (projected.near.max(view.depth.near) + projected.far);
-        let centre = view.view_position(bounds.centre()).with_z(-depth);
-        Self { centre, near: projected.near, far: projected.far, farthest: projected.far }
+        let center = view.view_position(bounds.center()).with_z(-depth);
+        Self { center, near: projected.near, far: projected.far, farthest: projected.far }
     }
 }
 
@@ -137,7 +137,7 @@ mod tests {
     fn extent(particles: &[Particle], depth: Option<f32>) -> SmokeExtent {
         let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));
         let view = ViewGeometry::new(&view).unwrap();
-        let bounds = particle_bounds(particles, SpriteExtent::of(&Settings::default()));
+        let bounds = particle_bounds(particles, SpriteExtent::from_settings(&Settings::default()));
         let mut sums = ExtentSums::default();
         sums.clear();
         particles
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn sprites_are_weighted_by_amount_and_area() {
-        let near_and_far = |amount, radius| -extent(&[puff(4.0, 1.0, 1.0), puff(8.0, radius, amount)], None).centre.z;
+        let near_and_far = |amount, radius| -extent(&[puff(4.0, 1.0, 1.0), puff(8.0, radius, amount)], None).center.z;
         assert!((near_and_far(1.0, 1.0) - 6.0).abs() < 1e-4);
         assert!((near_and_far(0.5, 1.0) - (4.0 + 8.0 * 0.5) / 1.5).abs() < 1e-4);
         assert!((near_and_far(1.0, 2.0) - (4.0 + 8.0 * 4.0) / 5.0).abs() < 1e-4);
@@ -168,21 +168,21 @@ mod tests {
     }
 
     #[test]
-    fn sprite_that_passes_the_near_plane_moves_the_centre_slowly() {
-        let at = |depth| -extent(&[puff(6.0, 1.0, 1.0), puff(depth, 1.0, 1.0)], None).centre.z;
+    fn sprite_that_passes_the_near_plane_moves_the_center_slowly() {
+        let at = |depth| -extent(&[puff(6.0, 1.0, 1.0), puff(depth, 1.0, 1.0)], None).center.z;
         let steps = (0..=400).map(|i| at(2.0 - 0.01 * i as f32));
         let largest = steps.clone().zip(steps.skip(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        // The sprite moves by 0.01 m per step. If it lost its weight at once, the centre would jump by 3 m.
+        // The sprite moves by 0.01 m per step. If it lost its weight at once, the center would jump by 3 m.
         assert!(largest < 0.06, "{largest}");
         assert!((at(-2.0) - 6.0).abs() < 1e-4);
     }
 
     #[test]
-    fn host_can_set_the_depth_of_the_centre() {
+    fn host_can_set_the_depth_of_the_center() {
         let puffs = [puff(5.0, 1.0, 1.0)];
         let chosen = extent(&puffs, Some(9.0));
-        assert!((chosen.centre.z + 9.0).abs() < 1e-5, "{chosen:?}");
+        assert!((chosen.center.z + 9.0).abs() < 1e-5, "{chosen:?}");
         // A depth behind the viewer is clamped to the near plane.
-        assert!((extent(&puffs, Some(-3.0)).centre.z + 0.1).abs() < 1e-5);
+        assert!((extent(&puffs, Some(-3.0)).center.z + 0.1).abs() < 1e-5);
     }
 }

@@ -33,7 +33,7 @@ pub struct TexelGrid {
 #[derive(Clone, Copy, Debug)]
 pub struct ProjectedSprite {
     /// Metres.
-    pub centre: Vec3,
+    pub center: Vec3,
     /// Metres.
     pub radius: f32,
     /// Amount after opacity and near fade.
@@ -106,33 +106,33 @@ impl SpriteProjector<'_> {
     /// Same as `project_sprite()` in the shader; `None` if the sprite is hidden.
     pub fn project(&self, particle: &Particle, texels_per_pixel: f32) -> Option<ProjectedSprite> {
         let Self { view, system, technique, trim } = *self;
-        let centre = self.system.view_from_particles.transform_point3(particle.position);
+        let center = self.system.view_from_particles.transform_point3(particle.position);
         let mut radius = particle.radius * system.size;
         if technique == Technique::SphericalBillboard {
             radius *= system.billboard_radius;
         }
         let half_depth = self.sprite_thickness(radius);
-        let (front, back) = (-centre.z - half_depth, -centre.z + half_depth);
+        let (front, back) = (-center.z - half_depth, -center.z + half_depth);
         let fade = near_fade(back, system.near_fade_start, system.near_fade_end);
         let mut amount = particle.shown_amount() * system.opacity * fade;
         let is_seen = back > view.near && front < view.far && radius > 0.0 && amount > 0.0;
         if !is_seen {
             return None;
         }
-        let depth = (-centre.z).max(view.near);
+        let depth = (-center.z).max(view.near);
         let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic);
         let mut stretch = Vec2::ZERO;
         if self.stretches() {
-            let thin = self.stretch(particle, centre, radius);
+            let thin = self.stretch(particle, center, radius);
             let wide = radius.max(MIN_RADIUS / (pixels * texels_per_pixel));
-            stretch = self.stretch(particle, centre, wide);
+            stretch = self.stretch(particle, center, wide);
             amount *= widened_share(radius, wide, thin, stretch);
             radius = wide;
         }
         let diameter = 2.0 * radius * pixels * texels_per_pixel;
         let frame = sprite_frame(trim.animation, particle.frame, particle.age, system.frame_count);
         Some(ProjectedSprite {
-            centre,
+            center,
             radius,
             amount,
             frames: animation_frames(trim.animation, frame, system.frame_count),
@@ -147,44 +147,44 @@ impl SpriteProjector<'_> {
     }
 
     /// Same as `stretch_of()` in the shader.
-    fn stretch(&self, particle: &Particle, centre: Vec3, radius: f32) -> Vec2 {
+    fn stretch(&self, particle: &Particle, center: Vec3, radius: f32) -> Vec2 {
         let Self { view, system, .. } = *self;
         let velocity = match system.stretch_axis {
             Vec3::ZERO => system.view_from_particles.transform_vector3(particle.velocity),
             axis => view.view_from_world.transform_vector3(axis),
         };
-        sprite_stretch(centre, velocity, system.stretch, radius, system.stretch_limit, view.orthographic)
+        sprite_stretch(center, velocity, system.stretch, radius, system.stretch_limit, view.orthographic)
     }
 
-    /// Returns the extent of a flat sprite from its centre, as fractions of half a side: left, down, right, up.
+    /// Returns the extent of a flat sprite from its center, as fractions of half a side: left, down, right, up.
     pub fn trimmed_extent(&self, sprite: &ProjectedSprite) -> Vec4 {
         self.trim.trimmed_extent(sprite)
     }
 
-    /// Returns the extent of a sprite in front of its centre and behind it, metres.
+    /// Returns the extent of a sprite in front of its center and behind it, metres.
     pub fn sprite_thickness(&self, radius: f32) -> f32 {
         if self.technique.is_flat() { 0.0 } else { radius }
     }
 
     /// Returns the view depth at which the hardware tests a sprite. No part of the sprite is nearer.
     pub fn sprite_front(&self, sprite: &ProjectedSprite) -> f32 {
-        (-sprite.centre.z - self.sprite_thickness(sprite.radius)).max(self.view.near)
+        (-sprite.center.z - self.sprite_thickness(sprite.radius)).max(self.view.near)
     }
 
-    /// Returns the position at which a sprite is drawn: a slab whose centre has passed the near plane is drawn on that
+    /// Returns the position at which a sprite is drawn: a slab whose center has passed the near plane is drawn on that
     /// plane.
-    pub fn clamped_to_near_plane(&self, centre: Vec3) -> Vec3 {
-        centre.with_z(centre.z.min(-self.view.near))
+    pub fn clamped_to_near_plane(&self, center: Vec3) -> Vec3 {
+        center.with_z(center.z.min(-self.view.near))
     }
 
     /// Same as `sphere_corner()` in the shader: returns the upper left and the lower right corner, in pixels.
     pub fn sphere_rectangle(&self, sprite: &ProjectedSprite, texels_per_pixel: f32) -> (Vec2, Vec2) {
-        let (view, ProjectedSprite { centre, radius, .. }) = (self.view, *sprite);
+        let (view, ProjectedSprite { center, radius, .. }) = (self.view, *sprite);
         let rays = if view.orthographic > 0.5 {
-            [centre.xy() - radius, centre.xy() + radius]
+            [center.xy() - radius, center.xy() + radius]
         } else {
-            let bounds = |position| sphere_axis_bounds(Vec2::new(position, -centre.z), radius, view.near);
-            let (x, y) = (bounds(centre.x), bounds(centre.y));
+            let bounds = |position| sphere_axis_bounds(Vec2::new(position, -center.z), radius, view.near);
+            let (x, y) = (bounds(center.x), bounds(center.y));
             [Vec2::new(x.x, y.x), Vec2::new(x.y, y.y)]
         };
         let edge = 1.0 + (texels_per_pixel * view.size).recip();
@@ -197,7 +197,7 @@ impl SpriteProjector<'_> {
     }
 
     /// Returns the number of texels of a grid that the sprites cover, counted once per sprite, as if nothing of the
-    /// scene were in front. Uses areas, which equal the mean number of covered texel centres over all positions of a
+    /// scene were in front. Uses areas, which equal the mean number of covered texel centers over all positions of a
     /// sprite. Each of these texels is shaded once, unless a depth test rejects it first.
     pub fn fragments(&self, grid: &TexelGrid, particles: &[Particle]) -> f64 {
         self.coverages(grid, particles.iter()).map(|covered| covered.texels).sum()
@@ -232,12 +232,12 @@ impl SpriteProjector<'_> {
 
     /// Returns the corners of the trimmed square of a flat sprite, in pixels, in order around it.
     pub fn corners(&self, sprite: &ProjectedSprite, reach: Vec4, rotation: f32) -> [Vec2; 4] {
-        let centre = self.clamped_to_near_plane(sprite.centre);
-        let along = if self.view.orthographic > 0.5 { 1.0 } else { -centre.z };
+        let center = self.clamped_to_near_plane(sprite.center);
+        let along = if self.view.orthographic > 0.5 { 1.0 } else { -center.z };
         let turn = Vec2::from_angle(rotation) * sprite.radius;
         [Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)].map(|corner| {
             let place = stretched(turn.rotate(trimmed_corner(corner, reach)), sprite.stretch);
-            let ray = (centre.xy() + place) / along;
+            let ray = (center.xy() + place) / along;
             pixel_from_ndc(self.ndc(ray), self.view.size)
         })
     }

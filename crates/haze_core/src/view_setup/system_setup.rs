@@ -64,7 +64,7 @@ pub struct SystemSetup {
     /// True if the transfer draws the back faces of the box: it reaches to or behind the near plane, or its sprites
     /// show through the scene.
     pub back_faces: bool,
-    /// View depth of the smoke's centre, metres.
+    /// View depth of the smoke's center, metres.
     pub distance: f32,
     /// The same in the host's view space, metres.
     pub lit_depth: f32,
@@ -115,7 +115,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         bounds_near: projected.near,
         bounds_max: bounds.max,
         smoke_near: extent.near,
-        centre: extent.centre,
+        center: extent.center,
         smoke_far: extent.far,
         scatter_color: settings.soft_scatter.scatter_color * exposure,
         scatter_amount: settings.soft_scatter.scatter_amount,
@@ -157,11 +157,11 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         noise_offset: noise_offset(view, settings, up, time),
         show_through_distance: settings.show_through_distance(),
         depth_weight: accumulate.depth_weight,
-        front_knots: match settings.order() {
+        optical_depth_knots: match settings.order() {
             BlendOrder::Sorted => [Vec4::ZERO; 4],
             BlendOrder::Weighted => optical_depths((view, space), particles, particles_per_sample, settings, &extent),
         },
-        spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.centre),
+        spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.center),
         shadow_strength: if shadow.is_some() && settings.receives_shadow() { settings.shadow.strength } else { 0.0 },
         up: view.view_from_world.transform_vector3(up).normalize_or(Vec3::Y),
         sky_color: settings.ambient.sky_color * (settings.ambient.intensity * exposure),
@@ -175,7 +175,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
     };
     // If sprites show through the scene, the scene may hide the front of the box.
     let back_faces = projected.near <= view.depth.near || uniform.show_through_distance > 0.0;
-    let distance = -uniform.centre.z;
+    let distance = -uniform.center.z;
     Some(SystemSetup {
         rect,
         first_pixel: projected.min,
@@ -221,23 +221,23 @@ pub fn caster_uniform(system: &SystemInput<'_>) -> SystemUniform {
     }
 }
 
-/// Projects the diffuse ramp's response to all lights, as seen at `centre`, to spherical harmonics; zeros in other
+/// Projects the diffuse ramp's response to all lights, as seen at `center`, to spherical harmonics; zeros in other
 /// diffuse modes.
 fn spherical_harmonics(
     view: &ViewGeometry,
     settings: &Settings,
     material: &MaterialInfo,
     lights: &[LightUniform],
-    centre: Vec3,
+    center: Vec3,
 ) -> [Vec4; 9] {
     let mut sum = [Vec4::ZERO; 9];
     if settings.diffuse.mode != DiffuseMode::SphericalHarmonics {
         return sum;
     }
     let orthographic = if view.depth.orthographic { 1.0 } else { 0.0 };
-    let to_viewer = direction_to_viewer(centre, orthographic);
+    let to_viewer = direction_to_viewer(center, orthographic);
     for light in lights {
-        let sample = sample_light(light, centre);
+        let sample = sample_light(light, center);
         let color = light.color * sample.attenuation;
         let backlight = match settings.diffuse.backlight {
             Backlight::Same => 0.0,

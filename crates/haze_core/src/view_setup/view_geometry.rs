@@ -27,7 +27,7 @@ pub struct ViewGeometry {
     pub depth: DepthConvention,
     /// View-space xy per unit of NDC, at view depth 1 (perspective) or at any depth (orthographic).
     pub ray_scale: Vec2,
-    /// View-space xy at the NDC origin, same units; zero for a centred projection.
+    /// View-space xy at the NDC origin, same units; zero for a centerd projection.
     pub ray_offset: Vec2,
     /// Added to the host's view depth, metres. Not 0 for an orthographic view whose near plane is behind the viewer.
     pub depth_offset: f32,
@@ -208,10 +208,10 @@ mod tests {
 
     #[test]
     fn a_ray_through_a_pixel_projects_back_to_it() {
-        let off_centre = rh::proj::directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 100.0);
+        let off_center = rh::proj::directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 100.0);
         let orthographic = rh::proj::directx::orthographic(-2.0, 6.0, -1.0, 3.0, 0.1, 50.0);
         let behind = rh::proj::directx::orthographic(-2.0, 6.0, -1.0, 3.0, -20.0, 50.0);
-        for matrix in [off_centre, orthographic, behind, lh::proj::directx::perspective(FOV, 1.5, 0.1, 9.0)] {
+        for matrix in [off_center, orthographic, behind, lh::proj::directx::perspective(FOV, 1.5, 0.1, 9.0)] {
             let g = geometry(matrix);
             let ndc = Vec2::new(0.3, -0.7);
             let depth = 7.0;

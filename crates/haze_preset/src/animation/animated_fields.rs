@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
+use haze_core::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole, PathStep, write_field_path};
 
 use super::interpolation::Kind;
 use super::keyframe::KeyValue;
 use super::track::Track;
-use haze_core::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole, PathStep, write_field_path};
 
 /// Field that a track can change, or any other.
 pub(super) enum AnimatedField<'a> {

@@ -41,7 +41,7 @@ pub enum KeyValue {
 
 impl KeyValue {
     /// Value of a field; `None` for texts and curves, which have no keyframes.
-    pub fn of_field(value: &FieldValue) -> Option<Self> {
+    pub fn from_field(value: &FieldValue) -> Option<Self> {
         Some(match value {
             FieldValue::Number(number) => Self::Number(*number),
             FieldValue::Whole(number) => Self::Number(*number as f32),

@@ -1,8 +1,9 @@
 //! Names of the settings that tracks can change, and the nearest one to a wrong name.
 
+use haze_core::settings::{Fields, field_path};
+
 use super::animated_fields::for_each_animated_field;
 use crate::asset_folders::MIN_SIMILARITY;
-use haze_core::settings::{Fields, field_path};
 
 /// Name of the setting that is most like a wrong name: in its last part, and then as a whole.
 pub(super) fn nearest(wrong: &str, fields: &mut dyn Fields) -> Option<String> {

@@ -1,9 +1,10 @@
 //! Track: the keyframes and the flicker of one setting.
 
-use super::interpolation::{self, Kind};
-use super::keyframe::{KeyValue, Keyframe, is_default};
 use haze_core::fire::flicker;
 use haze_core::settings::settings;
+
+use super::interpolation::{self, Kind};
+use super::keyframe::{KeyValue, Keyframe, is_default};
 
 /// Most keyframes in a preset.
 pub const MAX_KEYFRAMES: usize = 4096;

@@ -2,12 +2,13 @@
 
 use std::collections::HashSet;
 
+use haze_core::error::FieldError;
+use haze_core::settings::{Fields, validate, write_field_path};
+
 use super::animated_fields::{AnimatedField, AnimatedFields, for_each_animated_field};
 use super::keyframe::MAX_TIME;
 use super::setting_names;
 use super::track::{MAX_KEYFRAMES, Track};
-use haze_core::error::FieldError;
-use haze_core::settings::{Fields, validate, write_field_path};
 
 /// Checks the tracks of a preset. `check` checks the preset without tracks, here with the values of each keyframe.
 ///

@@ -1,15 +1,15 @@
 //! CPU version of `shaders/accumulate.wgsl`.
 
 use glam::Vec4;
+use haze_core::assets::image::Image;
+use haze_core::formula::normal::accumulation_from_normal;
+use haze_core::settings::{AccumulationFormat, BlendOrder, RenderPath};
+use haze_core::view_setup::{AttachmentRole, AttachmentSet, TexelGrid};
 
 use crate::accumulated::AccumulatedTextures;
 use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
 use crate::sprite::{SpriteFragment, SpriteSetup};
 use crate::visible_system::VisibleSystem;
-use haze_core::assets::image::Image;
-use haze_core::formula::normal::accumulation_from_normal;
-use haze_core::settings::{AccumulationFormat, BlendOrder, RenderPath};
-use haze_core::view_setup::{AttachmentRole, AttachmentSet, TexelGrid};
 
 impl VisibleSystem<'_> {
     /// Textures of the accumulation target, by role. A blend unit rounds to the target's format at every layer; the path

@@ -1,11 +1,11 @@
 //! CPU version of `shaders/depth_downsample.wgsl`.
 
 use glam::IVec2;
-
-use crate::visible_system::VisibleSystem;
 use haze_core::assets::image::Image;
 use haze_core::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
 use haze_core::settings::{DepthDownsample, DepthSource};
+
+use crate::visible_system::VisibleSystem;
 
 impl VisibleSystem<'_> {
     /// Returns the scene's view depth at the resolution of the target, metres.

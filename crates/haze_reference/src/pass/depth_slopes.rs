@@ -1,12 +1,12 @@
 //! CPU version of `shaders/depth_slopes.wgsl`.
 
 use glam::{IVec2, Vec4};
-
-use crate::accumulated::AccumulatedTarget;
-use crate::blend_unit::quantise;
 use haze_core::assets::image::Image;
 use haze_core::formula::upsample::{DepthLine, add_to_line, depth_slope, guided_weight, is_shallow};
 use haze_core::settings::AccumulationFormat;
+
+use crate::accumulated::AccumulatedTarget;
+use crate::blend_unit::quantise;
 
 impl AccumulatedTarget<'_> {
     /// Change of the lit smoke with depth around each texel.

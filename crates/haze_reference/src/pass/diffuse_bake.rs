@@ -2,10 +2,6 @@
 
 use glam::{UVec2, Vec2, Vec3};
 use half::f16;
-
-use crate::optical_depths::OpticalDepths;
-use crate::shade::Shade;
-use crate::visible_system::VisibleSystem;
 use haze_core::assets::image::Image;
 use haze_core::assets::ramp::Ramp;
 use haze_core::formula::ambient::{hemisphere_coordinate, openness_position, six_way_hemisphere};
@@ -17,11 +13,15 @@ use haze_core::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze_core::formula::response::{diffuse_response, fire_response, soft_scatter_curve};
 use haze_core::formula::saturate;
 use haze_core::formula::shadow::{
-    LIGHT_BLOCKS, block_of_slot, foreign_optical_depths, of_slot, own_at_mean_depth, shadow_position,
+    LIGHT_BLOCKS, block_of_slot, foreign_optical_depths, own_at_mean_depth, select_slot, shadow_position,
 };
 use haze_core::formula::six_way::{SixWay, six_way_response};
 use haze_core::formula::uniforms::LightUniform;
 use haze_core::settings::{Backlight, DiffuseMode, SoftScatterMode};
+
+use crate::optical_depths::OpticalDepths;
+use crate::shade::Shade;
+use crate::visible_system::VisibleSystem;
 
 impl VisibleSystem<'_> {
     /// Smoke and scene before a pixel of the smoke. `accumulated`: optical depths that its sprites found towards the lights of
@@ -149,13 +149,13 @@ impl VisibleSystem<'_> {
         let at = self.shadow_place(light, to_light, position, shade);
         let painted = sample_ramp_2d(&self.material.shadow_ramp, self.settings.ramp_filter, at);
         Vec3::ONE.lerp(painted, self.system.shadow_strength)
-            * of_slot(light.shadow_slot, shade.visible[block_of(light)])
+            * select_slot(light.shadow_slot, shade.visible[block_of(light)])
     }
 
     /// Place on the shadow ramp of a light with shadow.
     pub fn shadow_place(&self, light: &LightUniform, to_light: Vec3, position: Vec3, shade: &Shade) -> Vec2 {
         let to_viewer = direction_to_viewer(position, self.view.orthographic);
-        shadow_position(of_slot(light.shadow_slot, shade.optical_depths[block_of(light)]), to_light, to_viewer)
+        shadow_position(select_slot(light.shadow_slot, shade.optical_depths[block_of(light)]), to_light, to_viewer)
     }
 
     /// Sum of all lights through six-way maps.
@@ -217,7 +217,7 @@ impl VisibleSystem<'_> {
                     DiffuseMode::Motif => motif_normal(place),
                     _ => cube_direction(face, place).normalize(),
                 };
-                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.centre, &Shade::NONE));
+                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.center, &Shade::NONE));
                 *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
             });
             baked

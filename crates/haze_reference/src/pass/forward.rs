@@ -1,16 +1,16 @@
 //! CPU version of `shaders/forward.wgsl`.
 
 use glam::{Vec2, Vec4};
-
-use crate::blend_unit::forward_blend;
-use crate::shade::Shade;
-use crate::visible_system::VisibleSystem;
 use haze_core::assets::image::Image;
 use haze_core::formula::blending::forward_fragment;
 use haze_core::formula::color::bounded_light;
 use haze_core::formula::fire::fire_from_moments;
 use haze_core::formula::lighting::coverage;
 use haze_core::view_setup::TexelGrid;
+
+use crate::blend_unit::forward_blend;
+use crate::shade::Shade;
+use crate::visible_system::VisibleSystem;
 
 impl VisibleSystem<'_> {
     /// Lights and blends every sprite over the image.

@@ -1,12 +1,12 @@
 //! CPU version of `shaders/light_target.wgsl`.
 
 use glam::{IVec2, Vec4};
-
-use crate::accumulated::AccumulatedTarget;
-use crate::blend_unit::quantise;
 use haze_core::assets::image::Image;
 use haze_core::formula::color::bounded_light;
 use haze_core::settings::AccumulationFormat;
+
+use crate::accumulated::AccumulatedTarget;
+use crate::blend_unit::quantise;
 
 impl AccumulatedTarget<'_> {
     /// Lit target: light times amount, and amount.

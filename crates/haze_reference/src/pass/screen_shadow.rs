@@ -1,10 +1,6 @@
 //! CPU version of `shaders/screen_shadow.wgsl`.
 
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
-
-use super::shadow_visibility::map_visibility;
-use crate::input::FrameInput;
-use crate::scene_shadow::SceneShadow;
 use haze_core::assets::image::Image;
 use haze_core::formula::depth::{SKY_VIEW_DEPTH, view_depth_from_ndc_depth};
 use haze_core::formula::lighting::sample_light;
@@ -13,6 +9,10 @@ use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
 use haze_core::formula::uniforms::{LightUniform, ShadowMapUniform, ViewUniform};
 use haze_core::formula::view::{ndc_from_pixel, pixels_per_metre, view_position};
 use haze_core::view_setup::{SmokeShadow, ViewGeometry, scene_light_uniforms};
+
+use super::shadow_visibility::map_visibility;
+use crate::input::FrameInput;
+use crate::scene_shadow::SceneShadow;
 
 /// Shadow of a frame's smoke on a picture of the scene.
 pub struct ScreenShadow<'a> {

@@ -2,11 +2,11 @@
 
 use glam::{UVec3, Vec3, Vec4};
 use half::f16;
-
-use crate::optical_depths::trilinear;
 use haze_core::formula::ambient::{SKY_DIRECTIONS, SKY_STEPS};
 use haze_core::formula::shadow::{LIGHTS_PER_BLOCK, MAX_OPTICAL_DEPTH, SHADOW_STEPS, light_disc_offset, shadow_ray};
 use haze_core::view_setup::SmokeShadow;
+
+use crate::optical_depths::trilinear;
 
 /// Marches from every cell of a density grid to the lights of a block. `density`: optical depths across the cells.
 pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow, block: u32) -> Vec<Vec3> {
@@ -19,7 +19,7 @@ pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow, block: u32) -> Vec
         };
         Vec3::from([0, 1, 2].map(towards))
     };
-    cell_centres(shadow.grid.size).map(march).collect()
+    cell_centers(shadow.grid.size).map(march).collect()
 }
 
 /// Marches from every cell of a density grid to sky and ground: openness to them in x and y.
@@ -30,10 +30,10 @@ pub fn march_to_sky(density: &[f32], shadow: &SmokeShadow) -> Vec<Vec3> {
         stored(depths.map(|depth| (-depth).exp2()).iter().sum::<f32>() / SKY_DIRECTIONS as f32)
     };
     let march = |origin| Vec3::new(openness(origin, 1.0), openness(origin, -1.0), 0.0);
-    cell_centres(shadow.grid.size).map(march).collect()
+    cell_centers(shadow.grid.size).map(march).collect()
 }
 
-fn cell_centres(size: UVec3) -> impl Iterator<Item = Vec3> {
+fn cell_centers(size: UVec3) -> impl Iterator<Item = Vec3> {
     let cell = move |index: u32| UVec3::new(index % size.x, index / size.x % size.y, index / (size.x * size.y));
     (0..size.element_product()).map(move |index| cell(index).as_vec3() + 0.5)
 }

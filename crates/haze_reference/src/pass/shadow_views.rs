@@ -1,12 +1,12 @@
 //! CPU version of `shaders/lib/shadow_views.wgsl`.
 
 use glam::{Vec2, Vec3, Vec4};
-
-use crate::visible_system::VisibleSystem;
 use haze_core::formula::saturate;
 use haze_core::formula::shadow::channel_of_slot;
 use haze_core::formula::view::pixels_per_metre;
 use haze_core::view_setup::AttachmentRole;
+
+use crate::visible_system::VisibleSystem;
 
 /// Brightness of the borders between the cells of the grid.
 const CELL_BORDER: f32 = 0.7;
@@ -26,10 +26,10 @@ impl VisibleSystem<'_> {
         Vec3::ONE + (share - Vec3::ONE) * self.channels_with_light()
     }
 
-    /// Light in the grid on the plane of the system's centre, and 1 in w; or 0 outside of the grid.
+    /// Light in the grid on the plane of the system's center, and 1 in w; or 0 outside of the grid.
     pub fn slice_of_light(&self, pixel: Vec2) -> Vec4 {
         let system = &self.system;
-        let position = self.view_position(pixel, -system.centre.z);
+        let position = self.view_position(pixel, -system.center.z);
         let place = system.grid_from_view.transform_point3(position);
         let is_outside = place.cmplt(Vec3::ZERO).any() || place.cmpgt(system.grid_size).any();
         let Some(volume) = self.optical_depths.as_ref().filter(|_| !is_outside) else { return Vec4::ZERO };

@@ -2,12 +2,12 @@
 
 use glam::{IVec2, Mat4, UVec3, Vec3, Vec4, Vec4Swizzles};
 use half::f16;
-
-use crate::input::ShadowMap;
 use haze_core::assets::image::Image;
 use haze_core::formula::shadow_map::{shadow_map_place, shadow_map_visibility};
 use haze_core::formula::uniforms::ShadowMapUniform;
 use haze_core::view_setup::SmokeShadow;
+
+use crate::input::ShadowMap;
 
 /// Share of each cell of the density grid that the lights of a block reach past the scene.
 pub fn shadow_visibility(maps: &[ShadowMap<'_>], shadow: &SmokeShadow, block: u32) -> Vec<Vec3> {

@@ -1,8 +1,6 @@
 //! CPU version of `shaders/specular_scatter.wgsl`.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
-
-use crate::accumulated::AccumulatedTarget;
 use haze_core::assets::image::Image;
 use haze_core::formula::color::bounded_light;
 use haze_core::formula::depth::SKY_VIEW_DEPTH;
@@ -11,11 +9,13 @@ use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::formula::uniforms::LightUniform;
 use haze_core::formula::view::{pixel_from_ndc, pixels_per_metre};
 
+use crate::accumulated::AccumulatedTarget;
+
 /// Quad of a light that glows.
 pub struct GlowQuad<'a> {
     light: &'a LightUniform,
     /// Pixels.
-    centre: Vec2,
+    center: Vec2,
     /// Before the specular ramp and the range are applied.
     color: Vec3,
 }
@@ -45,21 +45,21 @@ impl AccumulatedTarget<'_> {
         if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
             return None;
         }
-        let centre = pixel_from_ndc(clip.xy() / clip.w, view.size);
-        if (centre - 0.5 * view.size).abs().cmpgt(0.5 * view.size + size).any() {
+        let center = pixel_from_ndc(clip.xy() / clip.w, view.size);
+        if (center - 0.5 * view.size).abs().cmpgt(0.5 * view.size + size).any() {
             return None;
         }
         let body = (light.radius * pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic)).max(1.5);
         let compared_depth = (depth - 2.0 * light.radius).min(0.99 * view.far);
-        let visibility = self.light_visibility(centre, body, compared_depth);
-        (visibility > 0.0).then(|| GlowQuad { light, centre, color: light.color * strength * visibility })
+        let visibility = self.light_visibility(center, body, compared_depth);
+        (visibility > 0.0).then(|| GlowQuad { light, center, color: light.color * strength * visibility })
     }
 
     /// Lookup coordinate of the specular ramp at a pixel, and the light found there; `None` outside the quad and where
     /// there is no smoke.
     pub fn sample_glow(&self, glow: &GlowQuad<'_>, pixel: Vec2) -> Option<(Vec2, Vec3)> {
         let visible = self.visible;
-        let uv = (pixel - glow.centre) / visible.system.specular_scatter_size;
+        let uv = (pixel - glow.center) / visible.system.specular_scatter_size;
         let distance_squared = uv.length_squared();
         if distance_squared >= 1.0 {
             return None;
@@ -70,7 +70,7 @@ impl AccumulatedTarget<'_> {
         }
         let coordinate = Vec2::new(distance_squared, amount);
         let found = sample_ramp_2d(&visible.material.specular_ramp, visible.settings.ramp_filter, coordinate);
-        let to_light = glow.light.position - visible.view_position(pixel, -visible.system.centre.z);
+        let to_light = glow.light.position - visible.view_position(pixel, -visible.system.center.z);
         let window = range_window(to_light.length_squared(), glow.light.inverse_range);
         Some((coordinate, bounded_light(found * glow.color * window)))
     }

@@ -1,10 +1,6 @@
 //! CPU version of `shaders/transfer.wgsl`.
 
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
-
-use crate::accumulated::{AccumulatedTarget, Attachments};
-use crate::blend_unit::premultiplied_over;
-use crate::shade::Shade;
 use haze_core::assets::image::Image;
 use haze_core::formula::color::{bounded_light, overdraw_color};
 use haze_core::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
@@ -17,6 +13,10 @@ use haze_core::formula::six_way::{SixWay, normal_from_six_way};
 use haze_core::formula::uniforms::LightUniform;
 use haze_core::settings::{CoverageMode, DebugView, DiffuseMode};
 use haze_core::view_setup::AttachmentRole;
+
+use crate::accumulated::{AccumulatedTarget, Attachments};
+use crate::blend_unit::premultiplied_over;
+use crate::shade::Shade;
 
 /// Surface that light falls on.
 pub struct Surface {
@@ -95,8 +95,8 @@ impl AccumulatedTarget<'_> {
         let system = &self.visible.system;
         if debug_view == DebugView::ReducedDepth {
             let depth = self.reduced_depth.load((pixel / system.scale as f32 - system.target_origin).as_ivec2());
-            let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
-            return Some(Vec3::splat(grey).extend(1.0));
+            let gray = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
+            return Some(Vec3::splat(gray).extend(1.0));
         }
         if debug_view == DebugView::ShadowSlice {
             return Some(self.visible.slice_of_light(pixel));
@@ -159,12 +159,12 @@ impl AccumulatedTarget<'_> {
         surface
     }
 
-    /// Point of the smoke that is lit at a pixel, view space: at its mean depth, or on the plane of the system's centre.
+    /// Point of the smoke that is lit at a pixel, view space: at its mean depth, or on the plane of the system's center.
     pub fn lit_position(&self, surface: &Surface, pixel: Vec2) -> Vec3 {
         let visible = self.visible;
         match AttachmentRole::Depth.is_used(&visible.settings) {
             true => visible.mean_position(pixel, surface.depth),
-            false => visible.view_position(pixel, -visible.system.centre.z),
+            false => visible.view_position(pixel, -visible.system.center.z),
         }
     }
 

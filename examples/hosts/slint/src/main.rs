@@ -12,7 +12,7 @@ use haze::glam::camera::rh;
 use haze::glam::{UVec2, Vec3, vec3};
 use haze::preset::Preset;
 use haze::{
-    Context, Descriptor, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, SceneDepth,
+    Context, RendererDescriptor, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, SceneDepth,
     Settings, View, wgpu,
 };
 use slint::wgpu_30::{WGPUConfiguration, WGPUSettings};
@@ -103,8 +103,8 @@ struct Host {
 
 impl Host {
     fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, Failure> {
-        let descriptor = Descriptor { color_format: COLOR, depth_format: Some(DEPTH), ..Descriptor::default() };
-        let context = Context::new(device, queue, None);
+        let descriptor = RendererDescriptor { color_format: COLOR, depth_format: Some(DEPTH), ..RendererDescriptor::default() };
+        let context = Context::new(device, queue);
         let smoke = Renderer::new(&context, &descriptor)?;
         let preset = Preset::load("column")?;
         let images = preset.load_materials(Path::new("column"))?;

@@ -8,7 +8,7 @@ const SHOWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Centres and sizes.
+/// Centers and sizes.
 const BOXES: [(Vec3, Vec3); 3] = [
     (vec3(0.0, -0.1, 0.0), vec3(14.0, 0.2, 14.0)),
     (vec3(1.2, 0.6, 0.6), vec3(0.9, 1.2, 0.9)),

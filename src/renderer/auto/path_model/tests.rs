@@ -24,7 +24,7 @@ fn pixels_are_computed_on_devices_that_were_found_to_draw_slowly() {
     assert!(!PathModel::GPU.computes_pixels());
     let probed = PathModel::GPU.scaled_by_probe(PathModel::GPU.probe_bias());
     assert!(probed.computes_pixels());
-    assert!(!PathModel::of_class(wgpu::DeviceType::Cpu).computes_pixels());
+    assert!(!PathModel::for_device_type(wgpu::DeviceType::Cpu).computes_pixels());
     // One that draws four times as fast.
     let [raster, tiled] = PathModel::GPU.probe_bias();
     assert!(!PathModel::GPU.scaled_by_probe([0.25 * raster, tiled]).computes_pixels());
@@ -32,7 +32,7 @@ fn pixels_are_computed_on_devices_that_were_found_to_draw_slowly() {
 
 #[test]
 fn early_stop_limits_the_cost_of_tiled_but_not_of_raster() {
-    let model = PathModel::of_class(wgpu::DeviceType::Cpu);
+    let model = PathModel::for_device_type(wgpu::DeviceType::Cpu);
     let [raster, tiled] = model.milliseconds(&workload(4.0));
     assert!(raster < tiled, "{raster} {tiled}");
     let [deep_raster, deep_tiled] = model.milliseconds(&workload(4000.0));
@@ -89,7 +89,7 @@ fn idle_cores_on_a_small_target_raise_the_cost_per_texel() {
 
 #[test]
 fn gpu_model_prefers_tiled_unless_the_load_is_small() {
-    let model = PathModel::of_class(wgpu::DeviceType::DiscreteGpu);
+    let model = PathModel::for_device_type(wgpu::DeviceType::DiscreteGpu);
     let small = UVec2::splat(128);
     let size = workload(1.0).size;
     for (size, layers, prefers_tiled) in

@@ -5,7 +5,7 @@ mod chart;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use haze_core::settings::{Layers, RenderPath};
+use haze_core::settings::{RenderPath, Traversal};
 
 use self::chart::{Axis, COLORS, Chart, Series, escaped, number};
 use super::recommendation::{break_even, recommendation};
@@ -84,7 +84,9 @@ fn cost_by_overdraw(report: &Report) -> String {
     let name = |row: &Row| {
         let (path, alpha) = (row.path.as_ref()?, row.alpha.filter(|_| is_large(row))?);
         match row.mode.as_deref().filter(|_| path == RenderPath::Tiled.name()) {
-            Some(mode) if mode == Layers::Visible.name() => Some(format!("{path}, {mode} layers, alpha {alpha}")),
+            Some(mode) if mode == Traversal::UntilOpaque.name() => {
+                Some(format!("{path}, {mode} layers, alpha {alpha}"))
+            }
             mode => (row.alpha == usual).then(|| mode.map_or(path.clone(), |mode| format!("{path}, {mode} layers"))),
         }
     };

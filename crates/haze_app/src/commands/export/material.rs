@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
     }
     preset.validate()?;
-    let preset = preset.at(preset.time);
+    let preset = preset.evaluate(preset.time);
     let index = system.as_ref().map_or(Ok(0), |name| system_index(&preset, name))?;
     let folders = assets.folders(path)?;
     let materials = preset.load_materials_from(path, &folders)?;

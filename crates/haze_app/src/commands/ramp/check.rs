@@ -65,7 +65,7 @@ fn print_truth_error(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) 
 
 fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> {
     let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
-    let role = role.or_else(|| RampRole::of_name(name));
+    let role = role.or_else(|| RampRole::from_name(name));
     refuse_gradient(path)?;
     let mut findings = Vec::new();
     if !has_extension(path, "json") {

@@ -46,5 +46,5 @@ pub fn check_recipe_output(files: &mut FileChecks, output: &Path) -> Result<(), 
 
 /// Writes a recipe as JSON.
 pub fn write_recipe(output: &Path, recipe: &RampRecipe) -> Result<(), Error> {
-    write_file(output, recipe.to_text().as_bytes())
+    write_file(output, recipe.to_json().as_bytes())
 }

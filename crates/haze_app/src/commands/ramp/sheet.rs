@@ -95,7 +95,7 @@ impl Arguments {
         let mut unnamed = Vec::new();
         let mut add = |name: &str, source| {
             // A motif is another kind of image.
-            let named = RampRole::of_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
+            let named = RampRole::from_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
             if let Some(role) = named.filter(|role| self.role.is_none_or(|wanted| wanted == *role)) {
                 cells.push(Cell { name: name.into(), role, source });
             } else if let (None, false, Source::File(path)) = (named, name.starts_with("motif_"), source) {

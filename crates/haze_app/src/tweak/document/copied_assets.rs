@@ -18,7 +18,7 @@ pub fn copy_assets(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error>
     let pictures = relative_image_paths(preset);
     let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipe_paths(picture)).collect();
     let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));
-    let sources = beside.chain(particle_file_paths(&AssetFolders::at(from), preset));
+    let sources = beside.chain(particle_file_paths(&AssetFolders::new(from), preset));
     let relative = |source: PathBuf| Some((source.clone(), to.join(source.strip_prefix(from).ok()?)));
     copy(sources.filter_map(relative))
 }

@@ -57,7 +57,7 @@ impl KeyframeEdit {
         let mut written = None;
         let is_changed = |(setting, value): &(&String, &FieldValue)| shown.get(*setting) != Some(value);
         for (setting, value) in edited.iter().filter(|_| !is_restored).filter(is_changed) {
-            if let Some(value) = KeyValue::of_field(value) {
+            if let Some(value) = KeyValue::from_field(value) {
                 written = Some(set_key(preset, setting, self.time, value));
             }
         }
@@ -110,7 +110,7 @@ pub fn set_key(preset: &mut Preset, setting: &str, time: f32, value: KeyValue) -
 pub fn add_key(preset: &mut Preset, setting: &str, time: f32) {
     let values = field_values(&preset.with_keyframes_at(time));
     let value = values.into_iter().find(|(path, _)| path == setting);
-    if let Some(value) = value.and_then(|(_, value)| KeyValue::of_field(&value)) {
+    if let Some(value) = value.and_then(|(_, value)| KeyValue::from_field(&value)) {
         set_key(preset, setting, time, value);
     }
 }
@@ -167,7 +167,7 @@ pub fn clamped(preset: &Preset, setting: &str, value: KeyValue) -> KeyValue {
     let only = Track { setting: setting.into(), keys: vec![key], ..Track::default() };
     let values = field_values(&Preset { animation: vec![only], ..preset.clone() }.with_keyframes_at(0.0));
     let found = values.into_iter().find(|(path, _)| path == setting);
-    found.and_then(|(_, value)| KeyValue::of_field(&value)).unwrap_or(value)
+    found.and_then(|(_, value)| KeyValue::from_field(&value)).unwrap_or(value)
 }
 
 /// Adds copied keyframes so that the first is at a time. Keyframes at the same times are replaced.

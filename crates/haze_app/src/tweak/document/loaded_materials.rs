@@ -1,11 +1,11 @@
 //! Ramps and sprites of the systems, as last loaded without error.
 
 use haze::MaterialAssets;
-use haze_preset::{MaterialNames, Preset};
+use haze_preset::{MaterialSources, Preset};
 
 /// Images, and the names they were loaded by. Clones share the images.
 #[derive(Clone)]
-pub struct LoadedMaterials(Vec<(MaterialNames, MaterialAssets)>);
+pub struct LoadedMaterials(Vec<(MaterialSources, MaterialAssets)>);
 
 impl LoadedMaterials {
     /// `loaded` has the images of every system of the preset.
@@ -32,7 +32,7 @@ impl LoadedMaterials {
 }
 
 /// Returns the names of images of each system.
-pub fn names(preset: &Preset) -> Vec<MaterialNames> {
+pub fn names(preset: &Preset) -> Vec<MaterialSources> {
     preset.systems.iter().map(|system| system.material.clone()).collect()
 }
 

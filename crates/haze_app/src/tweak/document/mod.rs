@@ -75,7 +75,7 @@ impl Saving {
         let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
         let target = folder(&self.path);
         copy_assets(&self.preset, &folder(&self.from), &target)?;
-        let folders = AssetFolders::beside(&self.from).with_shared(self.backdrop_folders.clone());
+        let folders = AssetFolders::for_preset_file(&self.from).with_shared(self.backdrop_folders.clone());
         copy_backdrop(&self.preset, &folders, &target)?;
         file_io::write(&self.path, self.text.as_bytes())
     }
@@ -174,7 +174,7 @@ impl Document {
             return Err(FieldError::new("save as", path.display(), "a name that ends in .json").into());
         }
         self.preset.validate()?;
-        let text = Arc::new(self.preset.to_text(&self.text));
+        let text = Arc::new(self.preset.to_json(&self.text));
         self.writing = Arc::downgrade(&text);
         Ok(Saving {
             preset: self.preset.clone(),
@@ -232,8 +232,8 @@ impl Document {
     }
 
     /// Returns the preset as text for the clipboard.
-    pub fn to_text(&self) -> String {
-        self.preset.to_text("")
+    pub fn to_json(&self) -> String {
+        self.preset.to_json("")
     }
 
     /// Replaces the preset by that of a text, as one step. An invalid text changes nothing.

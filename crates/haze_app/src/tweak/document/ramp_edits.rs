@@ -10,7 +10,7 @@ use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, fit_image};
 use haze_core::assets::ramp::Ramp;
 use haze_core::error::builtin_path;
 use haze_core::settings::{FieldValue, field_values, set_field};
-use haze_preset::{AssetFolders, MaterialNames, Preset, builtin};
+use haze_preset::{AssetFolders, MaterialSources, Preset, builtin};
 
 use super::Document;
 use crate::tweak::platform::file_io::{Stamp, read_color_png, write_baked_png};
@@ -200,7 +200,7 @@ impl EditedRamp {
 pub type RampSlot<'a> = (&'static str, &'a String, &'a mut Ramp);
 
 /// Returns the ramps of a material.
-pub fn ramp_slots<'a>(names: &'a MaterialNames, assets: &'a mut MaterialAssets) -> [RampSlot<'a>; 9] {
+pub fn ramp_slots<'a>(names: &'a MaterialSources, assets: &'a mut MaterialAssets) -> [RampSlot<'a>; 9] {
     [
         ("diffuse_ramp", &names.diffuse_ramp, &mut assets.diffuse_ramp),
         ("backlight_ramp", &names.backlight_ramp, &mut assets.backlight_ramp),
@@ -238,7 +238,7 @@ fn stamps(picture: &Path) -> [Option<Stamp>; 2] {
 
 /// Writes the recipe first, because the image can be made again from it.
 pub fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
-    file_io::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
+    file_io::write(&recipe_of(picture), recipe.to_json().as_bytes())?;
     write_baked_png(picture, baked)
 }
 

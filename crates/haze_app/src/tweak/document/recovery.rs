@@ -69,7 +69,7 @@ impl Recovery {
             let written = lock.write(path.to_str().unwrap_or_default());
             written.map_err(|error| Error::Io { path: lock.path().into(), error })?;
         }
-        file_io::write_state_file(&preset_beside(lock.path()), document.preset.to_text("").as_bytes())?;
+        file_io::write_state_file(&preset_beside(lock.path()), document.preset.to_json("").as_bytes())?;
         self.written = Some((document.preset.clone(), path));
         Ok(())
     }

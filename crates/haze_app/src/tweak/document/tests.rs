@@ -27,7 +27,7 @@ impl Document {
 
 fn shot(folder: &Path) -> PathBuf {
     let path = folder.join("shot.json");
-    fs::write(&path, Preset::load("column").unwrap().to_text("")).unwrap();
+    fs::write(&path, Preset::load("column").unwrap().to_json("")).unwrap();
     path
 }
 
@@ -85,7 +85,7 @@ fn undo_works_across_save_revert_and_paste() {
     // No frame has seen this change yet; it is a step of its own nevertheless.
     document.revert().unwrap();
     assert_eq!((document.preset.lights.len(), document.is_dirty()), (3, false));
-    document.paste(&Preset::load("fence").unwrap().to_text("")).unwrap();
+    document.paste(&Preset::load("fence").unwrap().to_json("")).unwrap();
     assert!(document.is_dirty());
     let names: Vec<_> = std::iter::from_fn(|| document.undo().map(str::to_owned)).collect();
     assert_eq!(names, ["Paste", "Revert", "Light removed", "Exposure"]);
@@ -98,7 +98,7 @@ fn undo_works_across_save_revert_and_paste() {
 #[test]
 fn a_pasted_preset_is_validated_like_a_file() {
     let mut document = Document::open(Path::new("column")).unwrap();
-    let text = document.to_text();
+    let text = document.to_json();
     for (from, to, said) in [
         ("\"boost\": 1.5", "\"boost\": NaN", "pasted text:133:18: systems: not a value; expected a number"),
         (
@@ -116,7 +116,7 @@ fn a_pasted_preset_is_validated_like_a_file() {
     }
     set_field(&mut document.preset, "boost", "3").unwrap();
     let mut other = Document::open(Path::new("fence")).unwrap();
-    other.paste(&document.to_text()).unwrap();
+    other.paste(&document.to_json()).unwrap();
     assert_eq!(other.preset, document.preset);
 }
 
@@ -159,7 +159,7 @@ fn images_are_copied_to_another_folder_on_save() {
     document.preset.systems[0].material.diffuse_ramp = "ramps/own.png".into();
     document.preset.systems[0].material.motif = "missing.png".into();
     assert_eq!(
-        document.files(&AssetFolders::at(&old)),
+        document.files(&AssetFolders::new(&old)),
         ["shot.json", "ramps/own.png", "missing.png"].map(|name| old.join(name))
     );
     fs::copy("../../ramps/diffuse_soft.png", old.join("ramps/own.png")).unwrap();

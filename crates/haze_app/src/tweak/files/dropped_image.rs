@@ -8,7 +8,7 @@ use haze_author::preset::{no_effect_reason, role_warnings};
 use haze_core::assets::ramp::RampRole;
 use haze_core::assets::sprite::SpriteLayout;
 use haze_core::settings::{FieldRef, for_each_field, set_field};
-use haze_preset::{AssetFolders, MaterialNames, Preset};
+use haze_preset::{AssetFolders, MaterialSources, Preset};
 
 use crate::recipe_files::six_way_path;
 use crate::tweak::document::sprite_edits::sprite_source::{detail_of, recipe_of};
@@ -30,7 +30,7 @@ impl DroppedImage {
     ///
     /// # Errors
     /// If the file lies elsewhere, cannot be read, or fits no role.
-    pub fn read(path: &Path, folders: &AssetFolders, material: &MaterialNames) -> Result<Self, Error> {
+    pub fn read(path: &Path, folders: &AssetFolders, material: &MaterialSources) -> Result<Self, Error> {
         let refuse = |problem: &str, expected: &str| {
             let problem = format!("{} {problem}", path.display());
             FieldError::from_problem("dropped file", problem, expected).into()
@@ -99,19 +99,19 @@ fn field_of_name(path: &Path) -> Option<&'static str> {
         return Some(field);
     }
     let word = name.split(['_', '.', '-']).next()?;
-    let role = RampRole::of_name(name);
+    let role = RampRole::from_name(name);
     let has_recipe = |field: &str| file_io::exists(&path.with_extension(format!("{field}.json")));
     let is_told =
-        |field: &&str| (role.is_some() && RampRole::of_field(field) == role) || *field == word || has_recipe(field);
+        |field: &&str| (role.is_some() && RampRole::from_field(field) == role) || *field == word || has_recipe(field);
     picture_fields().into_iter().find(is_told)
 }
 
 /// Fields to set for an image in a role, and a doubt about that role.
 type Checked = (Vec<(&'static str, String)>, Option<String>);
 
-fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNames) -> Result<Checked, Error> {
+fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialSources) -> Result<Checked, Error> {
     let mut fields = vec![(field, name.to_owned())];
-    let mut names = MaterialNames::default();
+    let mut names = MaterialSources::default();
     if field == "sprite" {
         let SpriteLayout { columns, rows, y_down } = layout(&folder.join(name), material);
         let name = Path::new(name);
@@ -124,8 +124,8 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
         fields.extend(layout);
     } else if ["detail", "six_way"].contains(&field) {
         // The image must have the layout of the system's present sprite.
-        let MaterialNames { sprite, columns, rows, y_down, .. } = material.clone();
-        names = MaterialNames { sprite, columns, rows, y_down, ..names };
+        let MaterialSources { sprite, columns, rows, y_down, .. } = material.clone();
+        names = MaterialSources { sprite, columns, rows, y_down, ..names };
     }
     for (field, value) in &fields {
         set_field(&mut names, field, value)?;
@@ -135,7 +135,7 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
 }
 
 /// Returns the layout of a sheet: from its recipe, or else from the sprite that it replaces.
-fn layout(sheet: &Path, material: &MaterialNames) -> SpriteLayout {
+fn layout(sheet: &Path, material: &MaterialSources) -> SpriteLayout {
     let as_before = SpriteLayout { columns: material.columns, rows: material.rows, y_down: material.y_down };
     asset_loading::sprite_recipe(&recipe_of(sheet)).map_or(as_before, |recipe| recipe.layout())
 }
@@ -143,7 +143,7 @@ fn layout(sheet: &Path, material: &MaterialNames) -> SpriteLayout {
 /// Returns the material fields that hold names of images.
 fn picture_fields() -> Vec<&'static str> {
     let mut fields = Vec::new();
-    for_each_field(&mut MaterialNames::default(), &mut |path, leaf| {
+    for_each_field(&mut MaterialSources::default(), &mut |path, leaf| {
         let name = path.last().filter(|_| matches!(leaf, FieldRef::Text(_)));
         fields.extend(name.map(|(name, _)| *name));
     });
@@ -179,13 +179,13 @@ mod tests {
         image::RgbaImage::from_pixel(32, 64, image::Rgba([90, 120, 60, 0])).save(path("puff.six_way.png")).unwrap();
         save("opaque.png", (32, 32), |x, y| [112 + x as u8, 112 + y as u8, 240]);
         std::fs::write(path("broken.png"), "no picture").unwrap();
-        let folders = AssetFolders::at(folder.path());
+        let folders = AssetFolders::new(folder.path());
         let mut preset = Preset::load("column").unwrap();
         let mut drop = |name: &str| {
             let dropped = DroppedImage::read(&path(name), &folders, &preset.systems[0].material)?;
             dropped.apply(&mut preset, 0, UVec2::new(640, 360)).map(|said| (said, preset.systems[0].material.clone()))
         };
-        type Field = fn(&MaterialNames) -> &String;
+        type Field = fn(&MaterialSources) -> &String;
         let all: [(&str, &str, Field); 11] = [
             ("rows.png", "diffuse ramp of smoke", |m| &m.diffuse_ramp),
             ("mine.png", "diffuse ramp of smoke", |m| &m.diffuse_ramp),
@@ -212,7 +212,7 @@ mod tests {
         let error = drop("opaque.png").err().unwrap().to_string();
         assert!(error.contains("looks like the normals of a sprite"), "{error}");
         assert!(drop("broken.png").err().unwrap().to_string().contains("not a PNG"));
-        let elsewhere = DroppedImage::read(Path::new("/elsewhere/a.png"), &folders, &MaterialNames::default());
+        let elsewhere = DroppedImage::read(Path::new("/elsewhere/a.png"), &folders, &MaterialSources::default());
         assert!(elsewhere.err().unwrap().to_string().contains("an image in the folder of the preset"));
     }
 }

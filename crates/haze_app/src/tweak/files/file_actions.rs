@@ -362,7 +362,7 @@ fn suggested(session: &Session) -> PathBuf {
 
 fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, LoadedAssets), Error> {
     let document = Document::open(path)?;
-    let folders = AssetFolders::beside(path).with_shared(assets);
+    let folders = AssetFolders::for_preset_file(path).with_shared(assets);
     let loaded = asset_loading::all(&document.preset, path, &folders)?;
     Ok((document, loaded))
 }

@@ -12,7 +12,7 @@ use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::ParticleFrames;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_preset::{MaterialNames, Preset};
+use haze_preset::{MaterialSources, Preset};
 
 use crate::inputs::{backdrop_file_paths, relative_image_paths};
 use crate::recipe_files::recipe_paths;
@@ -43,7 +43,7 @@ pub struct HotReload {
 }
 
 /// Path of the preset, the images and particle files that its systems name, and the names of scene and sky.
-type Asked = (PathBuf, Vec<MaterialNames>, Vec<String>, [String; 2]);
+type Asked = (PathBuf, Vec<MaterialSources>, Vec<String>, [String; 2]);
 
 /// Watched folder of shaders.
 struct Shaders {

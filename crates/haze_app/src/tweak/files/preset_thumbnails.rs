@@ -115,7 +115,7 @@ impl PresetThumbnails {
 }
 
 async fn draw(path: &Path, assets: Option<PathBuf>) -> Result<RenderedPreset, Error> {
-    let folders = AssetFolders::beside(path).with_shared(assets);
+    let folders = AssetFolders::for_preset_file(path).with_shared(assets);
     let shot = asset_loading::shot(path, &folders, SIZE)?;
     let picture = render_job::open_thumbnail_backend()?.render_async(&shot).await?;
     let picture = tonemap(&picture, &shot);

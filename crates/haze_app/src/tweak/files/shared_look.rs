@@ -72,7 +72,7 @@ pub fn open(fragment: &str, folder: &Path) -> Result<Session, Error> {
     for (name, recipe) in &ramps {
         ramp_edits::write(&folder.join(name), recipe, &recipe.bake()?)?;
     }
-    file_io::write(&path, preset.to_text("").as_bytes())?;
+    file_io::write(&path, preset.to_json("").as_bytes())?;
     Session::open(&path, None)
 }
 

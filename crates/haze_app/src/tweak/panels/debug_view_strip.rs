@@ -5,7 +5,7 @@ use glam::UVec2;
 use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 
-use crate::debug_view_sheet::STAGES;
+use crate::debug_view_sheet::DEBUG_VIEWS;
 use crate::tweak::session::Session;
 use crate::tweak::viewport_renderer::ViewportRenderer;
 
@@ -16,7 +16,7 @@ const ARROW: f32 = 14.0;
 
 /// Returns the width of a view in a strip of this width.
 fn view_width(strip: f32) -> f32 {
-    let count = STAGES.len() as f32;
+    let count = DEBUG_VIEWS.len() as f32;
     (strip - (count - 1.0) * ARROW) / count
 }
 
@@ -30,7 +30,7 @@ pub fn filled_height(strip: f32) -> f32 {
 pub fn debug_view_strip(ui: &mut Ui, session: &mut Session, renderer: &ViewportRenderer, aspect: f32) {
     // The panel keeps its height while the images are lower, because the shape of the viewport is not known yet.
     ui.set_min_height(ui.available_height());
-    let count = STAGES.len() as f32;
+    let count = DEBUG_VIEWS.len() as f32;
     let height = (ui.available_height() - NAME).min(view_width(ui.available_width()) / aspect);
     let size = Vec2::new((height * aspect).floor(), height.floor());
     let pixels = size * ui.pixels_per_point();
@@ -42,7 +42,7 @@ pub fn debug_view_strip(ui: &mut Ui, session: &mut Session, renderer: &ViewportR
     ui.spacing_mut().item_spacing = Vec2::ZERO;
     let arrow_width = (ui.available_width() - count * size.x) / (count - 1.0);
     ui.horizontal_top(|ui| {
-        for (index, (view, label)) in STAGES.into_iter().enumerate() {
+        for (index, (view, label)) in DEBUG_VIEWS.into_iter().enumerate() {
             if index > 0 {
                 arrow(ui, Vec2::new(arrow_width, size.y));
             }
@@ -85,6 +85,6 @@ fn arrow(ui: &mut Ui, size: Vec2) {
 
 /// Returns the view after one, cyclically.
 pub fn next_debug_view(view: DebugView) -> DebugView {
-    let at = STAGES.iter().position(|(one, _)| *one == view).map_or(0, |at| at + 1);
-    STAGES[at % STAGES.len()].0
+    let at = DEBUG_VIEWS.iter().position(|(one, _)| *one == view).map_or(0, |at| at + 1);
+    DEBUG_VIEWS[at % DEBUG_VIEWS.len()].0
 }

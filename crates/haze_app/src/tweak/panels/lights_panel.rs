@@ -36,7 +36,7 @@ pub fn panel(
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
     ui.horizontal_wrapped(|ui| tools(ui, preset, shown, seen));
-    let place = seen.0.bounds().centre();
+    let place = seen.0.bounds().center();
     let all: f32 = preset.lights.iter().map(|light| luminance(irradiance(light, place))).sum();
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
@@ -95,11 +95,11 @@ fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Lig
     context.requests.extend(request.map(|request| (request, path)));
 }
 
-const AT_SMOKE: &str = "Light that arrives at the centre of the smoke, in one unit for all lights: the intensity of a white sun \
+const AT_SMOKE: &str = "Light that arrives at the center of the smoke, in one unit for all lights: the intensity of a white sun \
      that is as bright there. Shadows and other smoke are left out. Times π it is lux, if intensities are candela and lux \
      divided by π. A change sets the intensity.";
 
-/// Draws the brightness of a light at the smoke, which sets its intensity. `place`: centre of the smoke. `all`: brightness of all
+/// Draws the brightness of a light at the smoke, which sets its intensity. `place`: center of the smoke. `all`: brightness of all
 /// lights there.
 fn at_smoke(
     ui: &mut Ui,
@@ -191,7 +191,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
     }
     let behind = ui.button("Move behind smoke").on_hover_text("Moves the light behind the smoke, seen from the camera");
     if behind.clicked() {
-        let (eye, point) = (preset.camera.position, smoke.visible_centre(&preset.camera, size));
+        let (eye, point) = (preset.camera.position, smoke.visible_center(&preset.camera, size));
         if let Some(light) = preset.lights.get_mut(index) {
             place_behind(light, eye, point, &smoke.bounds);
         }
@@ -202,8 +202,8 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
 fn beside(mut light: Light, camera: &Camera, bounds: &Bounds) -> Light {
     let reach = 0.5 * (bounds.max - bounds.min);
     let right = (camera.target - camera.position).cross(glam::Vec3::Y).normalize_or(glam::Vec3::X);
-    light.position = bounds.centre() + right * (reach.length() + 0.5);
-    light.direction = bounds.centre() - light.position - glam::Vec3::Y;
+    light.position = bounds.center() + right * (reach.length() + 0.5);
+    light.direction = bounds.center() - light.position - glam::Vec3::Y;
     light
 }
 
@@ -274,7 +274,7 @@ mod tests {
             slider.set_value_accesskit(2.0);
             harness.run_steps(3);
             let session = &harness.state().session;
-            let place = session.smoke.bounds().centre();
+            let place = session.smoke.bounds().center();
             let brightness = luminance(irradiance(&session.document.preset.lights[light], place));
             assert!((brightness - 2.0).abs() < 0.01, "{name}: {brightness}");
             harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);

@@ -19,8 +19,8 @@ pub fn button(ui: &mut Ui, session: &mut Session, system: usize, field: &'static
     let button = ui.button("Looks…");
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if button.on_hover_text("Shows this smoke with every ramp that fits here").clicked() {
-        let wanted = RampRole::of_field(field);
-        let fits = |name: &String| RampRole::of_name(name).is_none_or(|role| wanted == Some(role));
+        let wanted = RampRole::from_field(field);
+        let fits = |name: &String| RampRole::from_name(name).is_none_or(|role| wanted == Some(role));
         let names = session.thumbnails.names(ui.ctx(), ImageRole::Ramp).into_iter().filter(fits).collect();
         session.looks.open(system, field, names);
     }

@@ -40,7 +40,7 @@ const LIGHT_COLORS: [Color32; 6] = [
 const SAMPLED_OVER_DARK: Color32 = Color32::from_rgb(120, 210, 255);
 const SAMPLED_OVER_LIGHT: Color32 = Color32::from_rgb(0, 50, 130);
 /// Linear luminance that separates them.
-const MIDDLE_GREY: f32 = 0.18;
+const MIDDLE_GRAY: f32 = 0.18;
 
 /// Draws the tab. Returns the place on a ramp under the pointer.
 pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPlace> {
@@ -444,7 +444,7 @@ fn plane(
     for (index, density) in density.iter().enumerate().filter(|(_, density)| **density > 0.0) {
         let (column, row) = ((index % SIDE) as f32, (index / SIDE) as f32);
         let below = sample_ramp_2d(image, filter, (glam::Vec2::new(column, row) + 0.5) / SIDE as f32);
-        let color = if luminance(below) < MIDDLE_GREY { SAMPLED_OVER_DARK } else { SAMPLED_OVER_LIGHT };
+        let color = if luminance(below) < MIDDLE_GRAY { SAMPLED_OVER_DARK } else { SAMPLED_OVER_LIGHT };
         let corner = rect.min + Vec2::new(column, (SIDE - 1) as f32 - row) * cell;
         // Even the rarest places stay visible.
         mesh.add_colored_rect(Rect::from_min_size(corner, cell), color.gamma_multiply(0.15 + 0.7 * density.sqrt()));

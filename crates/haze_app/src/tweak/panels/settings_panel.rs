@@ -122,7 +122,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
     egui::ScrollArea::vertical().id_salt(session.view.tab).auto_shrink(false).show(ui, |ui| match session.view.tab {
         Tab::Look => look_panel::panel(ui, &mut context, preset, &mut shown, system),
         Tab::Light => {
-            sun_panel::panel(ui, &mut context, preset, &mut shown, smoke_shown.bounds().centre());
+            sun_panel::panel(ui, &mut context, preset, &mut shown, smoke_shown.bounds().center());
             ui.separator();
             lights_panel::panel(ui, &mut context, preset, &mut shown, (&smoke_shown, session.view.size));
             ui.separator();
@@ -248,8 +248,8 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
-        let is_grey = |name| control(&harness, name).accesskit_node().is_disabled();
-        assert!(is_grey("Blend mode") && !is_grey("Technique"));
+        let is_gray = |name| control(&harness, name).accesskit_node().is_disabled();
+        assert!(is_gray("Blend mode") && !is_gray("Technique"));
         // The name is to the left of the control.
         let place = control(&harness, "Blend mode").rect().left_center();
         harness.hover_at(place - Vec2::new(80.0, 0.0));

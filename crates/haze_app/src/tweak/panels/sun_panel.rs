@@ -20,7 +20,7 @@ const NEW_SUN: f32 = 18.0;
 const TOOLTIP: &str = "Moves the sun, and gives sun, sky, ambient light and fill lights the colors and the brightness of that \
      time. All are ordinary settings: change any of them afterwards.";
 
-/// Draws the control, or the button that adds a sun. `place`: centre of the smoke.
+/// Draws the control, or the button that adds a sun. `place`: center of the smoke.
 pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, shown: &mut LightView, place: Vec3) {
     let Some(index) = sun_of(&preset.lights) else {
         ui.horizontal_wrapped(|ui| {

@@ -12,7 +12,7 @@ use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::assets::ramp::Ramp;
 use haze_core::settings::BackdropKind;
 use haze_demo::shot::Shot;
-use haze_preset::{AssetFolders, MaterialNames, Preset, image_file_path};
+use haze_preset::{AssetFolders, ImageSource, MaterialSources, Preset, image_file_path};
 
 pub use crate::inputs::particle_file_paths;
 
@@ -54,8 +54,8 @@ pub fn backdrop_file(kind: BackdropKind, path: &Path) -> Result<Backdrop, Error>
 }
 
 /// Loads the images of one material.
-pub fn material(names: &MaterialNames, folder: &Path) -> Result<MaterialAssets, Error> {
-    names.load(folder)
+pub fn material(names: &MaterialSources, folder: &Path) -> Result<MaterialAssets, Error> {
+    names.load(ImageSource::folder(folder))
 }
 
 /// Returns the path of an image, or the path where it is expected; empty if it is built in.

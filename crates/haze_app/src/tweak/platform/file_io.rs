@@ -18,7 +18,7 @@ pub use super::disk::{
 
 /// Reads a preset, and the text that it was read from.
 pub fn read_preset(name_or_path: &Path) -> Result<(Preset, String), Error> {
-    Preset::read(name_or_path)
+    Preset::load_with_source(name_or_path)
 }
 
 /// Reads the text of a JSON file.

@@ -120,7 +120,7 @@ impl CompareWith {
 /// Returns `preset` at the time of `other` with its camera, and with the same lights muted and turned. The exposure stays that
 /// of `preset`.
 fn with_view_of(preset: &Preset, other: &Preset, lights: &LightView) -> Preset {
-    let preset = preset.at(other.time);
+    let preset = preset.evaluate(other.time);
     let camera = Camera { exposure: preset.camera.exposure, ..other.camera };
     Preset { camera, time: other.time, lights: lights.shown_of_preset(&preset.lights), ..preset }
 }

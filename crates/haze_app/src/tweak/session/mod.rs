@@ -155,7 +155,7 @@ impl Session {
     /// Shows a document. Images are looked up beside it and in `assets`.
     pub fn show(document: Document, assets: Option<PathBuf>) -> Result<Self, Error> {
         let (preset, source) = (&document.preset, document.path());
-        let folders = AssetFolders::beside(source).with_shared(assets.clone());
+        let folders = AssetFolders::for_preset_file(source).with_shared(assets.clone());
         let LoadedAssets { materials, particles, backdrop } = asset_loading::all(preset, source, &folders)?;
         Ok(Self {
             assets,
@@ -202,7 +202,7 @@ impl Session {
 
     /// Returns the folders where images are looked up.
     pub fn folders(&self) -> AssetFolders {
-        AssetFolders::beside(self.document.path())
+        AssetFolders::for_preset_file(self.document.path())
             .with_shared(self.assets.clone())
             .with_shared(self.backdrop_folders.clone())
     }
@@ -224,7 +224,7 @@ impl Session {
 
     /// Returns the preset with the values of its tracks at the time of the playback.
     pub fn preset_now(&self) -> Preset {
-        self.document.preset.at(self.playback.time)
+        self.document.preset.evaluate(self.playback.time)
     }
 
     /// Returns the smoke that is shown, measured unless `known` has it already.

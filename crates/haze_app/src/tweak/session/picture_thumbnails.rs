@@ -168,8 +168,8 @@ fn puff(sprite: &Sprite) -> ColorImage {
         let at = |pixel: usize| (pixel * side / SIZE[1]) as u32;
         let texel = sprite.texel(level, 0, at(x - left), at(y));
         let light = (texel.xyz() * 2.0 - 1.0).dot(Vec3::new(-0.5, 0.6, 0.62)).max(0.0);
-        let grey = (70.0 + 175.0 * light).min(255.0) as u8;
-        Color32::from_rgba_unmultiplied(grey, grey, grey, (texel.w.clamp(0.0, 1.0) * 255.0) as u8)
+        let gray = (70.0 + 175.0 * light).min(255.0) as u8;
+        Color32::from_rgba_unmultiplied(gray, gray, gray, (texel.w.clamp(0.0, 1.0) * 255.0) as u8)
     })
 }
 
@@ -193,9 +193,9 @@ mod tests {
         image::RgbaImage::from_pixel(4, 1, image::Rgba([255, 255, 255, 55])).save(&path).unwrap();
         let first = |role| thumbnail(role, &ImageSource::File(path.clone())).unwrap().pixels[0];
         // A transparent texel gives proportionally less light: alpha 55/255 halves the sRGB code of white.
-        let grey = first(ImageRole::Ramp);
-        assert!(grey.is_opaque() && grey.r().abs_diff(128) <= 1, "{grey:?}");
-        assert_eq!(first(ImageRole::Motif), grey);
+        let gray = first(ImageRole::Ramp);
+        assert!(gray.is_opaque() && gray.r().abs_diff(128) <= 1, "{gray:?}");
+        assert_eq!(first(ImageRole::Motif), gray);
         assert_eq!(first(ImageRole::Noise), Color32::from_rgba_unmultiplied(255, 255, 255, 55));
     }
 }

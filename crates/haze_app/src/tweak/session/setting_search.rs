@@ -65,7 +65,7 @@ const SYNONYMS: [(&str, &[&str]); 22] = [
     ("animation", &["frame", "flipbook"]),
     ("blur", &["softness", "scale"]),
     ("brightness", &["exposure", "intensity"]),
-    ("colour", &["color"]),
+    ("color", &["color"]),
     ("count", &["rate"]),
     ("density", &["thickness"]),
     ("fog", &["thickness", "scatter"]),
@@ -250,7 +250,7 @@ mod tests {
             ("fog", "thickness"),
             ("brightness", "camera.exposure"),
             ("gravity", "emitter.buoyancy"),
-            ("colour", "color"),
+            ("color", "color"),
         ] {
             let preset = Preset::load("column").unwrap();
             let found = matches(&preset, &Tooltips::of::<Preset>(), &LightView::default(), text);

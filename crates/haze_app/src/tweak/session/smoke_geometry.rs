@@ -30,8 +30,9 @@ impl SmokeGeometry {
             }
             self.of = Some((preset.systems.clone(), caches, time.to_bits()));
             let all = preset.systems.iter().zip(&self.systems);
-            self.bounds =
-                all.map(|(system, particles)| particle_bounds(particles, SpriteExtent::of(&system.settings))).collect();
+            self.bounds = all
+                .map(|(system, particles)| particle_bounds(particles, SpriteExtent::from_settings(&system.settings)))
+                .collect();
         }
         self
     }
@@ -49,20 +50,20 @@ impl SmokeGeometry {
         all
     }
 
-    /// Returns the centre of the smoke that is inside an image of this size, weighted by coverage. If there is none,
-    /// returns the centre of all smoke.
-    pub fn visible_centre(&self, camera: &Camera, size: UVec2) -> Vec3 {
+    /// Returns the center of the smoke that is inside an image of this size, weighted by coverage. If there is none,
+    /// returns the center of all smoke.
+    pub fn visible_center(&self, camera: &Camera, size: UVec2) -> Vec3 {
         let view = camera.view(size);
         let clip_from_world = view.clip_from_view * view.view_from_world;
         let is_seen = |particle: &&Particle| {
             let clip = clip_from_world * particle.position.extend(1.0);
             clip.w > camera.near && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w
         };
-        mean_position(self.systems.iter().flatten().filter(is_seen)).unwrap_or_else(|| self.bounds().centre())
+        mean_position(self.systems.iter().flatten().filter(is_seen)).unwrap_or_else(|| self.bounds().center())
     }
 
-    /// Returns the point on a ray where the smoke that it crosses has its centre. `way` has unit length.
-    pub fn centre_on_ray(&self, eye: Vec3, way: Vec3) -> Option<Vec3> {
+    /// Returns the point on a ray where the smoke that it crosses has its center. `way` has unit length.
+    pub fn center_on_ray(&self, eye: Vec3, way: Vec3) -> Option<Vec3> {
         let is_met = |particle: &&Particle| {
             let far = (particle.position - eye).dot(way);
             far > 0.0 && particle.position.distance(eye + way * far) < particle.radius
@@ -130,7 +131,7 @@ mod tests {
     fn a_light_behind_a_point_is_occluded_and_outside_the_box() {
         let eye = Vec3::new(4.0, 1.0, 6.0);
         for &kind in LightKind::ALL {
-            for point in [BOX.centre(), Vec3::new(0.9, 4.5, 0.8), Vec3::new(-0.8, 2.0, -1.0)] {
+            for point in [BOX.center(), Vec3::new(0.9, 4.5, 0.8), Vec3::new(-0.8, 2.0, -1.0)] {
                 let mut light = Light { kind, ..Light::default() };
                 place_behind(&mut light, eye, point, &[BOX]);
                 let away = (point - eye).normalize();
@@ -160,17 +161,17 @@ mod tests {
     fn a_light_put_behind_smoke_seen_from_above_stays_above_the_ground() {
         for eye in [Vec3::new(4.0, 9.0, 6.0), Vec3::new(0.25, 20.0, -0.5), Vec3::new(0.3, 6.0, 0.0)] {
             let mut light = Light { kind: LightKind::Spot, ..Light::default() };
-            place_behind(&mut light, eye, BOX.centre(), &[BOX]);
+            place_behind(&mut light, eye, BOX.center(), &[BOX]);
             assert!(light.position.y >= MIN_HEIGHT, "{}", light.position);
-            // Outside the box, on its far side, and pointing at its centre.
+            // Outside the box, on its far side, and pointing at its center.
             assert!(light.position.x < BOX.min.x || light.position.z < BOX.min.z, "{}", light.position);
-            let to_middle = (BOX.centre() - light.position).normalize();
+            let to_middle = (BOX.center() - light.position).normalize();
             assert!(light.direction.distance(to_middle) < 1e-5, "{}", light.direction);
         }
     }
 
     #[test]
-    fn the_visible_centre_ignores_smoke_outside_the_image_and_a_ray_finds_only_smoke_on_it() {
+    fn the_visible_center_ignores_smoke_outside_the_image_and_a_ray_finds_only_smoke_on_it() {
         let at = |x, y, z| Particle { position: Vec3::new(x, y, z), radius: 0.5, ..Particle::default() };
         let near = [at(0.5, 2.0, 0.0), at(-0.5, 2.0, 0.0)];
         // Above the upper edge, and behind the camera.
@@ -180,13 +181,13 @@ mod tests {
             ..SmokeGeometry::default()
         };
         let (camera, size) = (Camera::default(), UVec2::new(160, 90));
-        assert!(smoke([&near, &far]).visible_centre(&camera, size).distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-4);
+        assert!(smoke([&near, &far]).visible_center(&camera, size).distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-4);
         let none = smoke([&far, &[]]);
-        assert_eq!(none.visible_centre(&camera, size), none.bounds().centre());
+        assert_eq!(none.visible_center(&camera, size), none.bounds().center());
         let eye = Vec3::new(0.5, 2.0, 8.0);
         let behind = [at(0.6, 2.0, -4.0)];
-        let met = smoke([&near, &behind]).centre_on_ray(eye, Vec3::NEG_Z).unwrap();
+        let met = smoke([&near, &behind]).center_on_ray(eye, Vec3::NEG_Z).unwrap();
         assert!(met.distance(Vec3::new(0.5, 2.0, -2.0)) < 1e-4, "{met}");
-        assert_eq!(smoke([&near, &far]).centre_on_ray(eye, Vec3::X), None);
+        assert_eq!(smoke([&near, &far]).center_on_ray(eye, Vec3::X), None);
     }
 }

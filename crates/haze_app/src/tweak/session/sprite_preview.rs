@@ -98,12 +98,12 @@ fn code(material: &MaterialAssets, view: &View, uv: Vec2) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use haze_core::settings::SpriteSettings;
-    use haze_preset::MaterialNames;
+    use haze_preset::{ImageSource, MaterialSources};
 
     use super::*;
 
     fn material() -> MaterialAssets {
-        MaterialNames { sprite: "ball".into(), ..MaterialNames::default() }.load("".as_ref()).unwrap()
+        MaterialSources { sprite: "ball".into(), ..MaterialSources::default() }.load(ImageSource::BuiltIn).unwrap()
     }
 
     fn view(channel: SpriteChannel, to_light: Vec3) -> View {

@@ -19,8 +19,8 @@ pub const SPRITE_CHANNELS: [(SpriteChannel, &str, &str); 5] = [
     (SpriteChannel::Lit, "Lit", "Lit by the diffuse ramp of the system"),
     (SpriteChannel::Normals, "Normals", "Normals as stored: x in red, y up in green, z to the viewer in blue"),
     (SpriteChannel::Amount, "Amount", "Opacity: white is opaque"),
-    (SpriteChannel::Depth, "Depth", "Relief: white is towards the viewer, grey is the middle"),
-    (SpriteChannel::Motion, "Motion", "Motion to the next frame: right in red, down in green, grey is still"),
+    (SpriteChannel::Depth, "Depth", "Relief: white is towards the viewer, gray is the middle"),
+    (SpriteChannel::Motion, "Motion", "Motion to the next frame: right in red, down in green, gray is still"),
 ];
 
 /// Flipbook and its light. Not part of the preset.

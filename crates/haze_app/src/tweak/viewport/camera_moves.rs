@@ -54,10 +54,10 @@ pub fn fly(camera: &mut Camera, way: Vec3) {
 /// Frames a box in an image of an aspect ratio, without turning the camera.
 pub fn frame(camera: &mut Camera, bounds: &Bounds, aspect: f32) {
     let tangent = (0.5 * camera.fov.to_radians()).tan();
-    let (centre, half) = (bounds.centre(), 0.5 * (bounds.max - bounds.min));
+    let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
     let ahead = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
     let (right, up) = sides(ahead);
-    // Distance from the box's centre to the camera at which a corner is just in view.
+    // Distance from the box's center to the camera at which a corner is just in view.
     let distance = |corner: Vec3| {
         let side = corner.dot(right).abs() / (tangent * aspect.max(0.01));
         side.max(corner.dot(up).abs() / tangent).max(camera.near) - corner.dot(ahead)
@@ -65,8 +65,8 @@ pub fn frame(camera: &mut Camera, bounds: &Bounds, aspect: f32) {
     let corners =
         (0..8).map(|corner| half * Vec3::from([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 })));
     let farthest = 1.08 * corners.map(distance).fold(MIN_DISTANCE, f32::max);
-    camera.position = centre - ahead * farthest.clamp(MIN_DISTANCE, (0.5 * camera.far).max(MIN_DISTANCE));
-    camera.target = centre;
+    camera.position = center - ahead * farthest.clamp(MIN_DISTANCE, (0.5 * camera.far).max(MIN_DISTANCE));
+    camera.target = center;
 }
 
 /// Looks at the same target from another direction, at the same distance.

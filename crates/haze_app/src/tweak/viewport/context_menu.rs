@@ -51,7 +51,7 @@ fn entries(
 ) -> Option<InView> {
     for (kind, name) in ADDED {
         if ui.button(name).clicked() {
-            let middle = session.measure(smoke).bounds().centre();
+            let middle = session.measure(smoke).bounds().center();
             let light = here(new_light(kind, &session.document.preset.lights), at, projection, middle);
             session.add_light(light);
         }
@@ -71,14 +71,14 @@ fn entries(
     asked
 }
 
-/// Returns a light under the pointer, on the plane through the smoke's centre that faces the camera. A sun shines from
+/// Returns a light under the pointer, on the plane through the smoke's center that faces the camera. A sun shines from
 /// that place on the sun sphere.
 fn here(mut light: Light, at: Pos2, projection: &ScreenProjection, middle: Vec3) -> Light {
-    let (centre, radius) = projection.sun_sphere;
+    let (center, radius) = projection.sun_sphere;
     light.position = projection.unproject_to_facing_plane(at, middle);
     let to_middle = middle - light.position;
     light.direction = match light.kind {
-        LightKind::Directional => centre - projection.ray(at).on_sphere(centre, radius, true),
+        LightKind::Directional => center - projection.ray(at).on_sphere(center, radius, true),
         _ if to_middle.length() > 0.1 => to_middle,
         _ => projection.ahead,
     };

@@ -34,7 +34,7 @@ pub struct HandleDrag {
 
 impl HandleDrag {
     pub fn new(index: usize, handle: Handle, light: Light, projection: &ScreenProjection, pointer: Pos2) -> Self {
-        let (centre, _) = sphere(&light, projection);
+        let (center, _) = sphere(&light, projection);
         let aimed = if light.kind == LightKind::Directional { -light.direction } else { light.direction };
         Self {
             index,
@@ -44,7 +44,7 @@ impl HandleDrag {
             start: pointer,
             at: pointer,
             pointer,
-            is_before: aimed.dot(centre - projection.eye) < 0.0,
+            is_before: aimed.dot(center - projection.eye) < 0.0,
             is_outside: false,
         }
     }
@@ -69,7 +69,7 @@ impl HandleDrag {
                     }
                 }
             }
-            Handle::Centre => {
+            Handle::Center => {
                 if let Some(by) = self.moved(projection, projection.ahead) {
                     light.position = Vec3::from((light.position + by).to_array().map(|axis| snap(axis, SNAP_METRES)));
                 }
@@ -117,23 +117,23 @@ impl HandleDrag {
 
     /// Returns the direction of the light for the present position of its handle.
     fn aim(&mut self, projection: &ScreenProjection) -> Vec3 {
-        let (centre, radius) = sphere(&self.before, projection);
+        let (center, radius) = sphere(&self.before, projection);
         let is_sun = self.before.kind == LightKind::Directional;
         let way = self.before.direction.normalize_or(Vec3::NEG_Y);
-        let handle = if is_sun { light_position(&self.before, projection) } else { centre + way * radius };
+        let handle = if is_sun { light_position(&self.before, projection) } else { center + way * radius };
         let offset = projection.project(handle).map_or(Vec2::ZERO, |handle| handle - self.start);
         let ray = projection.ray(self.at + offset);
-        let is_outside = ray.passes(centre, radius);
+        let is_outside = ray.passes(center, radius);
         if self.is_outside && !is_outside {
             self.is_before = !self.is_before;
         }
         self.is_outside = is_outside;
-        let way = (ray.on_sphere(centre, radius, self.is_before) - centre).normalize_or(way);
+        let way = (ray.on_sphere(center, radius, self.is_before) - center).normalize_or(way);
         if is_sun { -way } else { way }
     }
 }
 
-/// Returns centre and radius of the sphere on which the direction's handle moves.
+/// Returns center and radius of the sphere on which the direction's handle moves.
 fn sphere(light: &Light, projection: &ScreenProjection) -> (Vec3, f32) {
     match light.kind {
         LightKind::Directional => projection.sun_sphere,

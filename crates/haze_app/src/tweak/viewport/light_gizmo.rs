@@ -151,8 +151,8 @@ impl LightGizmo {
                     outlined.arrow_head(to, to - from, color);
                 }
                 Shape::Quad(corners) => outlined.quad(corners, color),
-                Shape::Square(centre) => outlined.square(centre, SQUARE, color),
-                Shape::Knob(centre) => outlined.knob(centre, color),
+                Shape::Square(center) => outlined.square(center, SQUARE, color),
+                Shape::Knob(center) => outlined.knob(center, color),
             }
         }
     }
@@ -166,8 +166,8 @@ impl LightGizmo {
         ];
         for (angle, color) in angles {
             let sine = angle.to_radians().sin() * cone.length;
-            let centre = light.position + cone.way * (angle.to_radians().cos() * cone.length);
-            circle(outlined, projection, centre, cone.side * sine, across * sine, 1.0, color);
+            let center = light.position + cone.way * (angle.to_radians().cos() * cone.length);
+            circle(outlined, projection, center, cone.side * sine, across * sine, 1.0, color);
             for side in [cone.side, -cone.side] {
                 if let Some(ends) = projection.segment(light.position, cone.rim(angle, side)) {
                     outlined.line(&ends, 1.0, color);
@@ -187,7 +187,7 @@ impl LightGizmo {
 fn plain(handle: Handle) -> Color32 {
     match handle {
         Handle::Axis(axis) | Handle::Plane(axis) => AXES[axis],
-        Handle::Centre | Handle::OuterAngle | Handle::Aim => SELECTED,
+        Handle::Center | Handle::OuterAngle | Handle::Aim => SELECTED,
         Handle::Radius | Handle::InnerAngle => PLAIN,
     }
 }
@@ -198,25 +198,25 @@ fn hue_of(light: &Light) -> Color32 {
 
 /// Draws a sun: a line from its place on the sun sphere to the camera's target.
 fn draw_sun(outlined: &OutlinedPainter<'_>, light: &Light, projection: &ScreenProjection) {
-    let (centre, radius) = projection.sun_sphere;
+    let (center, radius) = projection.sun_sphere;
     circle(
         outlined,
         projection,
-        centre,
+        center,
         projection.right * radius,
         projection.up * radius,
         1.0,
         PLAIN.gamma_multiply(0.3),
     );
     let from = light_position(light, projection);
-    let tip = from.lerp(centre, 0.6);
+    let tip = from.lerp(center, 0.6);
     if let Some([from, to]) = projection.segment(from, tip) {
         outlined.line(&[from, to], 2.0, SELECTED);
         if from.distance(to) > 12.0 {
             outlined.arrow_head(to, to - from, SELECTED);
         }
     }
-    if let Some(ends) = projection.segment(tip, centre) {
+    if let Some(ends) = projection.segment(tip, center) {
         outlined.dashes(ends, SELECTED);
     }
 }
@@ -240,18 +240,18 @@ fn draw_depth(outlined: &OutlinedPainter<'_>, at: Vec3, projection: &ScreenProje
 fn circle(
     outlined: &OutlinedPainter<'_>,
     projection: &ScreenProjection,
-    centre: Vec3,
+    center: Vec3,
     u: Vec3,
     v: Vec3,
     width: f32,
     color: Color32,
 ) {
-    if !u.is_finite() || u.length() > MAX_CIRCLE_RADIUS * projection.metres_per_point(centre) {
+    if !u.is_finite() || u.length() > MAX_CIRCLE_RADIUS * projection.metres_per_point(center) {
         return;
     }
     let corner = |index: u32| {
         let (sine, cosine) = (std::f32::consts::TAU * (index % CORNERS) as f32 / CORNERS as f32).sin_cos();
-        centre + u * cosine + v * sine
+        center + u * cosine + v * sine
     };
     let corners: Option<Vec<_>> = (0..=CORNERS).map(|index| projection.project(corner(index))).collect();
     if let Some(corners) = corners {

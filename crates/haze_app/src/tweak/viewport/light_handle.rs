@@ -15,7 +15,7 @@ pub enum Handle {
     /// Position in the plane perpendicular to the axis of this index.
     Plane(usize),
     /// Position in the plane that faces the camera.
-    Centre,
+    Center,
     Radius,
     InnerAngle,
     OuterAngle,
@@ -32,11 +32,11 @@ pub enum Shape {
     Knob(Pos2),
 }
 
-/// Lengths in points: start and end of an axis arrow, sides of a plane handle, half the side of the centre square.
+/// Lengths in points: start and end of an axis arrow, sides of a plane handle, half the side of the center square.
 const AXIS: [f32; 2] = [14.0, 80.0];
 const PLANE: [f32; 2] = [24.0, 40.0];
 pub const SQUARE: f32 = 9.0;
-/// Least distance of the radius handle from the centre, points.
+/// Least distance of the radius handle from the center, points.
 const RADIUS: f32 = 26.0;
 /// Length of a spot's cone, points.
 const CONE: f32 = 150.0;
@@ -83,7 +83,7 @@ pub fn handles(light: &Light, projection: &ScreenProjection) -> Vec<(Handle, Sha
     }
     let radius = (light.radius / metre).max(RADIUS);
     all.push((Handle::Radius, Shape::Knob(middle + radius * RADIUS_WAY)));
-    all.push((Handle::Centre, Shape::Square(middle)));
+    all.push((Handle::Center, Shape::Square(middle)));
     all
 }
 
@@ -110,8 +110,8 @@ impl Shape {
                 };
                 (1..4).all(|i| turn(i) == turn(0))
             }
-            Self::Square(centre) => (at - centre).abs().max_elem() <= SQUARE + 1.0,
-            Self::Knob(centre) => centre.distance(at) <= GRAB + 1.0,
+            Self::Square(center) => (at - center).abs().max_elem() <= SQUARE + 1.0,
+            Self::Knob(center) => center.distance(at) <= GRAB + 1.0,
         }
     }
 }

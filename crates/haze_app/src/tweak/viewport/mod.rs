@@ -165,7 +165,7 @@ impl Viewport {
             InView::Behind => self.place_behind(session, None),
             InView::Overlay(overlay) => session.view.overlays.toggle(overlay),
             InView::Turntable => {
-                let middle = session.measure(&mut self.smoke).bounds().centre();
+                let middle = session.measure(&mut self.smoke).bounds().center();
                 let turn = &mut session.view.lights.turn;
                 *turn = if turn.is_some() { None } else { Some(LightTurn { middle, angle: 0.0 }) };
             }
@@ -177,8 +177,8 @@ impl Viewport {
     fn place_behind(&mut self, session: &mut Session, at: Option<Ray>) {
         let smoke = session.measure(&mut self.smoke);
         let preset = &mut session.document.preset;
-        let met = at.and_then(|ray| smoke.centre_on_ray(ray.origin, ray.direction));
-        let point = met.unwrap_or_else(|| smoke.visible_centre(&preset.camera, session.view.size));
+        let met = at.and_then(|ray| smoke.center_on_ray(ray.origin, ray.direction));
+        let point = met.unwrap_or_else(|| smoke.visible_center(&preset.camera, session.view.size));
         let eye = preset.camera.position;
         let selected = session.view.lights.selected.and_then(|index| preset.lights.get_mut(index));
         if let Some(light) = selected {

@@ -37,19 +37,19 @@ impl OutlinedPainter<'_> {
         self.0.add(Shape::convex_polygon(corners.to_vec(), color.gamma_multiply(0.45), Stroke::new(1.0, color)));
     }
 
-    pub fn square(&self, centre: Pos2, half: f32, color: Color32) {
-        let rect = Rect::from_center_size(centre, Vec2::splat(2.0 * half));
+    pub fn square(&self, center: Pos2, half: f32, color: Color32) {
+        let rect = Rect::from_center_size(center, Vec2::splat(2.0 * half));
         self.0.rect_stroke(rect, 1.0, Stroke::new(3.5, RIM), StrokeKind::Middle);
         self.0.rect_stroke(rect, 1.0, Stroke::new(1.5, color), StrokeKind::Middle);
     }
 
-    pub fn knob(&self, centre: Pos2, color: Color32) {
-        self.0.circle(centre, 4.5, color, Stroke::new(1.5, RIM));
+    pub fn knob(&self, center: Pos2, color: Color32) {
+        self.0.circle(center, 4.5, color, Stroke::new(1.5, RIM));
     }
 
-    pub fn ring(&self, centre: Pos2, radius: f32, width: f32, color: Color32) {
-        self.0.circle_stroke(centre, radius, Stroke::new(width + 2.0, RIM.gamma_multiply(opacity(color))));
-        self.0.circle_stroke(centre, radius, Stroke::new(width, color));
+    pub fn ring(&self, center: Pos2, radius: f32, width: f32, color: Color32) {
+        self.0.circle_stroke(center, radius, Stroke::new(width + 2.0, RIM.gamma_multiply(opacity(color))));
+        self.0.circle_stroke(center, radius, Stroke::new(width, color));
     }
 }
 

@@ -65,7 +65,7 @@ fn edges(bounds: &Bounds) -> impl Iterator<Item = [Vec3; 2]> {
 }
 
 /// Returns the corners of the section of a box with the plane at a depth that faces the camera, in order around their
-/// centre.
+/// center.
 fn section(bounds: &Bounds, projection: &ScreenProjection, depth: f32) -> Vec<Pos2> {
     let cut = |[from, to]: [Vec3; 2]| {
         let (a, b) = (projection.depth(from) - depth, projection.depth(to) - depth);
@@ -155,10 +155,10 @@ mod tests {
         assert_eq!(all.len(), 12);
         assert!(all.iter().all(|[from, to]| (from.distance(*to) - 2.0).abs() < 1e-6));
         let projection = ScreenProjection::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0)));
-        let middle = projection.depth(bounds.centre());
+        let middle = projection.depth(bounds.center());
         let corners = section(&bounds, &projection, middle);
         assert!(corners.len() >= 4, "{corners:?}");
-        let inside = projection.project(bounds.centre()).unwrap();
+        let inside = projection.project(bounds.center()).unwrap();
         assert!(Rect::from_points(&corners).contains(inside));
         assert!(section(&bounds, &projection, middle + 9.0).is_empty());
     }

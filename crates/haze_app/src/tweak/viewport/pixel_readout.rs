@@ -230,7 +230,7 @@ fn ball(ui: &mut Ui, normal: Vec3) {
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(34.0), Sense::hover());
     let (middle, radius) = (rect.center(), 15.0);
     let painter = ui.painter();
-    // Dark at the edge, bright at the centre.
+    // Dark at the edge, bright at the center.
     for step in 0..6_u8 {
         let share = 1.0 - f32::from(step) / 6.0;
         painter.circle_filled(middle, radius * share, Color32::from_gray(50 + 18 * step));

@@ -32,19 +32,19 @@ impl Ray {
     }
 
     /// Returns true if the ray misses a sphere.
-    pub fn passes(&self, centre: Vec3, radius: f32) -> bool {
-        let closest = self.origin + self.direction * (centre - self.origin).dot(self.direction);
-        closest.distance_squared(centre) > radius * radius
+    pub fn passes(&self, center: Vec3, radius: f32) -> bool {
+        let closest = self.origin + self.direction * (center - self.origin).dot(self.direction);
+        closest.distance_squared(center) > radius * radius
     }
 
     /// Returns the intersection with a sphere, on its near or far side. A ray that misses gives the closest point of
     /// the rim.
-    pub fn on_sphere(&self, centre: Vec3, radius: f32, is_before: bool) -> Vec3 {
-        let middle = (centre - self.origin).dot(self.direction);
+    pub fn on_sphere(&self, center: Vec3, radius: f32, is_before: bool) -> Vec3 {
+        let middle = (center - self.origin).dot(self.direction);
         let closest = self.origin + self.direction * middle;
-        let half = (radius * radius - closest.distance_squared(centre)).max(0.0).sqrt();
+        let half = (radius * radius - closest.distance_squared(center)).max(0.0).sqrt();
         let met = closest + self.direction * if is_before { -half } else { half };
-        centre + (met - centre).normalize_or(Vec3::Y) * radius
+        center + (met - center).normalize_or(Vec3::Y) * radius
     }
 }
 
@@ -82,15 +82,15 @@ mod tests {
 
     #[test]
     fn a_ray_meets_either_side_of_a_sphere_and_a_miss_gives_its_rim() {
-        let (centre, radius) = (vec3(1.0, 1.0, 0.0), 2.0);
-        let ray = towards(centre + vec3(0.5, 0.2, 0.0));
-        let (front, back) = (ray.on_sphere(centre, radius, true), ray.on_sphere(centre, radius, false));
+        let (center, radius) = (vec3(1.0, 1.0, 0.0), 2.0);
+        let ray = towards(center + vec3(0.5, 0.2, 0.0));
+        let (front, back) = (ray.on_sphere(center, radius, true), ray.on_sphere(center, radius, false));
         for met in [front, back] {
-            assert!((met.distance(centre) - radius).abs() < 1e-5);
+            assert!((met.distance(center) - radius).abs() < 1e-5);
             assert!((met - ray.origin).normalize().distance(ray.direction) < 1e-5);
         }
         assert!(front.distance(ray.origin) < back.distance(ray.origin));
-        let beside = towards(centre + vec3(9.0, 0.0, 0.0)).on_sphere(centre, radius, true);
-        assert!((beside.distance(centre) - radius).abs() < 1e-5 && beside.x > centre.x);
+        let beside = towards(center + vec3(9.0, 0.0, 0.0)).on_sphere(center, radius, true);
+        assert!((beside.distance(center) - radius).abs() < 1e-5 && beside.x > center.x);
     }
 }

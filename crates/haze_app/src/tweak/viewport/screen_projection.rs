@@ -18,7 +18,7 @@ pub struct ScreenProjection {
     near: f32,
     /// Tangents of half the field of view, horizontal and vertical.
     reach: Vec2,
-    /// Centre and radius of the sphere on which suns are shown: around the camera's target, of constant size in the
+    /// Center and radius of the sphere on which suns are shown: around the camera's target, of constant size in the
     /// image.
     pub sun_sphere: (Vec3, f32),
 }

@@ -146,7 +146,7 @@ fn lights_are_added_duplicated_and_deleted_by_panel_and_by_key() {
     let session = &harness.state().session;
     let mut behind = session.document.preset.lights[1];
     let bounds = session.measure(&mut SmokeGeometry::default()).bounds();
-    let is_behind = projection(&harness).depth(behind.position) > projection(&harness).depth(bounds.centre());
+    let is_behind = projection(&harness).depth(behind.position) > projection(&harness).depth(bounds.center());
     assert!(is_behind && selected(&harness) == Some(1));
     // A direction that is set by angles keeps its azimuth at any elevation.
     behind.direction = Vec3::NEG_Z;
@@ -204,7 +204,7 @@ fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
         projection.project(place).unwrap()
     };
     assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
-    // So close that the centre of all smoke is outside the image.
+    // So close that the center of all smoke is outside the image.
     let camera = &mut harness.state_mut().session.document.preset.camera;
     (camera.position, camera.target) = (top + Vec3::new(0.0, -0.1, 1.2), top);
     harness.run();

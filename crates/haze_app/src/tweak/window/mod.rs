@@ -177,7 +177,7 @@ impl Window {
             Action::Save => self.file_actions.save(session),
             Action::SaveAs => self.file_actions.save_as(session),
             Action::Copy => {
-                context.copy_text(session.document.to_text());
+                context.copy_text(session.document.to_json());
                 session.messages.info("file", "Copied the preset as text");
             }
             Action::CopyLink => match shared_look::fragment_of(session) {

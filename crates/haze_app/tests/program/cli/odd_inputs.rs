@@ -11,7 +11,7 @@ const READERS: [(&str, &str); 24] = [
     ("{}.json", "preset new new.json --from {}"),
     ("{}.json", "render {} -o out.png"),
     ("{}.json", "sheet {} --vary camera.exposure=0,1 -o out.png"),
-    ("{}.json", "shade-tree {} -o out.png"),
+    ("{}.json", "debug-views {} -o out.png"),
     ("{}.json", "techniques {} -o out.png"),
     ("{}.json", "tweak {}"),
     ("{}.json", "{}"),

@@ -81,7 +81,7 @@ fn presets_are_listed_checked_and_described() {
     let reasons: Vec<_> = info.lines().filter(|line| line.starts_with("  ")).collect();
     let is_reason = |line: &&str| line.contains(": about ") && line.contains("probe") || line.contains("no path tiled");
     assert!(!reasons.is_empty() && reasons.iter().all(is_reason), "{info}");
-    assert!(text(&["--help"]).contains("shade-tree"));
+    assert!(text(&["--help"]).contains("debug-views"));
 }
 
 #[test]

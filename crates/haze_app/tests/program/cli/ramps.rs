@@ -99,24 +99,24 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
 fn ramp_check_reports_findings_and_exits_with_1() {
     let folder = folder();
     let save = |name: &str, picture: DynamicImage| picture.save(folder.path().join(name)).unwrap();
-    save("specular_grey.png", DynamicImage::ImageLuma8(GrayImage::from_pixel(16, 16, Luma([90]))));
+    save("specular_gray.png", DynamicImage::ImageLuma8(GrayImage::from_pixel(16, 16, Luma([90]))));
     let slope = |x: u32| Luma([(20 + x * 40 / 256) as u8]);
     save("a.png", DynamicImage::ImageLuma8(GrayImage::from_fn(256, 1, |x, _| slope(x))));
     save("age.png", DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(4, 1, LumaA([90, 128]))));
-    let output = haze(folder.path(), &["ramp", "check", "specular_grey.png", "a.png", "age.png"]);
+    let output = haze(folder.path(), &["ramp", "check", "specular_gray.png", "a.png", "age.png"]);
     let text = String::from_utf8(output.stdout.clone()).unwrap();
     assert_eq!((output.status.code(), stderr(&output)), (Some(1), String::new()), "{text}");
     let names: Vec<_> = text.lines().map(|line| line.rsplitn(2, ';').last().unwrap()).collect();
     assert_eq!(
         names,
         [
-            "specular_grey.png: ends: brightness 90 of 255 at amount 0, the bottom row",
-            "specular_grey.png: ends: brightness 90 of 255 at distance 1, the last column",
+            "specular_gray.png: ends: brightness 90 of 255 at amount 0, the bottom row",
+            "specular_gray.png: ends: brightness 90 of 255 at distance 1, the last column",
             "a.png: banding: visible steps at 0.10 across",
             "age.png: color_space: transparent texels",
         ]
     );
-    let output = haze(folder.path(), &["ramp", "check", "--as", "diffuse", "specular_grey.png"]);
+    let output = haze(folder.path(), &["ramp", "check", "--as", "diffuse", "specular_gray.png"]);
     assert!(output.status.success());
     // A file that cannot be read is bad input.
     assert!(refusal(folder.path(), &["ramp", "check", "gone.png"]).starts_with("haze: gone.png: "));
@@ -280,11 +280,11 @@ fn sprite_light_path_traces_a_sprite() {
 fn a_file_of_another_kind_is_refused_with_the_right_command() {
     let folder = folder();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
-    write("a.ramp.json", &TEMPLATES[0].recipe().to_text());
-    write("recipe.json", &TEMPLATES[0].recipe().to_text());
+    write("a.ramp.json", &TEMPLATES[0].recipe().to_json());
+    write("recipe.json", &TEMPLATES[0].recipe().to_json());
     // Recognized by its name, although its content is broken.
     write("broken.sprite.json", "{");
-    write("a.json", &haze_preset::Preset::load(Path::new("column")).unwrap().to_text(""));
+    write("a.json", &haze_preset::Preset::load(Path::new("column")).unwrap().to_json(""));
     for (command, file, is, other) in [
         ("preset", "a.ramp.json", "a ramp recipe", "haze ramp check"),
         ("preset", "recipe.json", "a ramp recipe", "haze ramp check"),

@@ -30,7 +30,7 @@ fn a_broken_shader_gives_one_line_and_a_valid_one_changes_the_image() {
     let line = COLOR.lines().position(|line| line.contains("saturate(light)")).unwrap() + 1;
     let said = format!("haze: shaders/lib/color.wgsl:{line}:17: no definition in scope for identifier: `saturat`\n");
     assert_eq!(refusal(folder, &arguments), said);
-    for command in ["shade-tree", "techniques"] {
+    for command in ["debug-views", "techniques"] {
         assert_eq!(refusal(folder, &[command, "--size", "64x36", "--shaders", "shaders", "-o", "b.png"]), said);
     }
     let absent = refusal(folder, &["render", "--shaders", "shader", "-o", "a.png"]);

@@ -1,4 +1,4 @@
-//! Sheets of many images: `haze shade-tree`, `haze techniques`; and the table of `haze bench soft-particles`.
+//! Sheets of many images: `haze debug-views`, `haze techniques`; and the table of `haze bench soft-particles`.
 
 use std::collections::BTreeSet;
 
@@ -7,9 +7,9 @@ use haze_core::settings::DebugView;
 use super::{folder, haze, refusal, render, size_of, stderr};
 
 #[test]
-fn shade_tree_sheet_shows_every_stage() {
+fn sheet_of_debug_views_shows_every_stage() {
     let folder = folder();
-    let output = haze(folder.path(), &["shade-tree", "--size", "256x144", "--backend", "cpu", "-o", "sheet.png"]);
+    let output = haze(folder.path(), &["debug-views", "--size", "256x144", "--backend", "cpu", "-o", "sheet.png"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let sheet = haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
     // Every stage is on the sheet as `haze render --view` renders it, in three rows of four.

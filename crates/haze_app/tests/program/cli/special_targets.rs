@@ -16,7 +16,7 @@ const WRITERS: [(&str, &str); 28] = [
     ("a.gif", "render --frames 0..1 -o a.gif"),
     ("a.png", "render --frames 0..1 --sheet 1x2 -o a.png"),
     ("a.png", "sheet --vary camera.exposure=0,1 -o a.png"),
-    ("a.png", "shade-tree -o a.png"),
+    ("a.png", "debug-views -o a.png"),
     ("a.png", "techniques -o a.png"),
     ("a.png", "techniques -o b.png --curves a.png"),
     ("soft.png", "techniques -o b.png --cells ."),

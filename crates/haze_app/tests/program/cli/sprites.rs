@@ -94,17 +94,17 @@ fn images_of_other_kinds_are_imported_as_sprites() {
     fire.save(folder.path().join("fire.png")).unwrap();
     // Nothing is written that the check would refuse.
     let slope = |x: u32, _| image::Luma([4 * x as u8]);
-    image::GrayImage::from_fn(64, 64, slope).save(folder.path().join("grey.png")).unwrap();
+    image::GrayImage::from_fn(64, 64, slope).save(folder.path().join("gray.png")).unwrap();
     for (arguments, expected) in [
         (&["fire.png"][..], "fire.png: colors, not normals; expected normals, or --from with the contents"),
-        (&["grey.png"], "grey.png: shades of grey; expected normals, or --from with the contents"),
-        (&["grey.png", "--from", "height"], "grey.png: these heights make no puff; expected a puff that is highest"),
+        (&["gray.png"], "gray.png: shades of gray; expected normals, or --from with the contents"),
+        (&["gray.png", "--from", "height"], "gray.png: these heights make no puff; expected a puff that is highest"),
     ] {
         let text = refusal(folder.path(), &[&["sprite", "import", "-o", "a.png"], arguments].concat());
         assert!(text.contains(expected), "{text}");
         assert!(!folder.path().join("a.png").exists());
     }
-    said(&["grey.png", "--from", "alpha", "-o", "a.png"]);
+    said(&["gray.png", "--from", "alpha", "-o", "a.png"]);
     let checked = haze(folder.path(), &["sprite", "check", "a.png"]);
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
     fs::remove_file(folder.path().join("a.png")).unwrap();

@@ -1,8 +1,9 @@
 //! Header of a PLY file.
 
+use haze_core::error::one_line;
+
 use crate::particle_files::columns::MAX_COLUMNS;
 use crate::particle_files::parse_error::ParseError;
-use haze_core::error::one_line;
 
 /// Size limit of the header, bytes.
 const MAX_HEADER_BYTES: usize = 1 << 16;

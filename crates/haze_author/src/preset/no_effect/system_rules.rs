@@ -1,6 +1,11 @@
 //! Settings of a system that have no effect in their context: one row for each reason.
 
 use glam::Vec3;
+use haze_core::settings::{
+    Backlight, BlendOrder, CoverageMode, DepthSource, Grain, RenderPath, ScaleMode, SoftScatterMode, SpriteAnimation,
+    Technique,
+};
+use haze_preset::{PresetSystem, builtin};
 
 use super::condition::{
     curve_ignores_power, has_no_animation, has_one_frame, ignores_up, is_at_full_resolution, is_hard, looks_up_no_ramp,
@@ -8,11 +13,6 @@ use super::condition::{
     uses_painted_motif,
 };
 use super::rule::{NoEffectRule, rule};
-use haze_core::settings::{
-    Backlight, BlendOrder, CoverageMode, DepthSource, Grain, RenderPath, ScaleMode, SoftScatterMode, SpriteAnimation,
-    Technique,
-};
-use haze_preset::{PresetSystem, builtin};
 
 /// The first row that holds gives the reason.
 pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[

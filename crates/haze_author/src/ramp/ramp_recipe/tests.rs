@@ -27,9 +27,9 @@ fn the_curve_never_overshoots() {
     let recipe = recipe(&[(0.0, "#000000"), (0.5, "#000000"), (0.55, "#ffffff"), (1.0, "#ffffff")]);
     let mut last = 0.0;
     for step in 0..=400 {
-        let grey = recipe.gradient().unwrap().sample(step as f32 / 400.0, 0.0).y;
-        assert!(grey >= last - 1e-5 && grey <= 1.0 + 1e-4, "{step}: {grey} after {last}");
-        last = grey;
+        let gray = recipe.gradient().unwrap().sample(step as f32 / 400.0, 0.0).y;
+        assert!(gray >= last - 1e-5 && gray <= 1.0 + 1e-4, "{step}: {gray} after {last}");
+        last = gray;
     }
 }
 
@@ -131,19 +131,19 @@ fn rows_are_sorted_stably() {
 
 #[test]
 fn every_curve_has_its_shape() {
-    let grey = |curve: Curve, u: f32| {
+    let gray = |curve: Curve, u: f32| {
         let mut recipe = recipe(&[(0.0, "#000000"), (0.5, "#808080"), (1.0, "#ffffff")]);
         recipe.blend = Blend::Srgb;
         recipe.rows[0].stops[0].curve = curve;
         srgb_from_linear(recipe.gradient().unwrap().sample(u, 0.0).x) * 255.0
     };
     for (curve, quarter) in [(Curve::Constant, 0.0), (Curve::Linear, 32.0), (Curve::Ease, 20.0)] {
-        assert!((grey(curve, 0.125) - quarter).abs() < 0.01, "{}: {}", curve.name(), grey(curve, 0.125));
-        assert!((grey(curve, 0.5) - 128.0).abs() < 0.01);
+        assert!((gray(curve, 0.125) - quarter).abs() < 0.01, "{}: {}", curve.name(), gray(curve, 0.125));
+        assert!((gray(curve, 0.5) - 128.0).abs() < 0.01);
     }
     // The monotone curve is flat at the end of the ramp and has a continuous slope at a stop.
-    assert!(grey(Curve::Monotone, 0.125) < 31.0);
-    let slope = |u: f32| (grey(Curve::Monotone, u + 0.001) - grey(Curve::Monotone, u - 0.001)) / 0.002;
+    assert!(gray(Curve::Monotone, 0.125) < 31.0);
+    let slope = |u: f32| (gray(Curve::Monotone, u + 0.001) - gray(Curve::Monotone, u - 0.001)) / 0.002;
     assert!((slope(0.498) - slope(0.502)).abs() < 3.0, "{} {}", slope(0.498), slope(0.502));
     // The curve is flat beside an edge, as at the end of a ramp.
     let mut edge = recipe(&[(0.0, "#000000"), (0.5, "#808080"), (0.5, "#a0a0a0"), (1.0, "#ffffff")]);
@@ -168,7 +168,7 @@ fn every_blend_space_gives_its_midpoint() {
     assert_eq!(middle(Blend::HsvNear, "#ff0000", "#0000ff"), [255, 0, 255]);
     assert_eq!(middle(Blend::HsvFar, "#ff0000", "#0000ff"), [0, 255, 0]);
     assert_eq!(at(Blend::HsvNear, "#ff00ff", "#ffff00", 0.5), [255, 0, 0]);
-    // Greys and black have no hue.
+    // Grays and black have no hue.
     assert_eq!(middle(Blend::HsvNear, "#ffffff", "#0000ff"), [128, 128, 255]);
     assert_eq!(middle(Blend::HsvNear, "#0000ff", "#000000"), [0, 0, 128]);
     assert_eq!(middle(Blend::HsvFar, "#ff0000", "#800000"), [192, 0, 0]);
@@ -176,7 +176,7 @@ fn every_blend_space_gives_its_midpoint() {
 
 #[test]
 fn the_place_formula_and_the_times_gradient_vary_along_both_axes() {
-    let stop = |at, grey| RampStop { curve: Curve::Linear, ..RampStop::new(at, HexColor([grey; 3])) };
+    let stop = |at, gray| RampStop { curve: Curve::Linear, ..RampStop::new(at, HexColor([gray; 3])) };
     let rows = vec![RampRow { stops: vec![stop(0.0, 0), stop(1.0, 255)], ..RampRow::default() }];
     let plain = RampRecipe { blend: Blend::Linear, height: 64, rows, ..RampRecipe::default() };
     let times = vec![stop(0.0, 255), stop(1.0, 0)];
@@ -242,10 +242,10 @@ fn every_machine_bakes_the_same_bytes() {
 #[test]
 fn a_written_recipe_is_read_back_equal() {
     let recipe = RampRecipe { bits: 8, blend: Blend::HsvFar, ..rich() };
-    let text = recipe.to_text();
+    let text = recipe.to_json();
     assert_eq!(RampRecipe::parse(Path::new("a.ramp.json"), &text).unwrap(), recipe);
     assert!(text.contains("\n        { \"at\": 0.25, \"color\": \"#ff8040\", \"curve\": \"linear\" },\n"), "{text}");
-    let plain = RampRecipe::default().to_text();
+    let plain = RampRecipe::default().to_json();
     let expected = r##"{
   "version": 1,
   "width": 256,

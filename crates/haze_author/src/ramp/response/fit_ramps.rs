@@ -1,13 +1,13 @@
 //! Fits diffuse ramps to the path-traced light of a puff.
 
 use glam::Vec3;
+use haze_core::formula::color::luminance;
+use haze_core::formula::lighting::backlight_weight;
 
 use super::normal_equations::{NormalEquations, knots};
 use super::traced_puff::{Puff, Texel};
 use crate::ramp::blend_space::srgb_from_linear;
 use crate::ramp::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
-use haze_core::formula::color::luminance;
-use haze_core::formula::lighting::backlight_weight;
 
 /// Number of free parameters of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! Fits a shadow ramp to the path-traced light of many puffs.
 
 use glam::{Vec2, Vec3};
+use haze_core::formula::color::luminance;
 
 use super::fit_ramps::{BRIGHTNESS, STEPS, STIFFNESS, recipe};
 use super::normal_equations::{NormalEquations, knots};
 use crate::ramp::ramp_recipe::RampRecipe;
-use haze_core::formula::color::luminance;
 
 /// Number of free parameters of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,11 @@
+use haze_core::assets::ramp::Ramp;
+use haze_preset::builtin;
+
 use super::*;
 use crate::path_trace::MEDIA;
 use crate::path_trace::{Medium, PathTrace};
 use crate::ramp::ramp_recipe::RampRecipe;
 use crate::sprite::bake::SpriteRecipe;
-use haze_core::assets::ramp::Ramp;
-use haze_preset::builtin;
 
 const PATH_TRACE: PathTrace = PathTrace { size: 32, samples: 16, seed: 1 };
 

@@ -1,12 +1,6 @@
 //! A path-traced puff, and its shading with ramps or six-way maps.
 
 use glam::{UVec2, Vec2, Vec3};
-use serde::{Deserialize, Serialize};
-
-use crate::deterministic_math::cos_sin;
-use crate::path_trace::{Medium, PathTrace, PathTraceResult};
-use crate::sprite::bake::SpriteRecipe;
-use crate::sprite::six_way::BakedSixWay;
 use haze_core::assets::image::Image;
 use haze_core::assets::ramp::Ramp;
 use haze_core::formula::color::luminance;
@@ -14,6 +8,12 @@ use haze_core::formula::lighting::{backlight_weight, diffuse_coordinate};
 use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::formula::six_way::{six_way_from_texel, six_way_response};
 use haze_core::settings::RampFilter;
+use serde::{Deserialize, Serialize};
+
+use crate::deterministic_math::cos_sin;
+use crate::path_trace::{Medium, PathTrace, PathTraceResult};
+use crate::sprite::bake::SpriteRecipe;
+use crate::sprite::six_way::BakedSixWay;
 
 /// Number of lights in the ring around a puff.
 pub const LIGHTS: u32 = 16;

@@ -1,14 +1,14 @@
 //! Metaballs of a sprite before erosion. A ball may be stretched to a line.
 
 use glam::{UVec3, Vec3};
+use haze_core::assets::noise::{pcg3d, unit};
 
 use super::sprite_recipe::SpriteRecipe;
 use crate::deterministic_math::cos_sin;
-use haze_core::assets::noise::{pcg3d, unit};
 
 #[derive(Clone, Copy)]
 pub(super) struct Metaball {
-    pub centre: Vec3,
+    pub center: Vec3,
     pub inverse_radius: f32,
     /// Half of the line segment that the ball is stretched along; zero for a ball.
     pub axis: Vec3,
@@ -17,7 +17,7 @@ pub(super) struct Metaball {
 impl Metaball {
     /// Returns the offset of `p` from the nearest point of the ball's line.
     pub fn offset(&self, p: Vec3) -> Vec3 {
-        let from = p - self.centre;
+        let from = p - self.center;
         let along = from.dot(self.axis) / self.axis.length_squared().max(f32::MIN_POSITIVE);
         from - self.axis * along.clamp(-1.0, 1.0)
     }
@@ -42,7 +42,7 @@ pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Metaball> {
         let any = (random(3) - 0.5).normalize_or(Vec3::Y);
         let upright = Vec3::Y * if any.y < 0.0 { -1.0 } else { 1.0 };
         let axis = any.lerp(upright, recipe.upright).normalize_or(Vec3::Y) * recipe.length;
-        Metaball { centre: xy.extend(z) * distance + swing.extend(0.0), inverse_radius: 1.0 / radius, axis }
+        Metaball { center: xy.extend(z) * distance + swing.extend(0.0), inverse_radius: 1.0 / radius, axis }
     };
     (0..recipe.balls).map(ball).collect()
 }

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::CachedGradientNoise;
 
 use super::sprite_recipe::SpriteRecipe;
 use super::voxel_grid::{LANES, VoxelGrid};
-use haze_core::assets::image::Image;
-use haze_core::assets::noise::CachedGradientNoise;
 
 /// Scale of noise values stored in 16 bits; the range is ±4.
 const NOISE_SCALE: f32 = 8192.0;
@@ -90,7 +90,7 @@ fn bake_octaves(recipe: &SpriteRecipe, voxels: VoxelGrid, octaves: &[(f32, f32, 
             for &(weight, frequency, salt) in octaves {
                 let mut cell = CachedGradientNoise::new(seed.wrapping_add(salt));
                 for (x, value) in (0..).zip(&mut *line) {
-                    let p = voxels.voxel_centre(UVec3::new(x, row % size, row / size));
+                    let p = voxels.voxel_center(UVec3::new(x, row % size, row / size));
                     // Voxels farther out are invisible, but `travel` may carry noise in from there.
                     if p.length_squared() > 1.0 + recipe.travel {
                         continue;

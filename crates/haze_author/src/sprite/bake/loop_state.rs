@@ -1,13 +1,13 @@
 //! State at one moment of the loop: ball positions, and displacement by flow and warp.
 
 use glam::{IVec2, UVec2, UVec3, Vec2, Vec3};
+use haze_core::assets::image::Image;
+use haze_core::assets::noise::curl_noise;
 
 use super::cluster::{Metaball, balls};
 use super::sprite_recipe::SpriteRecipe;
 use super::voxel_grid::{LANES, VoxelGrid};
 use crate::deterministic_math::cos_sin;
-use haze_core::assets::image::Image;
-use haze_core::assets::noise::curl_noise;
 
 /// Displacement of a position by the flow alone, and by flow and warp together.
 #[derive(Clone, Copy)]
@@ -95,7 +95,7 @@ fn balls_by_box(voxels: VoxelGrid, balls: &[Metaball], margin: f32) -> Vec<Vec<M
     let boxes = voxels.boxes();
     let near = |index: u32| {
         let first = UVec3::new(index % boxes.x, index / boxes.x % boxes.y, index / (boxes.x * boxes.y)) * LANES as u32;
-        let (a, b) = (voxels.voxel_centre(first), voxels.voxel_centre(first + (LANES as u32 - 1)));
+        let (a, b) = (voxels.voxel_center(first), voxels.voxel_center(first + (LANES as u32 - 1)));
         let reach = (a - b).length() * 0.5 + margin;
         let middle = (a + b) * 0.5;
         let reaches = |ball: &&Metaball| ball.offset(middle).length() < reach + 1.0 / ball.inverse_radius;

@@ -24,7 +24,7 @@ pub(super) fn march(recipe: &SpriteRecipe, volume: &DensityVolume, y: u32, line:
     let step = 2.0 / depth as f32;
     let mut rays = vec![RayAccumulator::new(); size];
     for z in 0..depth {
-        let place = volume.voxel_centre(UVec3::new(0, y, z as u32)).z;
+        let place = volume.voxel_center(UVec3::new(0, y, z as u32)).z;
         let here = row(0, z, 0);
         // Rows above, below, in front and behind, for wide and fine differences.
         let around = [0, 1].map(|index| {
@@ -47,7 +47,7 @@ pub(super) fn march(recipe: &SpriteRecipe, volume: &DensityVolume, y: u32, line:
         }
     }
     for ((x, texel), ray) in (0..).zip(line).zip(rays) {
-        let place = volume.voxel_centre(UVec3::new(x, y, 0)).truncate();
+        let place = volume.voxel_center(UVec3::new(x, y, 0)).truncate();
         *texel = ray.texel(UVec2::new(x, y), recipe.size, place);
     }
 }

@@ -14,14 +14,14 @@ mod volume_baker;
 mod voxel_grid;
 
 use glam::{IVec2, UVec2};
-use image::{Rgba, RgbaImage};
-
-use crate::path_trace::DensityVolume;
-use crate::sprite::detail::{bake_detail_frame, detail_size};
 use haze_core::assets::parallel::parallel_for_each;
 use haze_core::assets::sprite::Sprite;
 use haze_core::error::FieldError;
 use haze_core::settings::validate;
+use image::{Rgba, RgbaImage};
+
+use crate::path_trace::DensityVolume;
+use crate::sprite::detail::{bake_detail_frame, detail_size};
 
 pub use baked_frame::BakedFrame;
 use near_lossless::{quantise_detail, quantise_frame};

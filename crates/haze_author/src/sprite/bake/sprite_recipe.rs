@@ -29,7 +29,7 @@ pub struct SpriteRecipe {
     pub rows: u32,
     /// Number of metaballs in the cluster.
     pub balls: u32,
-    /// Maximum distance of a ball's centre from the middle.
+    /// Maximum distance of a ball's center from the middle.
     pub spread: f32,
     /// Smallest radius of a ball's influence.
     pub ball_radius_min: f32,
@@ -144,7 +144,7 @@ impl SpriteRecipe {
     }
 
     /// Returns the recipe as JSON that [`SpriteRecipe::load`] reads, ending with a line break.
-    pub fn to_text(&self) -> String {
+    pub fn to_json(&self) -> String {
         // Numbers only, so serialisation cannot fail.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }

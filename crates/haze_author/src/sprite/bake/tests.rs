@@ -1,11 +1,11 @@
 use std::path::Path;
 
 use glam::UVec3;
+use haze_core::assets::json;
+use haze_core::settings::{Fields as _, field_path, for_each_field};
 
 use super::*;
 use crate::deterministic_math::tests::hash;
-use haze_core::assets::json;
-use haze_core::settings::{Fields as _, field_path, for_each_field};
 
 fn puff() -> SpriteRecipe {
     let recipe = include_str!("../../../../../tests/corpus/sprite/good_first");
@@ -53,7 +53,7 @@ fn smoke_ends_where_its_balls_end() {
     let mut reached = 0.0_f32;
     for (index, &density) in (0..).zip(&volume.densities) {
         let voxel = UVec3::new(index % sides.x, index / sides.x % sides.y, index / (sides.x * sides.y));
-        let from = volume.voxel_centre(voxel).length();
+        let from = volume.voxel_center(voxel).length();
         // Density rises from 0 at the radius, without a step. At 0.9 of it the field is (1 - 0.81)^3 = 0.007, the body
         // 0.014, and the density at most twice that.
         assert!(density <= 0.0 || from < 0.4, "{density} at {from}");
@@ -98,7 +98,7 @@ fn progress_is_reported_and_its_error_cancels_the_bake() {
 fn a_written_recipe_is_read_back_equal() {
     let path = Path::new("a.sprite.json");
     for recipe in [puff(), SpriteRecipe { travel: 0.25, ..puff() }] {
-        let text = recipe.to_text();
+        let text = recipe.to_json();
         assert_eq!(json::parse::<SpriteRecipe>(path, &text).unwrap(), recipe);
         // Unused optional fields are not written.
         assert_eq!(text.contains("\"travel\": 0.25"), recipe.travel > 0.0);

@@ -3,6 +3,8 @@
 //! bit-identical on every machine.
 
 use glam::{IVec2, UVec2, UVec3, Vec3};
+use haze_core::assets::image::Image;
+use haze_core::formula::saturate;
 use image::Rgba;
 
 use super::baked_frame::BakedFrame;
@@ -14,8 +16,6 @@ use super::sprite_recipe::SpriteRecipe;
 use super::voxel_grid::{LANES, VoxelGrid};
 use crate::deterministic_math::fast_exp_neg;
 use crate::path_trace::DensityVolume;
-use haze_core::assets::image::Image;
-use haze_core::formula::saturate;
 
 const CLEAR: Rgba<u8> = Rgba([128, 128, 255, 0]);
 
@@ -29,12 +29,12 @@ pub(super) struct VolumeBaker<'a> {
 impl Metaball {
     /// Adds Wyvill's soft object, (1 − d²/r²)³: value and slope are 0 at distance r. Overlapping balls merge.
     fn add_field(&self, [px, py, pz]: [&[f32; LANES]; 3], field: &mut [f32; LANES]) {
-        let Self { centre, axis, inverse_radius } = *self;
+        let Self { center, axis, inverse_radius } = *self;
         let inverse_axis = 1.0 / axis.length_squared().max(f32::MIN_POSITIVE);
         let scale = inverse_radius * inverse_radius;
         let is_line = axis != Vec3::ZERO;
         for lane in 0..LANES {
-            let (mut x, mut y, mut z) = (px[lane] - centre.x, py[lane] - centre.y, pz[lane] - centre.z);
+            let (mut x, mut y, mut z) = (px[lane] - center.x, py[lane] - center.y, pz[lane] - center.z);
             if is_line {
                 let along = ((x * axis.x + y * axis.y + z * axis.z) * inverse_axis).clamp(-1.0, 1.0);
                 (x, y, z) = (x - axis.x * along, y - axis.y * along, z - axis.z * along);
@@ -88,7 +88,7 @@ impl<'a> VolumeBaker<'a> {
     /// Computes the densities of one row of voxels: 0 outside, about 1 inside.
     fn fill(&self, moment: &LoopState, y: u32, z: u32, line: &mut [f32]) {
         let recipe = self.recipe;
-        let middle = self.voxels.voxel_centre(UVec3::new(recipe.size / 2, y, z)).with_x(0.0);
+        let middle = self.voxels.voxel_center(UVec3::new(recipe.size / 2, y, z)).with_x(0.0);
         if middle.length_squared() > 1.0 {
             return;
         }

@@ -2,7 +2,7 @@
 
 use glam::{UVec3, Vec3};
 
-use crate::path_trace::voxel_centre;
+use crate::path_trace::voxel_center;
 
 /// Number of voxels computed together.
 pub(super) const LANES: usize = 16;
@@ -23,9 +23,9 @@ impl VoxelGrid {
         UVec3::new(self.size, self.size, self.depth)
     }
 
-    /// Returns the centre of a voxel: x right, y up, z towards the viewer.
-    pub fn voxel_centre(self, voxel: UVec3) -> Vec3 {
-        voxel_centre(self.sides(), voxel)
+    /// Returns the center of a voxel: x right, y up, z towards the viewer.
+    pub fn voxel_center(self, voxel: UVec3) -> Vec3 {
+        voxel_center(self.sides(), voxel)
     }
 
     /// Returns the number of boxes of [`LANES`] voxels along each axis.

@@ -1,6 +1,8 @@
 //! Bakes six-way maps of a sprite recipe filled with a medium.
 
 use glam::{IVec2, UVec2, Vec3};
+use haze_core::assets::image::Image;
+use haze_core::formula::six_way::SixWay;
 use image::{Rgba, RgbaImage};
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +13,6 @@ use crate::deterministic_math::exp;
 use crate::path_trace::{Medium, PathTrace};
 use crate::sprite::bake::SpriteRecipe;
 use crate::sprite::bake::near_lossless::quantise_frame;
-use haze_core::assets::image::Image;
-use haze_core::formula::six_way::SixWay;
 
 /// Baked six-way maps, with settings that go with them.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -1,12 +1,12 @@
 //! Path-traces a puff under light from all sides and fits six images to the result.
 
 use glam::Vec3;
-
-use crate::deterministic_math::cos_sin;
-use crate::path_trace::{DensityVolume, Medium, PathTrace, PathTraceResult};
 use haze_core::assets::image::Image;
 use haze_core::formula::color::luminance;
 use haze_core::formula::six_way::{SixWay, six_way_axis_weights};
+
+use crate::deterministic_math::cos_sin;
+use crate::path_trace::{DensityVolume, Medium, PathTrace, PathTraceResult};
 
 /// Six-way light of a puff of a medium.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@
 
 use crate::formula::color::srgb_from_linear;
 
-/// True if an RGB or grey profile has the primaries and the transfer curve of sRGB, within 1.5 steps of 255.
+/// True if an RGB or gray profile has the primaries and the transfer curve of sRGB, within 1.5 steps of 255.
 pub fn is_srgb(profile: &[u8]) -> bool {
     let curves_fit = |names: &[&[u8; 4]]| {
         names.iter().all(|name| {

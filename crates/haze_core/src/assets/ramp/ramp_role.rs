@@ -29,13 +29,13 @@ choice! {
 
 impl RampRole {
     /// Returns the role from a file name: `specular_moon.png` is a specular ramp.
-    pub fn of_name(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         let first = name.split(['_', '.', '-']).next().unwrap_or_default();
         Self::ALL.iter().copied().find(|role| role.name() == first)
     }
 
     /// Returns the role from a material field's name: `soft_scatter_ramp` holds a scatter ramp.
-    pub fn of_field(field: &str) -> Option<Self> {
+    pub fn from_field(field: &str) -> Option<Self> {
         let field = field.strip_suffix("_ramp")?;
         Self::ALL.iter().copied().find(|role| field.ends_with(role.name()))
     }

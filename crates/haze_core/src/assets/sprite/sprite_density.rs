@@ -53,7 +53,7 @@ impl SpriteDensity {
     }
 }
 
-/// Standard deviation of the optical depth from the sprites' centres, along an axis, over that of a bump of radius 1.
+/// Standard deviation of the optical depth from the sprites' centers, along an axis, over that of a bump of radius 1.
 fn reach(side: u32, texels: &[[u8; 4]]) -> f32 {
     let (mut total, mut squares) = (0.0_f64, 0.0_f64);
     for (texel, [.., alpha]) in (0..).zip(texels) {

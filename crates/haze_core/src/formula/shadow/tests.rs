@@ -7,7 +7,7 @@ use crate::settings::Settings;
 /// A grid with one sprite in the middle, radius and depth.
 struct Puff {
     size: f32,
-    centre: Vec3,
+    center: Vec3,
     radius: f32,
     depth: f32,
 }
@@ -20,10 +20,10 @@ impl Puff {
 
     fn density(&self, cell: Vec3) -> f32 {
         let inside = cell.cmpge(Vec3::ZERO).all() && cell.cmplt(Vec3::splat(self.size)).all();
-        if inside { cell_optical_depth(cell - self.centre, self.radius, self.depth) } else { 0.0 }
+        if inside { cell_optical_depth(cell - self.center, self.radius, self.depth) } else { 0.0 }
     }
 
-    /// Optical depth from the centre of a cell.
+    /// Optical depth from the center of a cell.
     fn march(&self, cell: Vec3, light: Vec4) -> f32 {
         let from = cell + 0.5;
         let ray = shadow_ray(light, from, Vec3::splat(self.size));
@@ -43,8 +43,8 @@ fn trilinear(place: Vec3, load: impl Fn(Vec3) -> f32) -> f32 {
 
 #[test]
 fn mass_of_a_sprite_is_the_same_on_every_grid() {
-    for (radius, centre) in [(0.2, 3.3), (0.9, 5.0), (3.0, 6.2), (5.5, 5.9)] {
-        let puff = Puff { size: 12.0, centre: Vec3::splat(centre), radius, depth: 0.7 };
+    for (radius, center) in [(0.2, 3.3), (0.9, 5.0), (3.0, 6.2), (5.5, 5.9)] {
+        let puff = Puff { size: 12.0, center: Vec3::splat(center), radius, depth: 0.7 };
         let sum: f32 = puff.cells().map(|cell| puff.density(cell)).sum();
         // The bump of a small sprite is widened.
         let expected = 4.0 * 0.7 * radius * radius;
@@ -57,10 +57,10 @@ fn puff_alone_has_no_shadow_on_itself() {
     let directions = [Vec3::X, Vec3::NEG_Y, Vec3::Z, vec3(1.0, 1.0, 0.0), vec3(-1.0, 1.0, 1.0)].map(Vec3::normalize);
     for radius in [0.5, 1.0, 2.0, 4.0, 7.0] {
         for offset in [0.0, 0.3, 0.5] {
-            let puff = Puff { size: 17.0, centre: vec3(8.5 + offset, 8.5, 8.5 - offset), radius, depth: 1.0 };
+            let puff = Puff { size: 17.0, center: vec3(8.5 + offset, 8.5, 8.5 - offset), radius, depth: 1.0 };
             let own = own_optical_depth(radius, puff.depth);
             let found =
-                directions.map(|to_light| trilinear(puff.centre, |cell| puff.march(cell, to_light.extend(1.0))));
+                directions.map(|to_light| trilinear(puff.center, |cell| puff.march(cell, to_light.extend(1.0))));
             let mean = found.iter().sum::<f32>() / 5.0;
             // A bump a few cells wide is not the same in all directions and places.
             assert!((mean - own).abs() < 0.2, "{radius} {offset}: {mean}, own {own}");
@@ -71,7 +71,7 @@ fn puff_alone_has_no_shadow_on_itself() {
 
 #[test]
 fn lamp_in_the_smoke_is_behind_less_of_it_than_the_sun() {
-    let puff = Puff { size: 17.0, centre: Vec3::splat(8.5), radius: 5.0, depth: 1.0 };
+    let puff = Puff { size: 17.0, center: Vec3::splat(8.5), radius: 5.0, depth: 1.0 };
     let cell = vec3(2.0, 8.0, 8.0);
     let [sun, behind, within, beside] = [
         Vec3::X.extend(1.0),
@@ -103,8 +103,8 @@ fn extreme_sprites_and_lights_give_finite_depths() {
     for (slot, block, expected) in
         [(0.0, 0.0, 0.0), (1.0, 0.0, 5.0), (2.0, 0.0, 6.0), (3.0, 0.0, 7.0), (4.0, 1.0, 5.0), (15.0, 4.0, 7.0)]
     {
-        let (of_slot, of_block) = (of_slot(slot, vec3(5.0, 6.0, 7.0)), block_of_slot(slot));
-        assert!((of_slot - expected).abs() < 1e-6 && (of_block - block).abs() < 1e-6, "{slot}");
+        let (select_slot, of_block) = (select_slot(slot, vec3(5.0, 6.0, 7.0)), block_of_slot(slot));
+        assert!((select_slot - expected).abs() < 1e-6 && (of_block - block).abs() < 1e-6, "{slot}");
     }
 }
 
@@ -113,7 +113,7 @@ fn the_steps_of_a_march_are_spread_evenly_over_the_disc_of_the_light() {
     for direction in [Vec3::Y, Vec3::NEG_X, vec3(0.3, -0.7, 0.6).normalize()] {
         let offsets: Vec<Vec3> = (0..SHADOW_STEPS).map(|step| light_disc_offset(step, direction)).collect();
         assert!(offsets.iter().all(|offset| offset.length() < 1.0 && offset.dot(direction).abs() < 1e-5));
-        // The mean is the centre; the mean square of the distance is a half.
+        // The mean is the center; the mean square of the distance is a half.
         let count = SHADOW_STEPS as f32;
         let mean = offsets.iter().sum::<Vec3>() / count;
         let square = offsets.iter().map(|offset| offset.length_squared()).sum::<f32>() / count;

@@ -32,7 +32,7 @@ impl Folder {
         preset.systems[0].settings.shadow.strength = 0.0;
         std::fs::write(folder.preset(), serde_json::to_string(&preset).unwrap()).unwrap();
         let recipe = Template::find("neutral").unwrap().recipe();
-        std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
+        std::fs::write(folder.path("mine.ramp.json"), recipe.to_json()).unwrap();
         write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
         folder
     }
@@ -161,7 +161,7 @@ fn rows_of_a_two_axis_ramp_can_be_selected() {
         row
     };
     let recipe = RampRecipe { width: 32, height: 16, rows: vec![row(0.0), row(1.0)], ..RampRecipe::default() };
-    std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
+    std::fs::write(folder.path("mine.ramp.json"), recipe.to_json()).unwrap();
     write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     harness.get_by_label("1.00").click_accesskit();
@@ -182,7 +182,7 @@ fn rows_and_their_multiplier_are_edited_in_the_window() {
     std::fs::write(folder.preset(), serde_json::to_string(&preset).unwrap()).unwrap();
     let recipe = Template::find("neutral_glow").unwrap().recipe();
     assert!(recipe.rows.len() == 1 && !recipe.times.is_empty());
-    std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
+    std::fs::write(folder.path("mine.ramp.json"), recipe.to_json()).unwrap();
     write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     click(&mut harness, "Add row");

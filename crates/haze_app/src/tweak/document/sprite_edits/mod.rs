@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use haze::{Error, MaterialAssets};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_preset::{AssetFolders, MaterialNames, Preset};
+use haze_preset::{AssetFolders, MaterialSources, Preset};
 
 use super::Document;
 use crate::tweak::platform::asset_loading::place_of;
@@ -60,7 +60,7 @@ impl SpriteEdits {
     /// other threads.
     pub fn ask(
         &mut self,
-        names: &MaterialNames,
+        names: &MaterialSources,
         folders: &AssetFolders,
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Option<&mut EditedSprite> {
@@ -183,7 +183,7 @@ pub fn set_recipe(document: &mut Document, name: &str, recipe: SpriteRecipe) {
     document.recipes.sprites.set(name, recipe);
 }
 
-fn lay_out(names: &mut MaterialNames, recipe: &SpriteRecipe) {
+fn lay_out(names: &mut MaterialSources, recipe: &SpriteRecipe) {
     SpriteLayout { columns: names.columns, rows: names.rows, y_down: names.y_down } = recipe.layout();
 }
 

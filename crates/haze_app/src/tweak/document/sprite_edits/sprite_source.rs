@@ -198,7 +198,7 @@ pub fn encode(picture: &Path, layout: SpriteLayout, baked: BakedSprite) -> Resul
 
 /// Writes the recipe first, because the images can be made again from it.
 pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: &BakedFiles) -> Result<(), Error> {
-    file_io::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
+    file_io::write(&recipe_of(picture), recipe.to_json().as_bytes())?;
     file_io::write(&detail_of(picture), &baked.detail)?;
     file_io::write(picture, &baked.picture)
 }

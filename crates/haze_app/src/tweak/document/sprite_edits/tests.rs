@@ -40,7 +40,7 @@ impl Folder {
         (material.sprite, material.detail) = ("mine.png".into(), "mine.detail.png".into());
         material.columns = 2;
         folder.write_preset(&preset);
-        std::fs::write(folder.path("mine.sprite.json"), small().to_text()).unwrap();
+        std::fs::write(folder.path("mine.sprite.json"), small().to_json()).unwrap();
         let BakedSprite { picture, detail } = baked(&small());
         write_png(&folder.path("mine.png"), &picture.into(), CompressionEffort::Quick).unwrap();
         write_png(&folder.path("mine.detail.png"), &detail.into(), CompressionEffort::Quick).unwrap();
@@ -48,7 +48,7 @@ impl Folder {
     }
 
     fn write_preset(&self, preset: &Preset) {
-        std::fs::write(self.path("own.json"), preset.to_text("")).unwrap();
+        std::fs::write(self.path("own.json"), preset.to_json("")).unwrap();
     }
 
     fn path(&self, name: &str) -> PathBuf {

@@ -29,7 +29,7 @@ struct Bench {
 fn bench() -> Bench {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("my.json");
-    fs::write(&path, Preset::load("column").unwrap().to_text("")).unwrap();
+    fs::write(&path, Preset::load("column").unwrap().to_json("")).unwrap();
     Bench { window: window(&path, Some(folder.path().join("state"))), folder }
 }
 
@@ -115,7 +115,7 @@ fn opening_another_preset_asks_about_unsaved_work() {
     let mut bench = bench();
     bench.change(1.5);
     let other = bench.path("other.json");
-    fs::write(&other, Preset::load("fence").unwrap().to_text("")).unwrap();
+    fs::write(&other, Preset::load("fence").unwrap().to_json("")).unwrap();
     let open = |bench: &mut Bench| {
         bench.press(Modifiers::COMMAND, Key::O);
         bench.type_path(&other);
@@ -191,8 +191,8 @@ fn long_and_unusual_names_do_not_change_the_layout() {
 fn a_dropped_preset_is_opened_and_a_dropped_ramp_is_used() {
     let mut bench = bench();
     let ramp = bench.path("mine.png");
-    let grey = image::RgbImage::from_pixel(64, 1, image::Rgb([20; 3]));
-    haze_preset::write_png(&ramp, &grey.into(), haze_preset::CompressionEffort::Quick).unwrap();
+    let gray = image::RgbImage::from_pixel(64, 1, image::Rgb([20; 3]));
+    haze_preset::write_png(&ramp, &gray.into(), haze_preset::CompressionEffort::Quick).unwrap();
     bench.drop_file(&ramp);
     bench.until(|bench| bench.session().document.preset.systems[0].material.diffuse_ramp == "mine.png");
     assert_eq!(bench.said(), "mine.png is now the diffuse ramp of smoke");
@@ -204,7 +204,7 @@ fn a_dropped_preset_is_opened_and_a_dropped_ramp_is_used() {
     assert_ne!(bench.session().document.preset.systems[0].material.diffuse_ramp, "scatter_mine.png");
     bench.session().undo();
     let other = bench.path("other.json");
-    fs::write(&other, Preset::load("fence").unwrap().to_text("")).unwrap();
+    fs::write(&other, Preset::load("fence").unwrap().to_json("")).unwrap();
     bench.window.run_steps(2);
     bench.drop_file(&other);
     bench.until(|bench| bench.session().document.path() == other);
@@ -281,12 +281,12 @@ fn a_preset_can_be_copied_and_pasted_and_an_invalid_text_is_refused() {
         bench.window.run_steps(2);
     };
     let before = bench.session().document.preset.clone();
-    for nonsense in ["some text", &preset.to_text("").replace("0.5", "NaN")] {
+    for nonsense in ["some text", &preset.to_json("").replace("0.5", "NaN")] {
         paste(&mut bench, nonsense);
         assert!(bench.said().starts_with("Cannot paste: "), "{}", bench.said());
         assert!(bench.session().document.preset == before);
     }
-    paste(&mut bench, &preset.to_text(""));
+    paste(&mut bench, &preset.to_json(""));
     assert!(bench.session().document.preset == preset);
     bench.press(Modifiers::COMMAND, Key::Z);
     assert!(bench.session().document.preset == before);

@@ -31,7 +31,7 @@ impl Bench {
         let folder = tempfile::tempdir().unwrap();
         let mut preset = Preset::load("column").unwrap();
         preset.systems[0].material.diffuse_ramp = "mine.png".into();
-        fs::write(folder.path().join("my.json"), preset.to_text("")).unwrap();
+        fs::write(folder.path().join("my.json"), preset.to_json("")).unwrap();
         fs::create_dir_all(folder.path().join("shaders/lib")).unwrap();
         fs::write(folder.path().join("shaders/lib/color.wgsl"), COLOR).unwrap();
         write_ramp(folder.path(), 200);
@@ -90,9 +90,9 @@ impl Bench {
 /// Expected message, and the action on a path that causes it.
 type Way<'a> = (&'a str, &'a dyn Fn(&Path));
 
-/// Writes a ramp of a single grey.
-fn write_ramp(folder: &Path, grey: u8) {
-    let picture = RgbImage::from_pixel(64, 1, Rgb([grey; 3]));
+/// Writes a ramp of a single gray.
+fn write_ramp(folder: &Path, gray: u8) {
+    let picture = RgbImage::from_pixel(64, 1, Rgb([gray; 3]));
     haze_preset::write_png(&folder.join("mine.png"), &picture.into(), haze_preset::CompressionEffort::Quick).unwrap();
 }
 
@@ -167,7 +167,7 @@ fn a_changed_preset_file_is_loaded_unless_there_are_unsaved_changes() {
     let write = |exposure: f32| {
         let mut preset = Preset::load(&path).unwrap_or_default();
         preset.camera.exposure = exposure;
-        fs::write(&path, preset.to_text("")).unwrap();
+        fs::write(&path, preset.to_json("")).unwrap();
     };
     // In hundredths.
     let exposure = |bench: &mut Bench| (bench.session().document.preset.camera.exposure * 100.0) as i32;
@@ -179,7 +179,7 @@ fn a_changed_preset_file_is_loaded_unless_there_are_unsaved_changes() {
     assert_eq!(exposure(&mut bench), 150);
     fs::remove_file(&path).unwrap();
     bench.until(|bench| bench.said().is_some_and(|said| said.contains("was deleted")));
-    let saved = bench.session().document.preset.to_text("");
+    let saved = bench.session().document.preset.to_json("");
     fs::write(&path, saved).unwrap();
     bench.until(|bench| bench.said().is_none());
     // Changed both in the file and in the window.

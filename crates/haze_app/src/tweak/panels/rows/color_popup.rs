@@ -122,7 +122,7 @@ fn recent(ui: &mut Ui, value: &mut Vec3) {
     }
 }
 
-/// Draws the picker. It keeps hue and saturation while the color is grey or black.
+/// Draws the picker. It keeps hue and saturation while the color is gray or black.
 fn picker(ui: &mut Ui, value: &mut Vec3) {
     let peak = shown_peak(*value);
     let id = ui.scope_id().with("hsv");

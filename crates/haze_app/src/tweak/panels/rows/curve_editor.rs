@@ -21,7 +21,7 @@ pub fn curve(ui: &mut Ui, value: &mut Curve, range: &RangeInclusive<f32>, name: 
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::click_and_drag());
     let mut response = response.labelled_by(name.id);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, value.to_string()));
-    let highest = value.highest();
+    let highest = value.max_value();
     let dragged_id = response.id.with("dragged");
     // The scale stays while a point is dragged, or the point would run away.
     let dragged: Option<(usize, f32)> = ui.data(|data| data.get_temp(dragged_id));

@@ -40,10 +40,10 @@ pub fn gallery(
                     }
                 });
             };
-            let wanted = path.rsplit('.').next().and_then(RampRole::of_field);
+            let wanted = path.rsplit('.').next().and_then(RampRole::from_field);
             // A file whose name tells no role fits every field.
             let fits =
-                |name: &String| RampRole::of_name(name).is_none_or(|role| wanted.is_none_or(|wanted| role == wanted));
+                |name: &String| RampRole::from_name(name).is_none_or(|role| wanted.is_none_or(|wanted| role == wanted));
             let (fitting, others): (Vec<_>, Vec<_>) = thumbnails.names(ui.ctx(), role).into_iter().partition(fits);
             cells(ui, fitting);
             if !others.is_empty() {

@@ -9,7 +9,7 @@ use glam::Vec3;
 use haze_author::preset::Tooltips;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::settings::{FieldVisitor, Fields};
-use haze_preset::{MaterialNames, builtin};
+use haze_preset::{MaterialSources, builtin};
 
 use crate::tweak::document::sprite_edits::set_recipe;
 use crate::tweak::document::sprite_edits::sprite_source::SpriteOrigin;
@@ -28,7 +28,7 @@ const WRITTEN: &str = "Changes are visible at once at low resolution. The sprite
 const MAX_CHARACTERS: usize = 400;
 
 /// Draws the recipe of the selected system's sprite, or the ways to get one.
-pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
+pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialSources) {
     let (folders, wake) = (session.folders(), session.repaint.clone());
     let Some(known) = session.sprites.ask(names, &folders, move || wake.call()) else { return };
     if let Some(broken) = &known.broken {

@@ -21,7 +21,7 @@ fn f_frames_the_smoke_or_the_light_and_home_restores_the_camera() {
     let mut smoke = SmokeGeometry::default();
     let session = &harness.state().session;
     let bounds = session.measure(&mut smoke).bounds();
-    assert_eq!(camera(&harness).target, bounds.centre());
+    assert_eq!(camera(&harness).target, bounds.center());
     for corner in [bounds.min, bounds.max] {
         assert!(projection(&harness).project(corner).is_some_and(|at| viewport(&harness).contains(at)));
     }

@@ -45,21 +45,21 @@ fn moving() -> Harness<'static, Window> {
     harness
 }
 
-/// Centre handle of the light, which is where the light is at the shown time.
-fn shown_centre(harness: &Harness<'_, Window>) -> Pos2 {
+/// Center handle of the light, which is where the light is at the shown time.
+fn shown_center(harness: &Harness<'_, Window>) -> Pos2 {
     let shown = harness.state().session.preset_now();
     let shapes = handles(&shown.lights[0], &projection(harness));
-    let Shape::Square(centre) = shapes.into_iter().find(|shape| shape.0 == Handle::Centre).unwrap().1 else {
+    let Shape::Square(center) = shapes.into_iter().find(|shape| shape.0 == Handle::Center).unwrap().1 else {
         unreachable!()
     };
-    centre
+    center
 }
 
 #[test]
 fn a_drag_of_a_light_with_keyframes_is_one_keyframe_and_one_step() {
     let mut harness = moving();
     let (own, seen) = (light(&harness).position, projection(&harness));
-    let from = shown_centre(&harness);
+    let from = shown_center(&harness);
     let to = from + vec2(60.0, -40.0);
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(20.0, -10.0), to]);
     let session = &harness.state().session;
@@ -73,10 +73,10 @@ fn a_drag_of_a_light_with_keyframes_is_one_keyframe_and_one_step() {
 }
 
 #[test]
-fn a_centre_drag_follows_the_pointer_and_escape_cancels_it() {
+fn a_center_drag_follows_the_pointer_and_escape_cancels_it() {
     let mut harness = lit(Light::default());
     let before = light(&harness).position;
-    let from = handle(&harness, Handle::Centre);
+    let from = handle(&harness, Handle::Center);
     let to = from + vec2(130.0, -70.0);
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(5.0, 5.0), to]);
     let after = light(&harness).position;
@@ -105,7 +105,7 @@ fn a_centre_drag_follows_the_pointer_and_escape_cancels_it() {
 #[test]
 fn ctrl_snaps_to_a_tenth_of_a_metre_and_shift_slows_the_drag() {
     let mut harness = lit(Light::default());
-    let (from, before) = (handle(&harness, Handle::Centre), light(&harness).position);
+    let (from, before) = (handle(&harness, Handle::Center), light(&harness).position);
     harness.event(Event::ModifiersChanged(Modifiers::COMMAND));
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(31.0, 17.0)]);
     let snapped = light(&harness).position;
@@ -114,7 +114,7 @@ fn ctrl_snaps_to_a_tenth_of_a_metre_and_shift_slows_the_drag() {
     }
     assert!(snapped.distance(before) > 0.1);
     harness.event(Event::ModifiersChanged(Modifiers::SHIFT));
-    let from = handle(&harness, Handle::Centre);
+    let from = handle(&harness, Handle::Center);
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(100.0, 0.0)]);
     let moved = projection(&harness).project(light(&harness).position).unwrap() - from;
     assert!((moved.x - 10.0).abs() < 0.5, "{moved}");
@@ -134,7 +134,7 @@ fn radius_cone_and_direction_can_be_dragged() {
     let way = pull(Handle::Aim, vec2(40.0, -20.0));
     assert!(way.direction.x > before.direction.normalize().x + 0.1, "{}", way.direction);
     assert_eq!((way.outer_angle, way.position), (before.outer_angle, before.position));
-    // Seen from below the cone's centre, one handle is to the left and the other to the right.
+    // Seen from below the cone's center, one handle is to the left and the other to the right.
     let at = |harness: &Harness<'_, Window>, what| handle(harness, what);
     let (middle, rim) = (at(&harness, Handle::Aim), at(&harness, Handle::OuterAngle));
     drag(&mut harness, PointerButton::Primary, &[rim, rim + (rim - middle) * 0.3]);
@@ -182,7 +182,7 @@ fn a_click_selects_a_light_and_a_click_elsewhere_deselects() {
 #[test]
 fn a_light_dragged_within_one_long_frame_ends_under_the_pointer() {
     let mut harness = lit(Light::default());
-    let from = handle(&harness, Handle::Centre);
+    let from = handle(&harness, Handle::Center);
     let to = from + vec2(130.0, -70.0);
     flick(&mut harness, PointerButton::Primary, &[from, from + vec2(46.0, -20.0), to]);
     let after = light(&harness).position;
@@ -194,7 +194,7 @@ fn a_light_dragged_within_one_long_frame_ends_under_the_pointer() {
 fn escape_during_a_drag_leaves_no_keyframe() {
     let mut harness = moving();
     let before = harness.state().session.document.preset.clone();
-    let from = shown_centre(&harness);
+    let from = shown_center(&harness);
     harness.hover_at(from);
     harness.run_steps(2);
     harness.drag_at(from);

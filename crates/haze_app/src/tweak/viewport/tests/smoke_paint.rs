@@ -52,7 +52,7 @@ fn a_drag_on_smoke_changes_its_brightness_in_one_step() {
     preset.systems[0].material.diffuse_ramp = "mine.png".into();
     std::fs::write(path("own.json"), serde_json::to_string(&preset).unwrap()).unwrap();
     let recipe = Template::find("neutral").unwrap().recipe();
-    std::fs::write(path("mine.ramp.json"), recipe.to_text()).unwrap();
+    std::fs::write(path("mine.ramp.json"), recipe.to_json()).unwrap();
     write_png(&path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let on_disk = |path: &Path| RampRecipe::load(path).unwrap();
 

@@ -154,9 +154,9 @@ fn the_brightness_of_a_pixel_is_matched_by_one_drag_on_the_smoke() {
     let path = |name: &str| folder.path().join(name);
     let mut preset = Preset::load("column").unwrap();
     preset.systems[0].material.diffuse_ramp = "mine.png".into();
-    std::fs::write(path("own.json"), preset.to_text("")).unwrap();
+    std::fs::write(path("own.json"), preset.to_json("")).unwrap();
     let recipe = Template::find("neutral").unwrap().recipe();
-    std::fs::write(path("mine.ramp.json"), recipe.to_text()).unwrap();
+    std::fs::write(path("mine.ramp.json"), recipe.to_json()).unwrap();
     write_png(&path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut script = Script::open(path("own.json").to_str().unwrap(), Vec2::new(1000.0, 640.0));
     let place = script.image().center();

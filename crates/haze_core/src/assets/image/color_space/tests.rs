@@ -138,7 +138,7 @@ fn transparent_pixels_are_composited_over_black_in_linear_light() {
 
 #[test]
 fn every_kind_of_png_is_read_and_refused_if_truncated() {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus/png");
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/corpus/png");
     let mut count = 0;
     for entry in std::fs::read_dir(root).unwrap() {
         let path = entry.unwrap().path();

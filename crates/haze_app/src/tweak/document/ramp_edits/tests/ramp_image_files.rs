@@ -36,7 +36,7 @@ fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
 #[test]
 fn files_are_compared_after_a_write_and_before_they_are_overwritten() {
     let folder = Folder::new();
-    let folders = AssetFolders::beside(&folder.preset());
+    let folders = AssetFolders::for_preset_file(&folder.preset());
     let mut document = Document::open(&folder.preset()).unwrap();
     let mut ramps = RampEdits::default();
     let painted = Template::find("hard_toon").unwrap().recipe().bake().unwrap();
@@ -51,7 +51,7 @@ fn files_are_compared_after_a_write_and_before_they_are_overwritten() {
     assert!(is_recipe(&mut ramps, &mut document, true) && !is_recipe(&mut ramps, &mut document, false));
     // The step ends before the change on disk was reported.
     let folder = Folder::new();
-    let folders = AssetFolders::beside(&folder.preset());
+    let folders = AssetFolders::for_preset_file(&folder.preset());
     let mut document = Document::open(&folder.preset()).unwrap();
     let mut ramps = RampEdits::default();
     ramps.advance(&mut document, &folders, false).unwrap();
@@ -124,7 +124,7 @@ fn a_built_in_preset_must_be_saved_before_a_ramp_is_copied() {
 fn a_curve_and_a_blend_space_are_chosen_and_undone() {
     let folder = Folder::new();
     let recipe = Template::find("neutral").unwrap().recipe();
-    std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
+    std::fs::write(folder.path("mine.ramp.json"), recipe.to_json()).unwrap();
     write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     let choose = |harness: &mut Harness<'static, Window>, control: &str, entry: &str| {

@@ -22,9 +22,9 @@ fn files_changed_by_another_program_are_not_overwritten_until_requested() {
     until(&mut harness, |harness| Some(used(harness)) == folder.sprite());
     assert!(harness.query_by_label("Erosion").is_none() && (folder.recipe().bump - 3.0).abs() < 1e-6);
     // A recipe that is written by hand is another recipe as well.
-    std::fs::write(folder.path("mine.sprite.json"), other.to_text()).unwrap();
+    std::fs::write(folder.path("mine.sprite.json"), other.to_json()).unwrap();
     until(&mut harness, |harness| harness.query_by_label("Bake recipe").is_none());
-    std::fs::write(folder.path("mine.sprite.json"), small().to_text()).unwrap();
+    std::fs::write(folder.path("mine.sprite.json"), small().to_json()).unwrap();
     until(&mut harness, |harness| harness.query_by_label("Bake recipe").is_some());
     harness.get_by_label("Bake recipe").click();
     until(&mut harness, |_| folder.is_baked());

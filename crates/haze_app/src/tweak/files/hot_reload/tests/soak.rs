@@ -97,7 +97,7 @@ fn reload(bench: &mut Bench, count: u32) {
     write_sheet(&folder, 90);
     let mut preset = Preset::load(&path).unwrap();
     preset.systems[0].material.sprite = "sheet.png".into();
-    fs::write(&path, preset.to_text("")).unwrap();
+    fs::write(&path, preset.to_json("")).unwrap();
     bench.until(|bench| bench.session().document.preset == preset);
     bench.rest();
     for index in 0..count {
@@ -112,7 +112,7 @@ fn reload(bench: &mut Bench, count: u32) {
             (1, false) => fs::write(folder.join("sheet.png"), "no picture").unwrap(),
             (2, true) => {
                 preset.name = format!("column {index}");
-                fs::write(&path, preset.to_text("")).unwrap();
+                fs::write(&path, preset.to_json("")).unwrap();
             }
             (2, false) => fs::write(&path, &before[..before.len() / 2]).unwrap(),
             (_, true) => fs::write(&shader, format!("// {index}\n{COLOR}")).unwrap(),

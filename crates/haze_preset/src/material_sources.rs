@@ -1,21 +1,21 @@
-//! Names of the images of a preset, and their loading.
+//! Images of a material by name, and their loading.
 
-use std::io;
 use std::path::{Component, Path};
 
-use super::asset_folders::{AssetFolders, MIN_SIMILARITY};
-use super::image_cache::ImageCache;
-use super::image_source::ImageSource;
-use crate::builtin::{self, Builtin};
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::sprite::{Sprite, SpriteLayout, six_way_layout};
 use haze_core::error::{Error, FieldError};
 use haze_core::settings::{ImageRole, settings};
 
+use super::asset_folders::MIN_SIMILARITY;
+use super::image_cache::ImageCache;
+use super::image_source::ImageSource;
+use crate::builtin::{self, Builtin};
+
 settings! {
     /// Images of a system: names of built-in ones, or PNG files beside the preset.
     #[derive(Clone, Debug, PartialEq, Eq)]
-    pub struct MaterialNames {
+    pub struct MaterialSources {
         "sprite":
         /// Flipbook of normal maps: shape and outline of every puff.
         sprite: String = "puff".into(), image(ImageRole::Sprite);
@@ -60,33 +60,20 @@ settings! {
     }
 }
 
-impl MaterialNames {
-    /// Loads all images. `folder` is the preset's; files are searched for there only.
+impl MaterialSources {
+    /// Loads all images. Built-in ones are found by their names, and the source is asked for the others.
     ///
     /// # Errors
     /// [`Error::Asset`] with the field and the file, or [`Error::Field`] for a name that is neither built in nor a
     /// file inside the folder, and for more than [`MAX_IMAGE_BYTES`](super::MAX_IMAGE_BYTES).
-    pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
-        self.load_images(ImageSource::Folders(AssetFolders::at(folder)))
-    }
-
-    /// As [`MaterialNames::load`], with the files that `read` returns for their names: for packed files, asset servers
-    /// and web pages. Built-in images are not read.
-    ///
-    /// # Errors
-    /// As [`MaterialNames::load`].
-    pub fn load_with(&self, mut read: impl FnMut(&Path) -> io::Result<Vec<u8>>) -> Result<MaterialAssets, Error> {
-        self.load_images(ImageSource::Reader(&mut read))
-    }
-
-    fn load_images(&self, source: ImageSource<'_>) -> Result<MaterialAssets, Error> {
-        let loaded = self.load_from(&mut ImageCache::new(source));
+    pub fn load(&self, source: ImageSource<'_>) -> Result<MaterialAssets, Error> {
+        let loaded = self.load_with_cache(&mut ImageCache::new(source));
         loaded.map_err(|mut errors| errors.swap_remove(0).1)
     }
 
-    /// As [`MaterialNames::load`], with the images that other systems have loaded already. The errors are those of all
+    /// As [`MaterialSources::load`], with the images that other systems have loaded already. The errors are those of all
     /// fields in order, at least one, each with its field. Images that belong to the sprite report under `sprite`.
-    pub fn load_from(&self, pictures: &mut ImageCache<'_>) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
+    pub fn load_with_cache(&self, pictures: &mut ImageCache<'_>) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
         let sprite = ok_or_record("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
@@ -140,7 +127,7 @@ impl MaterialNames {
         }
     }
 
-    /// Copy with default images for some fields, named as in the errors of [`MaterialNames::load_from`].
+    /// Copy with default images for some fields, named as in the errors of [`MaterialSources::load_with_cache`].
     pub fn with_defaults_for(&self, fields: &[&str]) -> Self {
         let defaults = Self::default();
         let mut names = self.clone();
@@ -253,6 +240,7 @@ fn ok_or_record<T>(field: &'static str, found: Result<T, Error>, errors: &mut Ve
 
 #[cfg(test)]
 mod tests {
+    use std::io;
     use std::ops::RangeInclusive;
 
     use glam::Vec3;
@@ -271,14 +259,14 @@ mod tests {
             fn group(&mut self, _: &'static str, _: &mut dyn Fields) {}
             fn item(&mut self, _: &'static str, _: usize, _: &mut dyn Fields) {}
             fn image(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
-                let wanted = RampRole::of_field(name);
+                let wanted = RampRole::from_field(name);
                 assert_eq!(wanted.is_some(), role == ImageRole::Ramp, "{name}");
-                assert!(wanted.is_none() || wanted == RampRole::of_name(value), "{name} {value}");
+                assert!(wanted.is_none() || wanted == RampRole::from_name(value), "{name} {value}");
                 self.0.extend(wanted);
             }
         }
         let mut roles = Roles(Vec::new());
-        MaterialNames::default().visit(&mut roles);
+        MaterialSources::default().visit(&mut roles);
         assert_eq!(roles.0.len(), RampRole::ALL.len());
     }
 
@@ -286,21 +274,26 @@ mod tests {
     fn images_can_come_from_a_host() {
         let mut png = Vec::new();
         image::RgbImage::new(2, 1).write_to(&mut io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
-        let names = MaterialNames { diffuse_ramp: "packed/own.png".to_owned(), ..MaterialNames::default() };
+        let names = MaterialSources { diffuse_ramp: "packed/own.png".to_owned(), ..MaterialSources::default() };
         let mut asked = Vec::new();
-        let loaded = names.load_with(|name| {
+        let mut read = |name: &Path| {
             asked.push(name.to_owned());
             Ok(png.clone())
-        });
+        };
+        let loaded = names.load(ImageSource::Reader(&mut read));
         // Built-in images are not asked for.
         assert_eq!(asked, [Path::new("packed/own.png")]);
         assert_eq!(loaded.unwrap().diffuse_ramp.size(), glam::UVec2::new(2, 1));
-        let absent = names.load_with(|_| Err(io::ErrorKind::NotFound.into())).unwrap_err().to_string();
+        let absent =
+            names.load(ImageSource::Reader(&mut |_| Err(io::ErrorKind::NotFound.into()))).unwrap_err().to_string();
         assert!(absent.starts_with("material.diffuse_ramp: packed/own.png: "), "{absent}");
-        let broken = names.load_with(|_| Ok(b"no picture".to_vec())).unwrap_err().to_string();
+        let broken = names.load(ImageSource::Reader(&mut |_| Ok(b"no picture".to_vec()))).unwrap_err().to_string();
         assert!(broken.starts_with("material.diffuse_ramp: packed/own.png: "), "{broken}");
-        let large = names.load_with(|_| Ok(vec![0; (64 << 20) + 1])).unwrap_err().to_string();
+        let large = names.load(ImageSource::Reader(&mut |_| Ok(vec![0; (64 << 20) + 1]))).unwrap_err().to_string();
         assert!(large.contains("at most 64 MiB"), "{large}");
+        let alone = names.load(ImageSource::BuiltIn).unwrap_err().to_string();
+        assert!(alone.starts_with("material.diffuse_ramp: packed/own.png: no folder to search"), "{alone}");
+        assert!(MaterialSources::default().load(ImageSource::BuiltIn).is_ok());
     }
 
     #[test]

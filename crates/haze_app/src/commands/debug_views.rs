@@ -1,4 +1,4 @@
-//! `haze shade-tree`: renders every stage of the shading on one sheet, as OTEE's slide "Shade tree" does.
+//! `haze debug-views`: renders every stage of the shading on one sheet, as OTEE's slide "Shade tree" does.
 
 use clap::Args;
 use haze::Error;
