@@ -91,7 +91,6 @@ fn system_light(
             (sample.as_slice(), snapshot.step)
         }
     };
-    let fire =
-        FireLight { particles, particles_per_sample: step, settings, assets: images, time: seconds, seed };
+    let fire = FireLight { particles, particles_per_sample: step, settings, assets: images, time: seconds, seed };
     fire.estimate()
 }

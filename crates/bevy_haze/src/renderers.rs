@@ -11,7 +11,7 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::view::ExtractedView;
 use haze::preset::MAX_SYSTEMS;
-use haze::{Context, RendererDescriptor, Error, Renderer, wgpu};
+use haze::{Context, Error, Renderer, RendererDescriptor, wgpu};
 
 use crate::composite::CompositeBinding;
 use crate::extract::{ExtractedSmoke, ExtractedSmokes};

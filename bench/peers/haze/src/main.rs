@@ -6,8 +6,8 @@ mod scene;
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 use bevy_haze::haze::glam::{UVec2, Vec3 as HazeVec3};
+use bevy_haze::haze::settings::RenderPath;
 use bevy_haze::haze_core::assets::ramp::Ramp;
-use bevy_haze::haze_core::settings::RenderPath;
 use bevy_haze::haze_core::assets::sprite::Sprite;
 use bevy_haze::{Smoke, SmokeAsset, SmokeClock, SmokeParticle, SmokeParticles, SmokePlugin};
 

@@ -10,8 +10,8 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy_haze::haze::preset::Preset;
 use bevy_haze::haze::settings::Ambient;
 use bevy_haze::haze::{
-    Context, RendererDescriptor, FrameInput, Light, LightKind, ParticleSystem, Particles, Renderer, SceneDepth, Settings, View,
-    glam, wgpu,
+    Context, FrameInput, Light, LightKind, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth,
+    Settings, View, glam, wgpu,
 };
 
 use crate::host::{

@@ -12,8 +12,8 @@ use haze::glam::camera::rh;
 use haze::glam::{UVec2, Vec3, vec3};
 use haze::preset::Preset;
 use haze::{
-    Context, RendererDescriptor, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, SceneDepth,
-    Settings, View, wgpu,
+    Context, FrameInput, Light, Material, Particle, ParticleSystem, Particles, Renderer, RendererDescriptor,
+    SceneDepth, Settings, View, wgpu,
 };
 use slint::wgpu_30::{WGPUConfiguration, WGPUSettings};
 
@@ -103,7 +103,8 @@ struct Host {
 
 impl Host {
     fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, Failure> {
-        let descriptor = RendererDescriptor { color_format: COLOR, depth_format: Some(DEPTH), ..RendererDescriptor::default() };
+        let descriptor =
+            RendererDescriptor { color_format: COLOR, depth_format: Some(DEPTH), ..RendererDescriptor::default() };
         let context = Context::new(device, queue);
         let smoke = Renderer::new(&context, &descriptor)?;
         let preset = Preset::load("column")?;
