@@ -6,9 +6,9 @@ mod scene;
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 use bevy_haze::haze::glam::{UVec2, Vec3 as HazeVec3};
+use bevy_haze::haze::ramp::Ramp;
 use bevy_haze::haze::settings::RenderPath;
-use bevy_haze::haze_core::assets::ramp::Ramp;
-use bevy_haze::haze_core::assets::sprite::Sprite;
+use bevy_haze::haze::sprite::Sprite;
 use bevy_haze::{Smoke, SmokeAsset, SmokeClock, SmokeParticle, SmokeParticles, SmokePlugin};
 
 use scene::{Case, Options, RADIUS, SPRITE_SIZE};
