@@ -49,7 +49,7 @@ struct Emitter {
     up: vec3f,
     // Height along `up`, world space.
     floor: f32,
-    // Births of a pulse, the place of the first birth among those of its pulse, and seconds from pulse to pulse.
+    // Births per pulse, index of the first birth within its pulse, and seconds from pulse to pulse.
     per_pulse: u32,
     first_in_pulse: u32,
     period: f32,

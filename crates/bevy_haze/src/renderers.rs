@@ -112,7 +112,7 @@ pub(crate) fn system_key(entity: MainEntity, system: usize) -> u64 {
     let entity = entity.id();
     let generation = u64::from(entity.generation().to_bits());
     let per_entity = MAX_SYSTEMS as u64;
-    // Bits that overflow belong to the generation, of which two in a row differ in the lowest.
+    // The shift drops the upper bits of the generation; generations that follow each other differ in the lowest bit.
     (u64::from(entity.index_u32()) * per_entity + system as u64 % per_entity) | generation << (32 + per_entity.ilog2())
 }
 

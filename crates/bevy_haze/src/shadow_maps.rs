@@ -17,7 +17,7 @@ use haze::{MAX_SHADOW_LAYERS, ShadowMap, ShadowProjection, glam};
 use crate::convert;
 use crate::lights::SceneLight;
 
-/// Distance by which a surface must be before smoke to shade it, metres. A cell of haze's grid is larger.
+/// Distance in front of smoke from which a surface shades it, metres: less than a cell of haze's grid.
 const BIAS: f32 = 0.05;
 
 /// Views of the render world that draw shadow maps.

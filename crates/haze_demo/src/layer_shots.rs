@@ -107,7 +107,7 @@ mod tests {
         let [particle] = &particles[..] else { panic!("{} particles", particles.len()) };
         for scalar in [ParticleScalar::ViewDepth, ParticleScalar::MotionRight(0.1), ParticleScalar::MotionUp(0.1)] {
             let expected = by_hand(&shot, scalar, particle.position, velocity * 0.1);
-            // One particle has no range of values: a wide one shows what the picture tells.
+            // The range of one particle's values is empty; a wider one lets the image show the value.
             let (mut shown_shot, mut shown) = shot.showing(scalar).unwrap();
             (shown.low, shown.high) = (expected - 8.0, expected + 8.0);
             shown_shot.shown_scalar = Some(shown);

@@ -17,8 +17,8 @@ pub(crate) const CELLS: UVec3 = UVec3::new(40, 8, 40);
 pub(crate) const ORIGIN: Vec3 = Vec3::new(-20.0, -0.5, -24.0);
 /// Side of a cell, metres.
 const CELL: f32 = 1.0;
-/// Cells along each side of a block. A box that cannot be an occluder in a block is not tested in its cells: what reaches a point
-/// of a cell reaches a point of the block.
+/// Cells along each side of a block. Only boxes that can be occluders in a block are tested in its cells: an occluder of a point in
+/// a cell is an occluder of a point in the block.
 const BLOCK: u32 = 4;
 const _: () = assert!(CELLS.x.is_multiple_of(BLOCK) && CELLS.y.is_multiple_of(BLOCK) && CELLS.z.is_multiple_of(BLOCK));
 /// Margin of a cell, metres: rounding may move points on its border to the neighbour.

@@ -1,6 +1,6 @@
 //! GPU renderer of the demo scene, or of a scene from a file. Three passes: paint (reflectance at 2x2 samples per pixel), depth
-//! (depth buffer and linear view depth at pixel centers), and light. With shadow of smoke, light keeps that of up to three lights apart, and
-//! a fourth pass, shade, adds what of it comes through the smoke.
+//! (depth buffer and linear view depth at pixel centers), and light. With shadow of smoke, light writes up to three lights to textures of
+//! their own, and a fourth pass, shade, adds them, dimmed by the smoke.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 

@@ -13,7 +13,7 @@ use super::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
 /// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's color.
 pub const DEFAULT_MAX_ERROR: f32 = 1.5;
 
-/// Range of error bounds, steps of 255: what stops of 8 bits per channel can meet, to what is useful.
+/// Range of error bounds, steps of 255: from the smallest that stops of 8 bits per channel can meet to the largest of use.
 pub const MAX_ERROR_RANGE: RangeInclusive<f32> = 1.0..=64.0;
 
 /// Maximum number of stops. An image that needs more is not a gradient, and its recipe would exceed the size limit.

@@ -7,9 +7,9 @@ use haze_core::formula::color::srgb_from_linear;
 use super::gradient::add_stop;
 use super::{HexColor, RampRecipe, RampRow};
 
-/// Distance from the place, along and across rows, at which colors change by 0.6 of what they change by there.
+/// Distance from the painted position, along and across rows, at which the change of colors has fallen to 0.6.
 const REACH: f32 = 0.12;
-/// Distance from the place within which a stop suffices.
+/// Distance from the painted position within which an existing stop is changed, and none is added.
 const NEAR: f32 = 0.06;
 /// Linear light that is added before the multiplication and taken away after it, so that black can be lightened.
 const LIFT: f32 = 0.004;

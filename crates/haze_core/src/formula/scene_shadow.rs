@@ -4,10 +4,9 @@ use glam::{Vec3, Vec4};
 
 use super::saturate;
 
-/// Place at which light comes to `from` out of the grid of `size` cells, and 1 in w: the point itself inside of the grid, and
-/// outside, where its line to the light enters the grid. 0 in w if the line does not meet the grid before the light.
-/// `light`: its position, and 0 in w; or the
-/// direction to it, and 1 in w.
+/// Position, in cells, at which light leaves the grid of `size` cells on its way to `from`, and 1 in w: `from` itself if it is
+/// inside, else the point at which the line to the light enters the grid. w is 0 if the line meets the grid nowhere before the
+/// light. `light`: its position, and 0 in w; or the direction to it, and 1 in w.
 pub fn grid_entry(light: Vec4, from: Vec3, size: Vec3) -> Vec4 {
     let to_light = light.truncate() - from * (1.0 - light.w);
     let distance = to_light.dot(to_light).max(1.0e-8).sqrt();

@@ -61,8 +61,8 @@ pub fn foreign_optical_depths(in_grid: Vec3, own: f32) -> Vec3 {
     (in_grid - own).max(Vec3::ZERO)
 }
 
-/// Part of the optical depths at the mean depth of the smoke that the smoke there adds itself: the mean excess of those in
-/// the grid, towards the first block of lights, over those that the sprites accumulated.
+/// Optical depth that the smoke at its own mean depth adds to its shadow: how far the optical depths in the grid exceed those
+/// that the sprites accumulated, on average over the first block of lights.
 pub fn own_at_mean_depth(in_grid: Vec3, accumulated: Vec3) -> f32 {
     (in_grid - accumulated).max(Vec3::ZERO).dot(Vec3::splat(1.0 / 3.0))
 }

@@ -42,7 +42,7 @@ choice! {
 
 settings! {
     /// One light. A white, unshadowed texel of a diffuse ramp sends `color · intensity / distance²` to the viewer, or
-    /// `color · intensity` under a directional light: candela or lux, divided by π, light smoke as a white matte surface.
+    /// `color · intensity` under a directional light. Divided by π, candela or lux make it as bright as a white matte surface.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Light {
         /// Type of the light.
