@@ -1,11 +1,13 @@
-//! Finds the built-in files: beside this package once it is packed, otherwise at the top of the repository.
+//! Tells whether the folders of built-in files are beside this package: once it is packed, or as links in a checkout. Where links are
+//! not supported, they are files, and the folders are at the top of the repository.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 fn main() {
-    let package = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
-    // Links to the folders, which are files where links are not supported.
-    let folder = if package.join("ramps").is_dir() { package } else { package.join("../..") };
-    println!("cargo::rustc-env=HAZE_BUILTIN_FOLDER={}", folder.display());
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(has_folders)");
+    let package = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();
+    if Path::new(&package).join("ramps").is_dir() {
+        println!("cargo::rustc-cfg=has_folders");
+    }
 }

@@ -252,7 +252,7 @@ impl Renderer {
     }
 
     /// Records the shadow of the smoke ahead of [`prepare`](Self::prepare), so that a host's opaque pass can read it from
-    /// [`scene_shadow`](Self::scene_shadow). Call `prepare` with the same frame afterwards, before the commands are
+    /// [`scene_shadow_bind_group`](Self::scene_shadow_bind_group). Call `prepare` with the same frame afterwards, before the commands are
     /// submitted. The scene depth is not read yet. Without smoke that casts shadow, it records nothing of the shadow.
     ///
     /// # Errors

@@ -20,12 +20,26 @@ pub struct Builtin {
     pub recipe: &'static str,
 }
 
+/// Path from this file to the folders of built-in files, found by build.rs.
+#[cfg(has_folders)]
+macro_rules! top {
+    () => {
+        "../"
+    };
+}
+#[cfg(not(has_folders))]
+macro_rules! top {
+    () => {
+        "../../../"
+    };
+}
+
 macro_rules! builtin {
     ($folder:literal, $kind:literal, [$($name:literal),+ $(,)?]) => {
         &[$(Builtin {
             name: $name,
-            bytes: include_bytes!(concat!(env!("HAZE_BUILTIN_FOLDER"), "/", $folder, "/", $name, ".png")),
-            recipe: include_str!(concat!(env!("HAZE_BUILTIN_FOLDER"), "/", $folder, "/", $name, $kind)),
+            bytes: include_bytes!(concat!(top!(), $folder, "/", $name, ".png")),
+            recipe: include_str!(concat!(top!(), $folder, "/", $name, $kind)),
         }),+]
     };
 }
@@ -110,7 +124,7 @@ macro_rules! details {
     ([$($name:literal),+ $(,)?]) => {
         &[$(Builtin {
             name: $name,
-            bytes: include_bytes!(concat!(env!("HAZE_BUILTIN_FOLDER"), "/sprites/", $name, ".detail.png")),
+            bytes: include_bytes!(concat!(top!(), "sprites/", $name, ".detail.png")),
             recipe: "",
         }),+]
     };
@@ -126,7 +140,7 @@ macro_rules! presets {
     ([$($name:literal),+ $(,)?]) => {
         &[$(Builtin {
             name: $name,
-            bytes: include_bytes!(concat!(env!("HAZE_BUILTIN_FOLDER"), "/presets/", $name, ".json")),
+            bytes: include_bytes!(concat!(top!(), "presets/", $name, ".json")),
             recipe: "",
         }),+]
     };

@@ -1,0 +1,71 @@
+//! `haze export material`: ramps and lighting formula of a system, for an engine.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use haze::{Error, FieldError};
+use haze_preset::Preset;
+
+use haze_export::engine::Engine;
+use haze_export::inputs::image_paths;
+use haze_export::material_export::MaterialExport;
+use haze_export::options::{AssetsArguments, parse_assignment, with_option};
+use haze_export::output::{FileChecks, print_line};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Name of a built-in preset (see `haze preset list`), or path of a preset file (JSON).
+    #[arg(default_value = "column")]
+    preset: PathBuf,
+    /// Engine to write for.
+    #[arg(long, value_enum)]
+    engine: Engine,
+    /// Name of the system, or its number, counted from 0. Default: the first.
+    #[arg(long, value_name = "NAME")]
+    system: Option<String>,
+    /// Set a field of the preset, as in `haze render`. May be given more than once.
+    #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
+    set: Vec<(String, String)>,
+    /// Folder to write into; it is made if it does not exist.
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+    #[command(flatten)]
+    assets: AssetsArguments,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let Arguments { preset: path, engine, system, set, output, assets } = arguments;
+    let mut preset = Preset::load(path)?;
+    for (field, value) in set {
+        preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
+    }
+    preset.validate()?;
+    let preset = preset.evaluate(preset.time);
+    let index = system.as_ref().map_or(Ok(0), |name| system_index(&preset, name))?;
+    let folders = assets.folders(path)?;
+    let materials = preset.load_materials_from(path, &folders)?;
+    let Some((system, images)) = preset.systems.get(index).zip(materials.get(index)) else {
+        return Err(FieldError::new("PRESET", path.display(), "a preset with a system").into());
+    };
+    let export = MaterialExport::new(&preset.name, (index, system), images, *engine)?;
+    let pictures = image_paths(&folders, &preset);
+    std::fs::create_dir_all(output).map_err(|error| Error::Io { path: output.into(), error })?;
+    let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([path.as_path()]));
+    for name in export.files() {
+        let file = output.join(name);
+        let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        files.check_output("--output", &file, extension)?;
+    }
+    export.write(output)?;
+    export.files().try_for_each(|name| print_line!("{}", output.join(name).display()))
+}
+
+/// Finds a system by its name, or by its number.
+fn system_index(preset: &Preset, name: &str) -> Result<usize, FieldError> {
+    let by_name = preset.systems.iter().position(|system| system.name == name);
+    let by_number = || name.parse().ok().filter(|index| *index < preset.systems.len());
+    by_name.or_else(by_number).ok_or_else(|| {
+        let names: Vec<_> = preset.systems.iter().map(|system| format!("{:?}", system.name)).collect();
+        FieldError::new("--system", format!("{name:?}"), format!("one of {}", names.join(", ")))
+    })
+}

@@ -1,0 +1,36 @@
+//! `haze ramp import`: converts a PNG, or another program's gradient, to a recipe.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use haze::Error;
+use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, MAX_ERROR_RANGE};
+use haze_author::ramp::import_gradient::import_gradient;
+use haze_export::options::number;
+use haze_export::output::{FileChecks, print_line};
+use haze_export::progress::with_progress;
+
+use super::ramp_io::{check_recipe_output, write_recipe};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A PNG, or a gradient of GIMP (.ggr), Godot (.tres) or Blender (.txt, as text).
+    file: PathBuf,
+    /// Recipe to write.
+    #[arg(short, long, value_name = "NAME.ramp.json")]
+    output: PathBuf,
+    /// Greatest error of a channel, in steps of 1/255, at least 1. A larger error gives fewer stops.
+    #[arg(long, value_name = "STEPS", default_value_t = DEFAULT_MAX_ERROR, allow_hyphen_values = true)]
+    #[arg(value_parser = number(MAX_ERROR_RANGE))]
+    error: f32,
+}
+
+pub fn run(Arguments { file, output, error }: &Arguments) -> Result<(), Error> {
+    check_recipe_output(&mut FileChecks::for_inputs([file]), output)?;
+    let fitted = with_progress(format!("haze: fitting {}", file.display()), || import_gradient(file, *error))?;
+    write_recipe(output, &fitted.recipe)?;
+    let rows = fitted.recipe.rows.len();
+    let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
+    let rows = if rows > 1 { format!(" in {rows} rows") } else { String::new() };
+    print_line!("{}: {stops} stops{rows}, at most {:.1}/255 off", output.display(), fitted.error)
+}

@@ -1,0 +1,44 @@
+//! `haze sprite`: arguments and dispatch of its subcommands.
+
+mod bake;
+mod check;
+mod export;
+mod import;
+mod light;
+mod six_way;
+
+use clap::{Args, Subcommand};
+
+use haze_export::output::Failures;
+
+#[derive(Args)]
+pub struct SpriteArguments {
+    #[command(subcommand)]
+    command: SpriteCommand,
+}
+
+#[derive(Subcommand)]
+enum SpriteCommand {
+    /// Bake every recipe to PNGs beside it: NAME.png, and for a sprite also NAME.detail.png with its depth and motion.
+    Bake(bake::Arguments),
+    /// Report visible flaws: colors instead of normals, normals of wrong length, green that points down, opaque
+    /// borders, premultiplied normals, a seam in the loop. Exits with 1 if there are any.
+    Check(check::Arguments),
+    /// Path-trace a sprite as a puff of steam, ash, … under a ring of lights, and write the result as one sheet.
+    Light(light::Arguments),
+    /// Write six-way maps as the two light maps that other tools use.
+    Export(export::Arguments),
+    /// Make a sprite from painted normals, heights, alpha or six-way light maps, given as one sheet or as numbered
+    /// frames.
+    Import(import::Arguments),
+}
+
+pub fn run(arguments: &SpriteArguments) -> Result<(), Failures> {
+    match &arguments.command {
+        SpriteCommand::Bake(arguments) => bake::run(arguments),
+        SpriteCommand::Export(arguments) => export::run(arguments).map_err(Failures::from),
+        SpriteCommand::Check(arguments) => check::run(arguments),
+        SpriteCommand::Light(arguments) => light::run(arguments).map_err(Failures::from),
+        SpriteCommand::Import(arguments) => import::run(arguments).map_err(Failures::from),
+    }
+}

@@ -1,0 +1,110 @@
+//! `haze sprite bake --six-way`: bakes sprites under light from six sides.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use clap::Args;
+use haze::{Error, FieldError};
+use haze_author::sprite::six_way::BakedSixWay;
+use haze_export::options::whole_number;
+use haze_export::output::{FileChecks, print_line};
+use haze_export::progress::with_changing_progress;
+use haze_export::recipe_files::{image_path, six_way_path};
+use haze_export::sprite_by_name::sprite_recipe;
+use haze_preset::{builtin, write_baked_png};
+
+use crate::bake_job::{PaintedPng, check_not_painted};
+use crate::medium_options::{MediumNumbers, medium_names};
+
+#[derive(Args)]
+pub struct SixWayArguments {
+    /// Also path-trace the sprites, filled with this medium, to NAME.six_way.png for `lighting: six_way`. Takes some
+    /// minutes.
+    #[arg(long, value_name = "MEDIUM", value_parser = medium_names(), num_args = 0..=1, default_missing_value = "ash")]
+    six_way: Option<String>,
+    #[command(flatten)]
+    numbers: MediumNumbers,
+    /// With --six-way: paths per pixel. The noise falls with their square root.
+    #[arg(long, default_value_t = 64, allow_hyphen_values = true)]
+    #[arg(value_parser = whole_number(1..=65536))]
+    samples: u32,
+}
+
+impl SixWayArguments {
+    /// Refuses bad options and outputs before anything is baked.
+    ///
+    /// # Errors
+    /// Names the option or the file.
+    pub fn check(&self, recipes: &[PathBuf], painted: PaintedPng) -> Result<(), Error> {
+        match &self.six_way {
+            None => match self.numbers.first_given() {
+                Some(option) => {
+                    let problem = "has no effect without --six-way";
+                    Err(FieldError::from_problem(option, problem, "--six-way as well").into())
+                }
+                None => Ok(()),
+            },
+            Some(name) => {
+                self.numbers.medium_of(name)?;
+                let mut files = FileChecks::for_inputs(recipes);
+                sprites(recipes).map(|path| six_way_path(&image_path(path))).try_for_each(|output| {
+                    files.check_output("output", &output, "png")?;
+                    check_not_painted(&output, painted)
+                })
+            }
+        }
+    }
+
+    /// Returns the recipes that are baked without light: with --six-way all but built-in sprites, which have no file.
+    pub fn recipe_files(&self, recipes: &[PathBuf]) -> Vec<PathBuf> {
+        let is_file = |path: &&PathBuf| self.six_way.is_none() || !is_builtin(path);
+        recipes.iter().filter(is_file).cloned().collect()
+    }
+
+    /// Bakes the maps of every sprite recipe, if they were asked for.
+    ///
+    /// # Errors
+    /// As [`sprite_recipe`], and if a file cannot be written.
+    pub fn bake_all(&self, recipes: &[PathBuf]) -> Result<(), Error> {
+        let Some(name) = &self.six_way else { return Ok(()) };
+        sprites(recipes).try_for_each(|path| self.bake(path, name))
+    }
+
+    fn bake(&self, path: &Path, name: &str) -> Result<(), Error> {
+        let (recipe, medium) = (sprite_recipe(path)?, self.numbers.medium_of(name)?);
+        let done = [const { AtomicU32::new(0) }; 2];
+        let what = || {
+            let [frame, sample] = done.each_ref().map(|count| count.load(Ordering::Relaxed) + 1);
+            let (frames, samples) = (recipe.frame_count(), self.samples);
+            format!("haze: tracing {}, frame {frame} of {frames}, path {sample} of {samples}", path.display())
+        };
+        let baked = with_changing_progress(what, || {
+            recipe.bake_six_way(&medium, self.samples, |frame, sample| {
+                done.iter().zip([frame, sample]).for_each(|(count, now)| count.store(now, Ordering::Relaxed));
+                Ok::<_, Error>(())
+            })
+        })?;
+        let BakedSixWay { picture: maps, intensity, color, anisotropy } = baked;
+        let output = six_way_path(&image_path(path));
+        print_line!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
+        write_baked_png(&output, &maps.into())?;
+        print_line!(
+            "  to look like {}: lighting six_way, diffuse.intensity {intensity:.2}, six_way_anisotropy {anisotropy:.2}, \
+             six_way_color {:.3},{:.3},{:.3}",
+            self.numbers.label_of(name),
+            color.x,
+            color.y,
+            color.z,
+        )
+    }
+}
+
+/// Returns the sprite recipes; noise has no six-way maps.
+fn sprites(recipes: &[PathBuf]) -> impl Iterator<Item = &Path> {
+    let is_sprite = |path: &&Path| is_builtin(path) || path.to_string_lossy().ends_with(".sprite.json");
+    recipes.iter().map(PathBuf::as_path).filter(is_sprite)
+}
+
+fn is_builtin(path: &Path) -> bool {
+    path.to_str().is_some_and(|name| builtin::find(builtin::SPRITES, name).is_some())
+}

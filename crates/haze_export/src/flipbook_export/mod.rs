@@ -1,0 +1,172 @@
+//! Flipbooks for engines: sheets of color, normals, motion vectors, fire and six-way light, which fit each other.
+
+mod fill;
+mod frame_layers;
+mod motion_fit;
+mod numbers;
+mod readme;
+mod sheets;
+
+use std::path::Path;
+
+use glam::UVec2;
+use haze::{Error, FieldError};
+use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::encoded;
+use haze_preset::{CompressionEffort, write_file, write_png};
+use image::DynamicImage;
+
+use crate::backend::Backend;
+use crate::engine::Engine;
+use crate::image_export::{ExportProgress, Frames, check_sheet, image_label, stopped_before_writing};
+use frame_layers::FrameLayers;
+use numbers::FlipbookNumbers;
+use sheets::Sheets;
+
+/// Choices of a flipbook.
+#[derive(Clone, Copy, Debug)]
+pub struct FlipbookOptions {
+    /// Engine that reads the flipbook.
+    pub engine: Engine,
+    /// Rows (`x`) and columns (`y`).
+    pub cells: UVec2,
+    /// Frames after the last that fade into the first ones, so that the flipbook loops. 0: none.
+    pub loop_fade: u32,
+    /// True for sheets of six-way light maps.
+    pub has_six_way: bool,
+}
+
+impl FlipbookOptions {
+    /// Checks the choices before anything is rendered or written.
+    ///
+    /// # Errors
+    /// [`Error::Field`] for a fade that is longer than the flipbook, and for sheets with too few cells or too many pixels;
+    /// [`Error::Io`] for sheets that do not fit into memory.
+    pub fn check(&self, shot: &Shot, frames: &Frames) -> Result<(), Error> {
+        let (count, fade) = (frames.count(), self.loop_fade);
+        if fade >= count {
+            let expected = format!("less than the number of frames, {count}");
+            return Err(FieldError::new("--loop", fade, expected).into());
+        }
+        if frames.range.end().checked_add(fade).is_none() {
+            let problem = format!("{fade} frames after {} are beyond the last frame", frames.range.end());
+            return Err(FieldError::from_problem("--loop", problem, format!("at most frame {}", u32::MAX)).into());
+        }
+        let bytes = sheets::bytes_per_pixel(frames.burns(shot, count + fade), self.has_six_way);
+        check_sheet(shot.size, frames, self.cells, bytes)
+    }
+}
+
+/// Files of a flipbook.
+pub struct FlipbookExport {
+    /// Sheets, by the part of their file names.
+    pub images: Vec<(&'static str, DynamicImage)>,
+    /// Numbers that a shader needs beside the sheets.
+    pub numbers: FlipbookNumbers,
+    readme: String,
+}
+
+/// Names of all files that a flipbook may have.
+pub const FILES: [&str; 8] = [
+    sheets::COLOR,
+    sheets::NORMALS,
+    sheets::MOTION,
+    sheets::EMISSION,
+    sheets::SIX_WAY[0],
+    sheets::SIX_WAY[1],
+    NUMBERS,
+    README,
+];
+
+const NUMBERS: &str = "flipbook.json";
+const README: &str = "README.md";
+
+impl FlipbookExport {
+    /// Renders a flipbook. `folder` is only named in errors.
+    ///
+    /// # Errors
+    /// As [`FlipbookOptions::check`]; errors of rendering; [`Error::Io`] if it was stopped.
+    pub async fn render(
+        backend: &Backend,
+        shot: &Shot,
+        frames: &Frames,
+        options: FlipbookOptions,
+        progress: &ExportProgress<'_>,
+        folder: &Path,
+    ) -> Result<Self, Error> {
+        options.check(shot, frames)?;
+        let (count, fade) = (frames.count(), options.loop_fade);
+        let all = count + fade;
+        let burns = frames.burns(shot, all);
+        let layers = async |index: u32| {
+            // Frames of the fade are rendered with those that they fade into.
+            let done = index + index.min(fade);
+            if !progress.goes_on(done, all) {
+                return Err(stopped_before_writing(folder, done, all));
+            }
+            let at = async |frame: u32, done: u32| {
+                let shot = frames.shot(shot, frames.range.start() + frame);
+                let layers = FrameLayers::render(backend, &shot, 1.0 / frames.rate, burns, options.has_six_way);
+                progress.show(image_label(done, all), layers).await
+            };
+            let layers = at(index, done).await?;
+            if index >= fade {
+                return Ok(layers);
+            }
+            // The frame after the last is the first, so that it follows the last.
+            let share = 1.0 - index as f32 / fade as f32;
+            Ok(layers.mixed(&at(count + index, done + 1).await?, share))
+        };
+        let mut sheets = Sheets::new(shot.size, options.cells);
+        // A frame is placed when the next one is known, for its motion.
+        let mut last = layers(0).await?;
+        let first_frame = encoded(&last.light, 1.0);
+        let mut last_frame = first_frame.clone();
+        for index in 1..count {
+            let next = layers(index).await?;
+            let next_frame = encoded(&next.light, 1.0);
+            sheets.place(index - 1, &last, [&last_frame, &next_frame]);
+            if index + 1 == count && fade == 0 {
+                // No frame follows: its motion is that from the frame before.
+                sheets.place(index, &next, [&last_frame, &next_frame]);
+            }
+            (last, last_frame) = (next, next_frame);
+        }
+        if fade > 0 || count == 1 {
+            sheets.place(count - 1, &last, [&last_frame, &first_frame]);
+        }
+        let made = sheets.encode(options.engine);
+        let numbers = FlipbookNumbers {
+            columns: options.cells.y,
+            rows: options.cells.x,
+            frames: count,
+            rate: frames.rate,
+            motion_scale: made.motion_scale,
+            six_way_intensity: made.six_way_intensity,
+        };
+        let readme = readme::readme(options.engine, &shot.preset.name, &numbers, &made.images);
+        Ok(Self { images: made.images, numbers, readme })
+    }
+
+    /// Writes the files into a folder.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for the first file that cannot be written.
+    pub fn write(&self, folder: &Path, effort: CompressionEffort) -> Result<(), Error> {
+        for (name, image) in &self.images {
+            write_png(&folder.join(name), image, effort)?;
+        }
+        // Numbers and strings always become JSON.
+        let numbers = serde_json::to_string_pretty(&self.numbers).unwrap_or_default() + "\n";
+        write_file(&folder.join(NUMBERS), numbers.as_bytes())?;
+        write_file(&folder.join(README), self.readme.as_bytes())
+    }
+
+    /// Returns the names of the files that are written.
+    pub fn files(&self) -> impl Iterator<Item = &'static str> {
+        self.images.iter().map(|(name, _)| *name).chain([NUMBERS, README])
+    }
+}
+
+#[cfg(test)]
+mod tests;

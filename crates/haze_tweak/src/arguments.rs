@@ -1,0 +1,102 @@
+//! Command line of the tweaker.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use eframe::egui;
+use glam::UVec2;
+use haze::Error;
+use haze_export::options::{AssetsArguments, parse_assignment, parse_size, with_option};
+
+use super::files::hot_reload::ShaderFolder;
+use super::files::persistence::{Layout, Persistence};
+use super::files::shared_look;
+use super::platform::file_dialog::Dialogs;
+use super::platform::{asset_loading, file_io, state_folder};
+use super::session::Session;
+use super::session::playback::Playback;
+use super::window::Start;
+use super::window::open::open;
+use crate::share_link;
+
+/// Arguments of the tweaker.
+#[derive(Args)]
+pub struct Arguments {
+    /// A built-in preset's name (see `haze preset list`), the path of a JSON file, or a link to a look, in quotes.
+    #[arg(default_value = "column")]
+    preset: PathBuf,
+    /// Size of the window in points. Default: the last size, or 1280x800, or 1000x640 where the CPU draws.
+    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
+    size: Option<UVec2>,
+    /// Sets a field of the preset, as in `haze render`. May be given more than once.
+    #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
+    set: Vec<(String, String)>,
+    /// Folder with shaders that replace the built-in ones of the same file names, reloaded when they change. A program
+    /// started by `cargo run` uses the `shaders` folder of its checkout.
+    #[arg(long, value_name = "DIR")]
+    shaders: Option<PathBuf>,
+    #[command(flatten)]
+    assets: AssetsArguments,
+    /// Write an image of the window once it has settled, then close it.
+    #[arg(long, value_name = "FILE.png")]
+    screenshot: Option<PathBuf>,
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        Self {
+            preset: "column".into(),
+            size: None,
+            set: Vec::new(),
+            shaders: None,
+            assets: AssetsArguments::default(),
+            screenshot: None,
+        }
+    }
+}
+
+/// Opens the window, and returns once it is closed.
+///
+/// # Errors
+/// Of the preset and its files; [`Error::NoDevice`] without a display or a driver.
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    // A file may have the name of a link.
+    let link = arguments.preset.to_str().filter(|_| !file_io::exists(&arguments.preset));
+    let link = link.and_then(share_link::fragment);
+    let mut session = match link {
+        Some(fragment) => shared_look::open(fragment, &link_folder(fragment))?,
+        None => Session::open(&arguments.preset, arguments.assets.folder()?)?,
+    };
+    for (field, value) in &arguments.set {
+        session.document.preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
+    }
+    session.document.preset.validate()?;
+    session.playback = Playback::of(&session.document.preset);
+    session.screenshot = arguments.screenshot.clone();
+    let shaders = match &arguments.shaders {
+        Some(folder) => asset_loading::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
+        None => ShaderFolder::of_checkout(),
+    };
+    // A screenshot must not depend on the stored layout, so that it is the same on every machine.
+    let state = state_folder::state(|name| std::env::var_os(name)).filter(|_| arguments.screenshot.is_none());
+    let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::read(folder));
+    if let Some(error) = error {
+        session.messages.error("layout", error);
+    }
+    let size = arguments.size.map(|size| size.as_vec2().to_array()).or(layout.window);
+    let persistence = state.map(|folder| Persistence::new(folder, &mut session));
+    let start = Start {
+        session,
+        shaders,
+        persistence,
+        layout,
+        has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)),
+    };
+    open(start, size.map(egui::Vec2::from))
+}
+
+/// Returns the folder for the ramps of a link.
+fn link_folder(fragment: &str) -> PathBuf {
+    let state = state_folder::state(|name| std::env::var_os(name)).unwrap_or_else(std::env::temp_dir);
+    state.join("links").join(shared_look::folder_name(fragment))
+}

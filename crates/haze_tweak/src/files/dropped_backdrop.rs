@@ -1,0 +1,68 @@
+//! Scenes and skies dropped on the window, or chosen: shown around the smoke from any folder.
+
+use std::path::{Path, PathBuf};
+
+use haze::{Error, FieldError};
+use haze_author::backdrop::Backdrop;
+use haze_core::settings::BackdropKind;
+use haze_preset::AssetFolders;
+
+use super::dropped_image::place_of;
+use crate::platform::{IS_PAGE, asset_loading, file_io};
+use crate::session::Session;
+
+/// Scene or sky that was loaded, and its name in the preset.
+pub struct DroppedBackdrop {
+    kind: BackdropKind,
+    name: String,
+    /// Folder that the name is relative to.
+    folder: PathBuf,
+    loaded: Backdrop,
+}
+
+impl DroppedBackdrop {
+    /// Reads a file in any folder.
+    ///
+    /// # Errors
+    /// Those of the file; if the preset's folders have another file of its name, which the name would stand for.
+    pub fn read(kind: BackdropKind, path: &Path, folders: &AssetFolders) -> Result<Self, Error> {
+        let elsewhere = || {
+            let path = file_io::absolute(path);
+            Some((path.parent()?.to_owned(), path.file_name()?.to_str()?.to_owned()))
+        };
+        let (folder, name) = place_of(path, folders).or_else(elsewhere).unwrap_or_default();
+        if let Ok(other) = folders.find(Path::new(&name))
+            && !file_io::is_same(&other, path)
+        {
+            let problem = format!("{} has the name of {}", path.display(), other.display());
+            return Err(FieldError::from_problem("dropped file", problem, "another name").into());
+        }
+        Ok(Self { kind, name, folder, loaded: asset_loading::backdrop_file(kind, path)? })
+    }
+
+    /// Shows it around the smoke, as one step that can be undone.
+    pub fn apply(self, session: &mut Session) {
+        let Self { kind, name, folder, loaded } = self;
+        if IS_PAGE {
+            return session.messages.info("file", format!("A page does not show {name}; the program does"));
+        }
+        let is_known = session.folders().candidate_paths(Path::new("")).any(|known| file_io::is_same(&known, &folder));
+        if !is_known {
+            session.backdrop_folders.push(folder);
+        }
+        let said = match (kind, &loaded.scene) {
+            (BackdropKind::Scene, Some(scene)) => format!("{name} is now the scene: {}", scene.description()),
+            _ => {
+                let mut systems = session.document.preset.systems.iter();
+                let is_dark = !systems.any(|system| system.settings.ambient.intensity > 0.0);
+                let smoke =
+                    if is_dark { ", but not the smoke, whose ambient intensity is 0" } else { " and the smoke" };
+                format!("{name} is now the sky. It lights the scene{smoke}")
+            }
+        };
+        session.backdrop.put(kind, &name, loaded);
+        *session.document.preset.environment.backdrop_name_mut(kind) = name;
+        session.messages.clear("backdrop");
+        session.messages.info("file", said);
+    }
+}

@@ -1,0 +1,50 @@
+//! Screenshot of the window, written to a file.
+
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui::{self, Ui};
+use haze::Error;
+use image::RgbImage;
+
+use crate::platform::file_io::{CompressionEffort, write_png};
+use crate::session::Session;
+
+/// Number of frames after which the window has settled.
+const SETTLED_FRAMES: u32 = 6;
+
+#[derive(Default)]
+pub struct Screenshot {
+    /// Number of frames that were shown.
+    frames: u32,
+    taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
+}
+
+impl Screenshot {
+    /// Takes the requested screenshot, and closes the window when it is written. Call once a frame.
+    pub fn advance(&mut self, ui: &Ui, session: &mut Session) {
+        let Some(path) = session.screenshot.clone() else { return };
+        self.frames += 1;
+        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(picture) = taken {
+            if let Err(error) = write(&path, &picture) {
+                session.messages.error("screenshot", error);
+            }
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if self.frames == SETTLED_FRAMES {
+            let (taken, context) = (self.taken.clone(), ui.ctx().clone());
+            ui.ctx().request_screenshot(move |picture| {
+                *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(picture);
+                context.request_repaint();
+            });
+        }
+        ui.ctx().request_repaint();
+    }
+}
+
+pub(super) fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
+    let [width, height] = picture.size.map(|side| side as u32);
+    let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
+    let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
+    write_png(path, &picture.into(), CompressionEffort::Small)
+}

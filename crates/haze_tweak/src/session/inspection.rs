@@ -1,0 +1,66 @@
+//! Values of a pixel, and ramp coordinates of the whole image, computed from texels read back from the GPU.
+
+use std::sync::Arc;
+
+use eframe::egui::{Response, Vec2};
+use glam::{UVec2, Vec3};
+use haze_core::formula::tonemap::tonemapped;
+use haze_reference::Probe;
+
+use super::ramp_survey::{RampPlace, RampSurvey};
+use crate::viewport_renderer::compared_side::ComparedSide;
+
+/// State of the inspector.
+#[derive(Default)]
+pub struct Inspection {
+    /// The values of the pixel under the pointer are shown.
+    pub is_on: bool,
+    /// A drag paints on the smoke, and the values would hide it.
+    pub is_painting: bool,
+    /// Pointer position over the image, in shares of its sides.
+    pub pointer: Option<Vec2>,
+    /// Pinned position.
+    pub pinned: Option<Vec2>,
+    /// Values of the pixel.
+    pub pixel_values: Option<PixelValues>,
+    /// Ramp coordinates of the whole image.
+    pub survey: Option<Arc<RampSurvey>>,
+    /// Place on a ramp. Smoke that samples it is highlighted in the image.
+    pub ramp_place: Option<RampPlace>,
+}
+
+/// Values of a pixel.
+pub struct PixelValues {
+    pub pixel: UVec2,
+    /// Image that the pixel belongs to, and the names of its systems.
+    pub side: ComparedSide,
+    pub names: Vec<String>,
+    pub probe: Probe,
+    /// Factor on the light before tonemapping.
+    pub exposure: f32,
+}
+
+impl Inspection {
+    /// Follows the pointer over the viewport. A click pins the position, or releases it.
+    pub fn point(&mut self, viewport: &Response) {
+        self.pointer = viewport.hover_pos().map(|at| (at - viewport.rect.min) / viewport.rect.size());
+        if self.is_on && viewport.clicked() {
+            self.pinned = if self.pinned.is_some() { None } else { self.pointer };
+        }
+    }
+
+    /// Returns the position to inspect.
+    pub fn place(&self) -> Option<Vec2> {
+        self.pinned.filter(|_| self.is_on).or(self.pointer)
+    }
+
+    pub fn toggle(&mut self) {
+        self.is_on = !self.is_on;
+        self.pinned = None;
+    }
+}
+
+/// Returns tonemapped light as an sRGB code.
+pub fn srgb_code(light: Vec3, exposure: f32) -> [u8; 3] {
+    tonemapped(light, exposure).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
+}

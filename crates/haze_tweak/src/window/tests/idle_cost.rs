@@ -1,0 +1,112 @@
+//! Cost of the window while it is used and while it is idle.
+
+use std::time::Instant;
+
+use eframe::egui::{Pos2, Rect, Role, Theme, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use image::RgbaImage;
+
+use crate::window::Window;
+use crate::window::testing::{picture, window};
+
+/// Opens a window whose viewport has this size.
+fn window_around(size: Vec2) -> Harness<'static, Window> {
+    let harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+    let room = Vec2::new(1000.0, 640.0) - harness.get_by_label("viewport").rect().size();
+    drop(harness);
+    window("column", size + room, Theme::Dark)
+}
+
+fn slider(harness: &Harness<'_, Window>, name: &str) -> Rect {
+    let mut rows = harness.get_all_by_label(name);
+    rows.find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect()
+}
+
+/// Returns the CPU time of this process over all threads, milliseconds. Other load on the machine does not change it.
+fn worked() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = stat.rsplit_once(')').map_or("", |(_, fields)| fields).split_whitespace().skip(11).take(2);
+    fields.map(|ticks| 10.0 * ticks.parse::<f64>().unwrap()).sum()
+}
+
+/// Drags a slider back and forth. Returns the frames per second after ten frames of warm-up, and the largest divisor of
+/// the resolution.
+fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
+    let rect = slider(harness, "thickness");
+    let at = |frame: usize| Pos2::new(rect.left() + 8.0 + (frame * 7 % 90) as f32, rect.center().y);
+    harness.drag_at(at(0));
+    let (mut start, mut before) = (Instant::now(), worked());
+    let mut coarsest = 1;
+    for frame in 0..frames + 10 {
+        if frame == 10 {
+            (start, before) = (Instant::now(), worked());
+        }
+        harness.hover_at(at(frame));
+        picture(harness);
+        coarsest = coarsest.max(harness.state().renderer().divisor());
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    println!("{:.0} ms of work a frame", (worked() - before) / frames as f64);
+    harness.drop_at(at(0));
+    harness.run_steps(2);
+    (frames as f64 / seconds, coarsest)
+}
+
+/// The result depends on the machine, which may be busy.
+#[test]
+#[ignore = "measurement; run it alone"]
+fn a_slider_is_dragged_at_15_frames_a_second() {
+    for size in [vec2(640.0, 360.0), vec2(1280.0 - 330.0, 800.0 - 190.0)] {
+        let mut harness = window_around(size);
+        let (rate, coarsest) = drag(&mut harness, 80);
+        println!("{size:?}: {rate:.1} frames a second, {coarsest} pixels each way");
+        assert!(rate >= 15.0 || size.x > 640.0, "{rate}");
+        assert_eq!(harness.state().renderer().divisor(), 1);
+    }
+}
+
+#[test]
+fn an_idle_window_draws_nothing_and_requests_no_repaint() {
+    let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
+    let drawn = |harness: &mut Harness<'_, Window>| {
+        picture(harness);
+        harness.state().renderer().render_stats().renders
+    };
+    drawn(&mut harness);
+    harness.run_steps(10);
+    let before = drawn(&mut harness);
+    assert!(!harness.ctx.has_requested_repaint());
+    // Widgets under a moving pointer are highlighted, but no smoke is drawn.
+    let rect = slider(&harness, "Exposure");
+    for step in 0..6 {
+        harness.hover_at(rect.left_top() + vec2(8.0 * step as f32, -6.0 * step as f32));
+        assert_eq!(drawn(&mut harness), before);
+    }
+    harness.state_mut().session_mut().document.preset.camera.fov += 5.0;
+    assert!(drawn(&mut harness) > before);
+}
+
+#[test]
+fn the_full_resolution_returns_when_everything_is_released() {
+    let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
+    let whole = picture(&mut harness);
+    // The status bar, where a drag changes nothing.
+    let at = Pos2::new(350.0, 476.0);
+    harness.drag_at(at);
+    harness.step();
+    harness.state().renderer().simulate_slow_frame();
+    let coarse = picture(&mut harness);
+    assert!(harness.state().renderer().divisor() > 1);
+    harness.drop_at(at);
+    harness.run_steps(3);
+    let again = picture(&mut harness);
+    let part = harness.get_by_label("viewport").rect().shrink(8.0);
+    let apart = |a: &RgbaImage, b: &RgbaImage| {
+        let pixels = (part.top() as u32..part.bottom() as u32)
+            .flat_map(|y| (part.left() as u32..part.right() as u32).map(move |x| (x, y)));
+        pixels.filter(|&(x, y)| a.get_pixel(x, y) != b.get_pixel(x, y)).count()
+    };
+    assert!(apart(&whole, &coarse) > 1000);
+    assert_eq!((harness.state().renderer().divisor(), apart(&whole, &again)), (1, 0));
+}
