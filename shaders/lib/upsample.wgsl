@@ -114,7 +114,7 @@ fn fitted_value(fit: GuidedFit, fade: f32) -> vec4f {
     let mean = fit.place / fit.total;
     let value = fit.value / fit.total;
     // Covariances. The added terms damp slopes that the texels hardly determine: the positions of the sixteen texels have a
-    // variance of 1/3, of which 0.02 is 6 %.
+    // variance of 1/3, and 0.02 is 6 % of that.
     let held = 0.05 * fade;
     let square = fit.squares / fit.total - mean * mean + vec3f(0.02, 0.02, held * held);
     let product = fit.products / fit.total - mean.xxy * mean.yzz;
@@ -183,7 +183,7 @@ fn carried_value(weights: vec4f, values: mat4x4f, slopes: mat4x4f, depths: vec4f
 
 // Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
 // surface_weights(). From 0.2 on, as with one texel of a fifth of the bilinear weight on the pixel's surface, the four suffice;
-// below a tenth of that, none of them saw the surface.
+// below a tenth of that, no texel saw the surface.
 fn four_texels_share(seen: f32) -> f32 {
     return smoothstep(0.02, 0.2, seen);
 }

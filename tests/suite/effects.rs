@@ -185,7 +185,8 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     // Particle files, at a time between two frames and past the end.
     |s, _| {
         (s.cache.path, s.cache.position) = (PARTICLES.into(), vec3(0.0, -0.5, -6.0));
-        (s.cache.fps, s.cache.after) = (3.0, EndBehavior::Loop);
+        s.cache.fps = 3.0;
+        s.cache.after = EndBehavior::Loop;
         // Large enough that the sampled mip level of the detail map still contains motion.
         s.settings.sprite.size = 4.0;
     },

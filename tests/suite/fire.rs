@@ -219,7 +219,8 @@ fn light(
 /// Settings and images of a fire, without flicker.
 fn steady_fire() -> (Settings, MaterialAssets) {
     let mut settings = Settings::default();
-    (settings.fire.intensity, settings.fire.flicker) = (4.0, 0.0);
+    settings.fire.intensity = 4.0;
+    settings.fire.flicker = 0.0;
     (settings, MaterialSources::default().load(ImageSource::BuiltIn).unwrap())
 }
 

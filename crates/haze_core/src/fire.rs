@@ -23,7 +23,7 @@ const FAINTEST: f32 = 0.004;
 /// Burning smoke whose light is estimated.
 #[derive(Clone, Copy, Debug)]
 pub struct FireLight<'a> {
-    /// All particles of the system, or a sample of them, as from
+    /// All particles of the system, or a sample, as from
     /// [`EmitterSnapshot::sample`](crate::frame::EmitterSnapshot::sample).
     pub particles: &'a [Particle],
     /// Number of particles that one of the sample stands for; 1 for all particles.
