@@ -64,10 +64,9 @@
 //! # Versions
 //! haze follows semantic versioning; before 1.0 the minor version takes the place of the major one. wgpu's and glam's types
 //! are part of the interface, so a new version of either that changes types comes with a new major version of haze;
-//! [`wgpu`] and [`glam`] are the versions in use. haze accepts two versions of glam: if a lock file gives its crates different ones,
-//! `cargo update --package glam@OLD --precise NEW` joins them. A new major version may add fields and variants; structs that are
-//! created with `..Default::default()` or `..FrameInput::new(…)`, and a `match` with a wildcard arm, compile with it as they are.
-//! Messages of errors may change in any version.
+//! [`wgpu`] and [`glam`] are the versions in use. A new major version may add fields and variants; structs that are created with
+//! `..Default::default()` or `..FrameInput::new(…)`, and a `match` with a wildcard arm, compile with it as they are. Messages of
+//! errors may change in any version.
 //!
 //! # Features
 //! - `preset` (default): [`preset`] and [`builtin`], and with them 1.7 MB of images. [`MaterialAssets::default`] needs neither.
@@ -170,7 +169,7 @@ pub mod settings {
     };
 }
 
-pub use glam;
+pub use haze_core::glam;
 pub use wgpu;
 
 /// Compiles the code in the documents as a test.

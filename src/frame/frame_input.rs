@@ -1,6 +1,6 @@
 //! Input of one frame.
 
-use glam::{Mat4, UVec2, Vec3};
+use haze_core::glam::{Mat4, UVec2, Vec3};
 use haze_core::settings::{BlendOrder, DebugView, Settings};
 
 use haze_core::frame::{Bounds, EmitterSnapshot, Light, Particle, View};

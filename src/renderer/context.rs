@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use glam::{UVec2, Vec3};
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::ramp::Ramp;
 use haze_core::error::Error;
+use haze_core::glam::{UVec2, Vec3};
 use haze_core::view_setup::Support;
 
 use super::auto::PathModel;

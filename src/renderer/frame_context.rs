@@ -1,6 +1,6 @@
 //! Resources of a frame that all its systems share.
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 use haze_core::view_setup::ViewGeometry;
 
 use super::context::Shared;

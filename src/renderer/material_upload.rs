@@ -1,12 +1,12 @@
 //! Upload of materials: sprite images, ramps and noise.
 
-use glam::UVec2;
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::Sprite;
 use haze_core::assets::sprite::alpha_bounds::AlphaBounds;
 use haze_core::error::FieldError;
+use haze_core::glam::UVec2;
 
 use super::gpu::Gpu;
 use super::gpu::capabilities::array_layers;

@@ -32,6 +32,7 @@ mod warm_up;
 use haze_core::assets::ramp_steps::RampSteps;
 use haze_core::error::{Error, FieldError};
 use haze_core::formula::shadow::SHADOWED_LIGHTS;
+use haze_core::glam::Vec3;
 use haze_core::settings::DebugView;
 use haze_core::view_setup::{AttachmentSet, ResolvedSettings, SmokeShadow, ViewGeometry};
 
@@ -312,7 +313,7 @@ impl Renderer {
         });
         let is_mapped = |light| frame.shadow_maps.iter().any(|map| map.projection.light == light);
         let shadow = SmokeShadow::new(
-            (&view, frame.up.normalize_or(glam::Vec3::Y)),
+            (&view, frame.up.normalize_or(Vec3::Y)),
             shared.max_volume_depth,
             frame.lights,
             is_mapped,

@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use glam::camera::rh::proj::directx::perspective;
-use glam::{Mat4, UVec2, Vec3};
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::error::Error;
 use haze_core::frame::{Particle, View};
+use haze_core::glam::camera::rh::proj::directx::perspective;
+use haze_core::glam::{Mat4, UVec2, Vec3};
 use haze_core::settings::{RenderPath, Settings, Traversal};
 
 use super::Renderer;

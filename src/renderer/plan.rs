@@ -1,8 +1,8 @@
 //! Plan of a system's passes and pipeline keys, decided from plain data before any device call.
 
-use glam::UVec2;
 use haze_core::assets::ramp_steps::RampSteps;
 use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::glam::UVec2;
 use haze_core::settings::{
     BlendOrder, DebugView, DepthSource, DiffuseMode, LightingResolution, RenderPath, Settings, Technique, Traversal,
     Upsample,

@@ -1,7 +1,7 @@
 //! Single-sampled copy of a host's multisampled depth buffer.
 
-use glam::UVec2;
 use haze_core::error::FieldError;
+use haze_core::glam::UVec2;
 use haze_core::view_setup::ViewGeometry;
 
 use super::context::Shared;

@@ -1,7 +1,7 @@
 //! Shadow of the smoke on a host's lit picture.
 
-use glam::{Mat4, Vec3};
 use haze_core::formula::uniforms::{LightUniform, ScreenShadowUniform};
+use haze_core::glam::{Mat4, Vec3};
 use haze_core::view_setup::{SmokeShadow, ViewGeometry, scene_light_uniforms};
 
 use super::context::Shared;

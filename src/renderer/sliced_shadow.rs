@@ -1,9 +1,9 @@
 //! Shadow of smoke on devices without compute shaders: the CPU adds up the density grid, and render passes march through it,
 //! slice by slice. `tiled/shadow_volume.rs` is the same by compute shaders.
 
-use glam::UVec3;
 use haze_core::formula::uniforms::{ShadowMarchUniform, SystemUniform};
 use haze_core::frame::Particle;
+use haze_core::glam::UVec3;
 use haze_core::view_setup::{SmokeShadow, cell_optical_depths, density_splat};
 
 use super::context::Shared;

@@ -1,12 +1,12 @@
 //! Validation of a frame for the GPU renderer.
 
-use glam::UVec2;
 use haze_core::error::FieldError;
 use haze_core::frame::validate_input::{
     validate_bounds_and_depth, validate_frame_numbers, validate_lights, validate_settings, validate_shadow_projections,
     validate_world_from_particles,
 };
 use haze_core::frame::{Particle, SpriteExtent, View};
+use haze_core::glam::UVec2;
 use haze_core::settings::{DepthSource, RenderPath, Technique};
 
 use super::context::Shared;

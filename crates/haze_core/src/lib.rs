@@ -8,3 +8,6 @@ pub mod formula;
 pub mod frame;
 pub mod settings;
 pub mod view_setup;
+
+// The one source of glam for the crates above, of which a host could otherwise get two versions.
+pub use glam;

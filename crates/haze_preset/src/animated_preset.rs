@@ -90,7 +90,7 @@ impl Preset {
 mod tests {
     use std::path::Path;
 
-    use glam::Vec3;
+    use haze_core::glam::Vec3;
 
     use super::*;
     use crate::{Ease, Flicker, KeyValue, Keyframe, MAX_KEYFRAMES, Track};

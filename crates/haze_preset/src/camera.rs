@@ -1,7 +1,7 @@
 //! Camera of a preset.
 
-use glam::camera::rh;
-use glam::{UVec2, Vec3};
+use haze_core::glam::camera::rh;
+use haze_core::glam::{UVec2, Vec3};
 
 use haze_core::frame::View;
 use haze_core::settings::settings;

@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Component, Path};
 
-use glam::Vec3;
+use haze_core::glam::Vec3;
 
 use haze_core::settings::{BackdropKind, choice, settings};
 

@@ -243,7 +243,7 @@ mod tests {
     use std::io;
     use std::ops::RangeInclusive;
 
-    use glam::Vec3;
+    use haze_core::glam::Vec3;
 
     use super::*;
     use haze_core::assets::ramp::RampRole;
@@ -283,7 +283,7 @@ mod tests {
         let loaded = names.load(ImageSource::Reader(&mut read));
         // Built-in images are not asked for.
         assert_eq!(asked, [Path::new("packed/own.png")]);
-        assert_eq!(loaded.unwrap().diffuse_ramp.size(), glam::UVec2::new(2, 1));
+        assert_eq!(loaded.unwrap().diffuse_ramp.size(), haze_core::glam::UVec2::new(2, 1));
         let absent =
             names.load(ImageSource::Reader(&mut |_| Err(io::ErrorKind::NotFound.into()))).unwrap_err().to_string();
         assert!(absent.starts_with("material.diffuse_ramp: packed/own.png: "), "{absent}");

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path};
 
-use glam::Vec3;
+use haze_core::glam::Vec3;
 use haze_core::settings::{choice, settings};
 
 use super::animation::MAX_TIME;

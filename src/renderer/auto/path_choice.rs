@@ -112,7 +112,7 @@ impl PathChooser {
 
 #[cfg(test)]
 mod tests {
-    use glam::UVec2;
+    use haze_core::glam::UVec2;
 
     use super::*;
     use haze_core::settings::Technique;

@@ -1,7 +1,7 @@
 //! Cost model of both accumulation paths.
 
-use glam::UVec2;
 use haze_core::error::FieldError;
+use haze_core::glam::UVec2;
 use haze_core::settings::Technique;
 
 use super::workload::PathWorkload;

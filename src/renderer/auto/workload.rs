@@ -1,6 +1,6 @@
 //! Estimate of a system's accumulation workload from a sample of its sprites.
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 
 use haze_core::frame::Particle;
 use haze_core::settings::{BlendOrder, Settings, Technique, Traversal};

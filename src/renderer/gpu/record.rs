@@ -1,5 +1,7 @@
 //! Recording helpers: passes that haze begins itself, and buffers.
 
+use haze_core::glam::UVec2;
+
 use super::timing::Timing;
 
 /// Returns a color attachment that is cleared to zero.
@@ -43,7 +45,7 @@ pub(crate) fn begin_pass<'a>(
 }
 
 /// Restricts a pass to a rectangle of its targets.
-pub(crate) fn set_viewport_and_scissor(pass: &mut wgpu::RenderPass<'_>, origin: glam::UVec2, size: glam::UVec2) {
+pub(crate) fn set_viewport_and_scissor(pass: &mut wgpu::RenderPass<'_>, origin: UVec2, size: UVec2) {
     pass.set_viewport(origin.x as f32, origin.y as f32, size.x as f32, size.y as f32, 0.0, 1.0);
     pass.set_scissor_rect(origin.x, origin.y, size.x, size.y);
 }

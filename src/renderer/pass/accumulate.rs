@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 use haze_core::settings::{AccumulationFormat, BlendOrder, NormalEncoding};
 use haze_core::view_setup::AttachmentSet;
 

@@ -3,8 +3,8 @@
 //! Reads: particles; the system's uniforms.
 //! Writes: optical depths across the cells, in fixed-point steps.
 
-use glam::UVec2;
 use haze_core::formula::uniforms::SplatUniform;
+use haze_core::glam::UVec2;
 
 use super::groups::Groups;
 use crate::renderer::gpu::binding::{READ_BUFFER, WRITTEN_BUFFER, uniform};

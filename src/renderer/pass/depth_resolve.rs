@@ -5,7 +5,7 @@
 //! Blend: none.
 //! Source: own; see `shaders/depth_resolve.wgsl`.
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{RenderPipelineDescription, bool_constant, read_only_depth};

@@ -4,8 +4,8 @@
 //! Reads: optical depths across the cells.
 //! Writes: texture of the density; optical depths towards the lights; openness to sky and ground.
 
-use glam::UVec3;
 use haze_core::formula::uniforms::ShadowMarchUniform;
+use haze_core::glam::UVec3;
 
 use crate::renderer::gpu::binding::{READ_BUFFER, SAMPLER, texture, uniform, written_texture};
 use crate::renderer::gpu::frame_encoder::FrameEncoder;

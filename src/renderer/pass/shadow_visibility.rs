@@ -3,7 +3,7 @@
 //! Reads: shadow maps of the lights.
 //! Writes: visibility of the lights, in blocks of the volume.
 
-use glam::UVec3;
+use haze_core::glam::UVec3;
 
 use crate::renderer::gpu::binding::written_texture;
 use crate::renderer::gpu::frame_encoder::FrameEncoder;

@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use glam::UVec2;
 use haze_core::error::Error;
+use haze_core::glam::UVec2;
 
 use super::groups::Groups;
 use crate::renderer::gpu::binding::written_texture;

@@ -4,8 +4,8 @@
 //! Writes: accumulation target.
 //! Source: OTEE "Accumulating the particles"; Porter and Duff, "Compositing digital images", 1984.
 
-use glam::UVec2;
 use haze_core::formula::uniforms::TilesUniform;
+use haze_core::glam::UVec2;
 use haze_core::settings::{AccumulationFormat, NormalEncoding};
 use haze_core::view_setup::{AttachmentSet, MAX_TARGET_ATTACHMENTS};
 

@@ -3,8 +3,8 @@
 //! Reads: sprite lists of the bins, sprites, rectangles, reduced depth or the host's own.
 //! Writes: one bit per sprite and tile.
 
-use glam::UVec2;
 use haze_core::formula::uniforms::TilesUniform;
+use haze_core::glam::UVec2;
 
 use super::groups::Groups;
 use super::sprite_instances::SpriteKey;

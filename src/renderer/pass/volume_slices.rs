@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{UVec2, UVec3};
+use haze_core::glam::{UVec2, UVec3};
 
 use crate::renderer::gpu::frame_encoder::FrameEncoder;
 use crate::renderer::gpu::pipeline::{Constant, RenderPipelineDescription, color_target};

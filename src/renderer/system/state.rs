@@ -1,9 +1,9 @@
 //! State of one particle system in a renderer: its buffers, its targets, and its passes of the current frame.
 
-use glam::{UVec2, Vec2, Vec3};
 use haze_core::assets::material_assets::MaterialInfo;
 use haze_core::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use haze_core::frame::{Bounds, Particle};
+use haze_core::glam::{UVec2, Vec2, Vec3};
 use haze_core::settings::{RenderPath, Technique};
 use haze_core::view_setup::{
     LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,

@@ -1,6 +1,6 @@
 //! Textures that one system is accumulated into and lit from.
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 use haze_core::settings::DepthSource;
 use haze_core::view_setup::{AttachmentSet, ResolvedSettings};
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 use haze_core::settings::AccumulationFormat;
 use haze_core::view_setup::AttachmentSet;
 use wgpu::TextureUsages;

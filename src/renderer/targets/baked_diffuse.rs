@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use glam::UVec2;
 use haze_core::formula::diffuse_bake::baked_size_and_layers;
+use haze_core::glam::UVec2;
 use haze_core::settings::DiffuseMode;
 
 use super::texture_allocator::TextureAllocator;

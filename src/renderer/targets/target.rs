@@ -1,6 +1,6 @@
 //! Targets of texel passes.
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 
 use haze_core::formula::smoke_tiles::CELL_SIDE;
 use haze_core::frame::MAX_LIGHTS;

@@ -1,6 +1,6 @@
 //! Views of a system's targets, for tools and a host's own passes.
 
-use glam::{IVec2, UVec2};
+use haze_core::glam::{IVec2, UVec2};
 
 use haze_core::view_setup::AttachmentSet;
 

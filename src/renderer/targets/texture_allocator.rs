@@ -1,6 +1,6 @@
 //! Creation of target textures.
 
-use glam::UVec2;
+use haze_core::glam::UVec2;
 
 /// Creates textures and counts their bytes.
 pub(super) struct TextureAllocator<'a> {

@@ -4,8 +4,8 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use glam::UVec2;
 use haze_core::error::Error;
+use haze_core::glam::UVec2;
 use haze_core::view_setup::MAX_TARGET_ATTACHMENTS;
 
 use crate::renderer::gpu::pipeline::{PipelineStore, Shader};

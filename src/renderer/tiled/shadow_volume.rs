@@ -1,7 +1,7 @@
 //! Density grid of a frame, optical depths towards its lights, and the splats of its systems.
 
-use glam::UVec2;
 use haze_core::formula::uniforms::{ShadowMarchUniform, SplatUniform};
+use haze_core::glam::UVec2;
 use haze_core::view_setup::SmokeShadow;
 
 use super::storage_buffers::storage;

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::UVec2;
 use haze_core::formula::tiles::{BITS_PER_WORD, run_count};
 use haze_core::formula::uniforms::TilesUniform;
+use haze_core::glam::UVec2;
 
 use super::storage_buffers::WORD_BYTES;
 use super::tile_buffers::{Capacity, ParticleRange, TileBuffers};

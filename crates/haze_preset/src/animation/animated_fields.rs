@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
-use glam::Vec3;
+use haze_core::glam::Vec3;
 use haze_core::settings::{BackdropKind, Choice, Curve, FieldVisitor, Fields, ImageRole, PathStep, write_field_path};
 
 use super::interpolation::Kind;

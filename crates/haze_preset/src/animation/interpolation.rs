@@ -3,7 +3,7 @@
 //! `smooth` is a cubic Hermite curve through each component, with the slopes of Fritsch and Butland, "A Method for Constructing
 //! Local Monotone Piecewise Cubic Interpolants", 1984: the value never leaves the range of the two keyframes around it.
 
-use glam::Vec3;
+use haze_core::glam::Vec3;
 
 use super::keyframe::{Ease, KeyValue, Keyframe};
 

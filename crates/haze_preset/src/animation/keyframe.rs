@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use glam::Vec3;
+use haze_core::glam::Vec3;
 use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 
 use haze_core::settings::{FieldValue, choice};
