@@ -16,6 +16,8 @@ use super::suites::Suite;
 /// Times of the bare passes: milliseconds per fragment of an unlit disc, by format, and a row for every case.
 pub struct Limits {
     pub floor: HashMap<AccumulationFormat, f64>,
+    /// Bytes that a copy reads and writes per millisecond; `None` if it was not measured.
+    pub copy_rate: Option<f64>,
     pub rows: Vec<Row>,
     /// Number of timestamps that were reversed or zero.
     pub discarded: u64,
@@ -53,6 +55,7 @@ pub fn measure(gpu: &Headless, keepalive: &ClockKeepalive<'_>, size: UVec2, quic
         }
     }
     let mut floor = HashMap::new();
+    let mut copy_rate = None;
     let mut rows = Vec::new();
     for (case, times) in cases.iter().zip(&mut times) {
         let Some(gpu_ms) = Milliseconds::of(times) else { continue };
@@ -60,6 +63,9 @@ pub fn measure(gpu: &Headless, keepalive: &ClockKeepalive<'_>, size: UVec2, quic
         if let Some(format) = case.format {
             // The first case of a format sets its floor.
             floor.entry(format).or_insert(per_fragment);
+        }
+        if matches!(case.work, Work::Copy { .. }) {
+            copy_rate = Some(case.bytes as f64 / gpu_ms.median);
         }
         let clock = if bench.is_timed(&case.work) { Clock::Gpu } else { Clock::Wall };
         let rate = (case.fragments > 0).then(|| case.fragments as f64 / gpu_ms.median * 1.0e-6);
@@ -73,7 +79,7 @@ pub fn measure(gpu: &Headless, keepalive: &ClockKeepalive<'_>, size: UVec2, quic
             ..Row::of(Suite::Limits, case.name.clone(), size, clock, gpu_ms)
         });
     }
-    Ok(Limits { floor, rows, discarded })
+    Ok(Limits { floor, copy_rate, rows, discarded })
 }
 
 /// Lists the cases. The first case of every format is its floor: an unlit disc.

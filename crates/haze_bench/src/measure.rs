@@ -38,6 +38,8 @@ pub struct CaseBench<'a> {
     timing: Option<Timing>,
     /// Floor of the time per fragment, milliseconds, by format.
     pub limits: HashMap<AccumulationFormat, f64>,
+    /// Bytes per millisecond of a copy.
+    pub copy_rate: Option<f64>,
     /// Longest time that a frame may take; cases with slower frames are left out.
     longest: Duration,
     /// Milliseconds per unit of work, by kind of work, of the cases measured so far.
@@ -67,13 +69,16 @@ impl<'a> CaseBench<'a> {
         let context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
         // Without this feature the passes that light the smoke have no timestamps.
         let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+        let is_software = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         Self {
-            timing: context.timing().filter(|_| is_whole),
-            is_software: gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+            // lavapipe's timestamps of compute passes leave their work out.
+            timing: context.timing().filter(|_| is_whole && !is_software),
+            is_software,
             gpu,
             keepalive,
             context,
             limits: HashMap::new(),
+            copy_rate: None,
             longest,
             costs: HashMap::new(),
             discarded: 0,
@@ -188,7 +193,12 @@ impl<'a> CaseBench<'a> {
                 self.costs.insert(case.work.0.clone(), ms / case.work.1);
                 return Ok(Err(seconds(ms)));
             }
-            Some(_) => {}
+            Some(SmokeTimes { ms, .. }) => {
+                let written = target_bytes(&offscreen, &case.shot);
+                if let Some(reason) = self.copy_rate.and_then(|rate| impossible_time(ms, written, rate)) {
+                    return Ok(Err(reason));
+                }
+            }
         }
         let (quality, picture) = reference.compare(self.gpu, &offscreen, &case.shot)?;
         Ok(Ok((RunningCase { case, offscreen, quality, times: Vec::new(), passes: BTreeMap::new() }, picture)))
@@ -198,18 +208,14 @@ impl<'a> CaseBench<'a> {
     fn frame(&mut self, offscreen: &mut OffscreenRenderer, shot: &Shot) -> Result<Option<SmokeTimes>, Error> {
         let Some(timing) = self.timing.clone() else {
             let _pause = self.keepalive.pause();
-            let ms = offscreen.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
-            return Ok(Some(SmokeTimes { ms, passes: Vec::new() }));
+            let taken = offscreen.smoke_time(shot, &[DebugView::Final], |encoder| self.gpu.submit(encoder))?;
+            return Ok(Some(SmokeTimes { ms: taken.as_secs_f64() * 1000.0, passes: Vec::new() }));
         };
         let Some(by_pass) = self.timed_frame(&timing, offscreen, shot, TimingDetail::Passes)? else { return Ok(None) };
-        let mut ms = by_pass.smoke_ms();
-        if !self.is_software {
-            // Measuring each pass slows a GPU down, so the whole frame is measured in another one.
-            let Some(times) = self.timed_frame(&timing, offscreen, shot, TimingDetail::Frame)? else { return Ok(None) };
-            ms = times.smoke_ms();
-        }
+        // Measuring each pass slows a GPU down, so the whole frame is measured in another one.
+        let Some(whole) = self.timed_frame(&timing, offscreen, shot, TimingDetail::Frame)? else { return Ok(None) };
         let passes = by_pass.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
-        Ok(Some(SmokeTimes { ms: f64::from(ms), passes }))
+        Ok(Some(SmokeTimes { ms: f64::from(whole.smoke_ms()), passes }))
     }
 
     /// Draws a frame with timestamps; `None` if the GPU returned no valid ones in [`MAX_TRIES`] frames.
@@ -289,6 +295,69 @@ impl<'a> CaseBench<'a> {
     }
 }
 
+/// Returns the bytes of the accumulation targets of the last frame, each written once; 0 on the path `forward`.
+fn target_bytes(offscreen: &OffscreenRenderer, shot: &Shot) -> u64 {
+    let texels = offscreen.renderer().counts().texels;
+    let format = shot.preset.systems.first().map(|system| system.settings.accumulate.format);
+    texels * format.map_or(0, |format| u64::from(bytes(format)))
+}
+
+/// Returns the reason to discard a time in which the device cannot have written so many bytes: some drivers' timestamps
+/// leave work out. `rate`: bytes per millisecond of a copy, which reads as much as it writes.
+fn impossible_time(ms: f64, written: u64, rate: f64) -> Option<String> {
+    let least = written as f64 / rate;
+    (ms < least).then(|| {
+        format!("the timestamps give {ms:.4} ms, but writing its {written} bytes takes {least:.4} ms on this adapter")
+    })
+}
+
 fn median(times: &[f64]) -> f64 {
     Milliseconds::of(&mut times.to_vec()).map_or(0.0, |ms| ms.median)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+    use haze_core::settings::Traversal;
+
+    use super::*;
+    use crate::sprite_shots::{layers, sprite_count};
+    use crate::suite::{at_scale, changed};
+
+    #[test]
+    fn a_thousand_layers_take_many_times_as_long_as_four() {
+        let features = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
+        let gpu = Headless::with(wgpu::Limits::default(), features).unwrap();
+        let keepalive = ClockKeepalive::new(&gpu).unwrap();
+        let mut bench = CaseBench::new(&gpu, &keepalive, Duration::from_secs(60));
+        let shots = [4, 1024].map(|deep| {
+            let shot = layers(UVec2::new(192, 108), sprite_count(deep), 0.02).unwrap();
+            changed(&shot, |settings| {
+                at_scale(RenderPath::Tiled, 1)(settings);
+                settings.accumulate.layers = Traversal::All;
+            })
+        });
+        let mut shortest = [f64::INFINITY; 2];
+        for (shot, shortest) in shots.iter().zip(&mut shortest) {
+            let mut offscreen = OffscreenRenderer::new(&bench.context, false).unwrap();
+            offscreen.warm_up(shot).unwrap();
+            offscreen.set_timing(bench.timing.as_ref()).unwrap();
+            for _ in 0..8 {
+                let times = bench.frame(&mut offscreen, shot).unwrap().expect("a valid time");
+                *shortest = shortest.min(times.ms);
+            }
+        }
+        assert!(shortest[1] > 20.0 * shortest[0], "{shortest:?} ms");
+    }
+
+    #[test]
+    fn a_time_too_short_for_its_bytes_is_discarded_with_the_reason() {
+        // A copy of 1 GB/s, that is 1e6 bytes a millisecond.
+        assert_eq!(impossible_time(2.0, 2_000_000, 1.0e6), None);
+        let reason = impossible_time(0.015, 2_000_000, 1.0e6).unwrap();
+        assert_eq!(
+            reason,
+            "the timestamps give 0.0150 ms, but writing its 2000000 bytes takes 2.0000 ms on this adapter"
+        );
+    }
 }

@@ -67,7 +67,8 @@ pub struct Adapter {
 pub enum Clock {
     /// GPU timestamps of haze's own passes.
     Gpu,
-    /// Wall time of the whole frame, because the adapter has no timestamps.
+    /// Wall time of the smoke, from submission to completion: on software adapters, whose timestamps leave work out, and on
+    /// adapters without timestamps.
     Wall,
     /// Time of one CPU core.
     Cpu,

@@ -132,7 +132,9 @@ impl Arguments {
         let limits = with_progress("haze: measuring the limits of this adapter".into(), || {
             limits::measure(gpu, keepalive, size, self.quick)
         })?;
-        (bench.limits, bench.discarded) = (limits.floor, limits.discarded);
+        bench.limits = limits.floor;
+        bench.copy_rate = limits.copy_rate;
+        bench.discarded = limits.discarded;
         if matches!(self.suite, Suite::All | Suite::Limits) {
             bench.rows.extend(limits.rows);
         }

@@ -72,6 +72,13 @@ struct SizedTargets {
     pictures: [Option<wgpu::Texture>; DebugView::ALL.len()],
 }
 
+/// Part of a frame that is measured by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FramePart {
+    Scene,
+    Smoke,
+}
+
 /// Inputs of the scene's image; the scene is redrawn if they change.
 #[derive(Clone, Debug, PartialEq)]
 struct SceneInputs {
@@ -165,6 +172,43 @@ impl OffscreenRenderer {
         shot: &Shot,
         stages: &[DebugView],
     ) -> Result<(), Error> {
+        self.record_parts(encoder, shot, stages, |_, _| Ok(()))
+    }
+
+    /// Draws a frame and waits for the device after each part of it. Returns the wall time of the smoke alone, from
+    /// submission to completion. `submit` submits an encoder and waits until the device is done.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record), and those of `submit`.
+    pub fn smoke_time(
+        &mut self,
+        shot: &Shot,
+        stages: &[DebugView],
+        mut submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
+    ) -> Result<Duration, Error> {
+        let device = self.context.device.clone();
+        let new_encoder = || device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut smoke_time = Duration::ZERO;
+        self.record_parts(&mut new_encoder(), shot, stages, |encoder, part| {
+            let recorded = std::mem::replace(encoder, new_encoder());
+            let started = Instant::now();
+            submit(recorded)?;
+            if part == FramePart::Smoke {
+                smoke_time += started.elapsed();
+            }
+            Ok(())
+        })?;
+        Ok(smoke_time)
+    }
+
+    /// Records a frame, and calls `end_part` after each part of it.
+    fn record_parts(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        shot: &Shot,
+        stages: &[DebugView],
+        mut end_part: impl FnMut(&mut wgpu::CommandEncoder, FramePart) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         let shot = &*shot.at_its_time();
         shot.preset.validate()?;
         self.upload(&shot.materials)?;
@@ -228,7 +272,9 @@ impl OffscreenRenderer {
             debug_views: stages,
             ..FrameInput::new(view, scene_depth)
         };
+        end_part(encoder, FramePart::Scene)?;
         self.renderer.prepare_shadow(encoder, &frame)?;
+        end_part(encoder, FramePart::Smoke)?;
         let scene_inputs = SceneInputs {
             environment: shot.preset.environment.clone(),
             backdrop: shot.backdrop.clone(),
@@ -241,17 +287,23 @@ impl OffscreenRenderer {
             sized.scene_inputs = Some(scene_inputs);
         }
         scene.shade(encoder, &sized.targets, self.renderer.scene_shadow_bind_group());
-        self.renderer.prepare(encoder, &frame)?;
         for &stage in stages {
             let picture = sized.pictures[stage as usize]
                 .get_or_insert_with(|| texture(device, "demo picture", size, COLOR_FORMAT));
-            // Debug views other than the final image are shown on black.
-            let mut load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
             if stage == DebugView::Final {
                 let color = &sized.targets.color;
                 encoder.copy_texture_to_texture(color.as_image_copy(), picture.as_image_copy(), color.size());
-                load = wgpu::LoadOp::Load;
             }
+        }
+        end_part(encoder, FramePart::Scene)?;
+        self.renderer.prepare(encoder, &frame)?;
+        for &stage in stages {
+            let Some(picture) = &sized.pictures[stage as usize] else { continue };
+            // Debug views other than the final image are shown on black.
+            let load = match stage {
+                DebugView::Final => wgpu::LoadOp::Load,
+                _ => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            };
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("smoke"),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -269,7 +321,7 @@ impl OffscreenRenderer {
             });
             self.renderer.render_debug_view(&mut pass, stage);
         }
-        Ok(())
+        end_part(encoder, FramePart::Smoke)
     }
 
     /// Forces the scene to be redrawn in the next frame. Call it if the last recorded encoder was dropped without being

@@ -1,4 +1,4 @@
-//! Cost tab: GPU time by pass, what is drawn, memory by use, and a budget.
+//! Cost tab: time of the smoke by pass, what is drawn, memory by use, and a budget.
 
 use std::collections::HashSet;
 
@@ -13,6 +13,7 @@ use crate::session::Session;
 use crate::viewport_renderer::RenderStats;
 use crate::viewport_renderer::cached_render::set_scale;
 use crate::viewport_renderer::frame_timings::{FrameTimings, MAX_KEPT_IMAGES};
+use crate::viewport_renderer::smoke_times::TimeSource;
 
 /// Height of the plot, points.
 const PLOT: f32 = 120.0;
@@ -43,11 +44,11 @@ fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
 
 /// Draws the time of each pass, and the stacked times of the last images.
 fn times(ui: &mut Ui, timings: &FrameTimings) {
-    if timings.stats.is_timed {
-        ui.label("GPU time of the smoke by pass");
-    } else {
-        ui.label("CPU time of each frame (this device cannot measure GPU time)");
-    }
+    ui.label(match timings.stats.time_source {
+        TimeSource::Timestamps => "GPU time of the smoke by pass",
+        TimeSource::WallTime => "Wall time of the smoke (this adapter is the CPU)",
+        TimeSource::CpuTime => "CPU time of each frame (this device cannot measure GPU time)",
+    });
     plot(ui, timings);
     egui::Grid::new("passes").num_columns(3).min_col_width(0.0).striped(true).show(ui, |ui| {
         for (index, name) in timings.names.iter().enumerate() {
@@ -104,8 +105,8 @@ fn plot(ui: &mut Ui, timings: &FrameTimings) {
 fn budget(ui: &mut Ui, session: &mut Session) {
     let timings = &mut session.timings;
     let hint = "Lowers the resolution of the smoke until it meets the budget. The preset does not change.";
-    ui.add_enabled_ui(timings.stats.is_timed, |ui| {
-        let text = format!("Keep GPU time under {} ms", timings.budget.milliseconds);
+    ui.add_enabled_ui(timings.stats.time_source != TimeSource::CpuTime, |ui| {
+        let text = format!("Keep the smoke under {} ms", timings.budget.milliseconds);
         ui.checkbox(&mut timings.is_held, text)
             .on_hover_text(hint)
             .on_disabled_hover_text("This device cannot measure GPU time");
@@ -219,6 +220,7 @@ fn size(bytes: u64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use eframe::wgpu;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
 
@@ -249,7 +251,7 @@ mod tests {
         harness.get_by_label("Cost").click();
         settle(&mut harness);
         let timings = &harness.state_mut().session_mut().timings;
-        assert!(timings.stats.is_timed, "lavapipe tells the time");
+        assert_eq!(timings.stats.time_source, TimeSource::Timestamps);
         let names = timings.names.clone();
         let memory = timings.stats.memory;
         let of_shadow = ["density_splat", "shadow_visibility", "shadow_march"];
@@ -293,7 +295,7 @@ mod tests {
         session.timings.budget = haze_core::settings::Budget { milliseconds: 0.05, ..Default::default() };
         harness.run_steps(2);
         assert_eq!(scale(&mut harness), None);
-        harness.get_by_label("Keep GPU time under 0.05 ms").click();
+        harness.get_by_label("Keep the smoke under 0.05 ms").click();
         settle(&mut harness);
         let of_preset = before.systems[0].settings.accumulate.scale;
         assert_eq!(scale(&mut harness), Some(8), "the coarsest that the budget allows");
@@ -302,17 +304,29 @@ mod tests {
         settle(&mut harness);
         assert_eq!(harness.state_mut().session_mut().document.preset.systems[0].settings.accumulate.scale, 8);
         // Without the budget, the preset's scale is shown again.
-        harness.get_by_label("Keep GPU time under 0.05 ms").click();
+        harness.get_by_label("Keep the smoke under 0.05 ms").click();
         settle(&mut harness);
         assert_eq!(scale(&mut harness), None);
     }
 
     #[test]
-    fn without_gpu_timestamps_the_tab_states_that_it_shows_cpu_time() {
+    fn on_a_cpu_adapter_the_tab_shows_the_wall_time_of_the_smoke() {
         let mut harness = window("column", vec2(1000.0, 700.0), egui::Theme::Dark);
         harness.get_by_label("Cost").click();
         settle(&mut harness);
-        assert!(!harness.state_mut().session_mut().timings.stats.is_timed);
-        harness.get_by_label_contains("CPU time");
+        let timings = &harness.state_mut().session_mut().timings;
+        assert_eq!((timings.stats.time_source, &timings.names[..]), (TimeSource::WallTime, &["Smoke"][..]));
+        assert!(timings.mean(0) > 0.0);
+        harness.get_by_label_contains("Wall time of the smoke");
+    }
+
+    #[test]
+    fn without_timestamps_a_gpu_shows_the_cpu_time_of_frames() {
+        let features = wgpu::Features::empty();
+        let mut adapter = wgpu::AdapterInfo::new(wgpu::DeviceType::DiscreteGpu, wgpu::Backend::Vulkan);
+        assert_eq!(TimeSource::of(&adapter, features), TimeSource::CpuTime);
+        assert_eq!(TimeSource::of(&adapter, wgpu::Features::TIMESTAMP_QUERY), TimeSource::Timestamps);
+        adapter.device_type = wgpu::DeviceType::Cpu;
+        assert_eq!(TimeSource::of(&adapter, wgpu::Features::TIMESTAMP_QUERY), TimeSource::WallTime);
     }
 }

@@ -76,7 +76,7 @@ pub fn labels(ui: &Ui, rect: egui::Rect, session: &Session) {
     let took = took.map(|took| format!("   {:.0} ms on the CPU", 1.0e3 * took.as_secs_f32()));
     let of_second = if *against == CompareWith::Reference { took } else { of_second };
     let second = format!("B  {}", against.name());
-    let what = "GPU time of the smoke, if the device can measure it";
+    let what = "Time of the smoke, if the device can measure it";
     text_plate(ui, rect, egui::Align2::LEFT_BOTTOM, &(first + &of_first.unwrap_or_default())).on_hover_text(what);
     let place = text_plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
     let above = rect.with_max_y(place.rect.top());

@@ -1,10 +1,13 @@
 //! Rendered image of a shot, kept until another shot is requested.
 
+use std::time::Duration;
+
 use eframe::egui::epaint::ViewportInPixels;
 use eframe::wgpu;
 use glam::{UVec2, Vec2};
 use haze::Error;
 use haze_core::settings::{DebugView, DepthSource};
+use haze_demo::headless::WAIT_LIMIT;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::{TonemapBindGroup, TonemapUniform};
@@ -36,6 +39,10 @@ pub struct CachedRender {
     /// Error of the last attempt to draw; the image before is then shown.
     pub error: Option<String>,
     pub tonemap_bindings: [Option<TonemapBindGroup>; DebugView::ALL.len()],
+    /// The device is waited for, to measure the wall time of the smoke.
+    pub is_wall_timed: bool,
+    /// Wall time of the smoke of the last shot, if it was measured.
+    pub smoke_time: Option<Duration>,
 }
 
 impl CachedRender {
@@ -45,6 +52,8 @@ impl CachedRender {
             shot: None,
             error: None,
             tonemap_bindings: Default::default(),
+            is_wall_timed: false,
+            smoke_time: None,
         })
     }
 
@@ -60,7 +69,13 @@ impl CachedRender {
         }
         // A shot that fails is tried only once.
         let last = self.shot.replace(shot.clone());
-        let done = self.offscreen.record(target.encoder, shot, views);
+        let done = if self.is_wall_timed {
+            let submit = |encoder| submit_and_wait(target.device, target.queue, encoder);
+            self.offscreen.smoke_time(shot, views, submit).map(|time| self.smoke_time = Some(time))
+        } else {
+            self.smoke_time = None;
+            self.offscreen.record(target.encoder, shot, views)
+        };
         self.error = done.err().map(|error| error.to_string());
         last.is_none_or(|last| (last.size, last.debug_view) != (shot.size, shot.debug_view))
     }
@@ -74,6 +89,13 @@ impl CachedRender {
     pub fn picture(&self, view: DebugView) -> Option<&wgpu::Texture> {
         self.offscreen.picture(view)
     }
+}
+
+/// Submits commands and waits until the device is done.
+pub fn submit_and_wait(device: &wgpu::Device, queue: &wgpu::Queue, encoder: wgpu::CommandEncoder) -> Result<(), Error> {
+    queue.submit([encoder.finish()]);
+    let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_LIMIT) };
+    device.poll(wait).map(|_| ()).map_err(|error| Error::Device(error.to_string()))
 }
 
 /// Returns the shot with its size divided in each direction.

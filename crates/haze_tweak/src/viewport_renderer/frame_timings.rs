@@ -1,12 +1,12 @@
-//! GPU time of the image, and the accumulation scale that keeps it within a budget.
+//! Time of the smoke of the image, and the accumulation scale that keeps it within a budget.
 
 use std::collections::VecDeque;
 
-use haze::FrameTimes;
 use haze_author::preset::Tooltips;
 use haze_core::settings::{Budget, ScaleBudget};
 use haze_preset::Preset;
 
+use super::smoke_times::{SmokeTimes, TimeSource};
 use super::{RenderStats, ViewportRenderer};
 
 /// Number of images whose times are kept.
@@ -33,9 +33,8 @@ pub struct FrameTimings {
     waiting: u32,
 }
 
-/// Name of the only entry where the GPU cannot be timed.
-pub const CPU_TIME: &str = "CPU time of the frame";
-
+/// Name of the only entry where the smoke cannot be timed.
+const CPU_TIME: &str = "CPU time of the frame";
 impl Default for FrameTimings {
     fn default() -> Self {
         Self {
@@ -76,8 +75,8 @@ impl FrameTimings {
         let times = self.stats.times.take().filter(|times| self.latest_frame.replace(times.frame) != Some(times.frame));
         self.waiting = if is_drawn || is_second_drawn { MAX_DELAY_FRAMES } else { self.waiting.saturating_sub(1) };
         if let Some(times) = &times {
-            self.add_times(times.passes.iter().filter(|pass| !pass.is_host).map(|pass| (pass.name, pass.ms)));
-        } else if !self.stats.is_timed && is_drawn {
+            self.add_times(times.passes.iter().copied());
+        } else if self.stats.time_source == TimeSource::CpuTime && is_drawn {
             self.add_times(cpu_seconds.map(|seconds| (CPU_TIME, 1.0e3 * seconds)).into_iter());
         }
         if !self.is_held {
@@ -94,11 +93,11 @@ impl FrameTimings {
         self.scale_budget.as_ref().map(ScaleBudget::scale)
     }
 
-    fn hold_budget(&mut self, renderer: &ViewportRenderer, times: Option<&FrameTimes>, preset: &Preset) {
+    fn hold_budget(&mut self, renderer: &ViewportRenderer, times: Option<&SmokeTimes>, preset: &Preset) {
         let of_preset = preset.systems.first().map_or(1, |system| system.settings.accumulate.scale);
         let scale_budget = self.scale_budget.get_or_insert_with(|| ScaleBudget::new(self.budget, of_preset));
         scale_budget.budget = self.budget;
-        let Some(ms) = times.map(FrameTimes::smoke_ms) else { return };
+        let Some(ms) = times.map(SmokeTimes::sum_ms) else { return };
         let scale = scale_budget.update(ms);
         // A still image is drawn again until it is within the budget or the scale has reached its limit.
         if ms > self.budget.milliseconds && scale < self.budget.max_scale {

@@ -10,6 +10,7 @@ pub mod frame_timings;
 pub mod motion;
 pub mod paint_callback;
 pub mod psnr_job;
+pub mod smoke_times;
 pub mod viewport_frame;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -17,15 +18,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use eframe::{egui, wgpu};
 use haze::Error;
 use haze_demo::capture::Capture;
-use haze_demo::headless::WAIT_LIMIT;
 use haze_demo::image_metrics::Comparison;
 use haze_demo::offscreen_renderer::OffscreenContext;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::TonemapPass;
 
 use crate::platform::IS_PAGE;
+use cached_render::submit_and_wait;
 use compared_side::ComparedSide;
 use device_health::DeviceHealth;
+use smoke_times::TimeSource;
 use viewport_frame::RendererState;
 pub use viewport_frame::{RenderStats, TargetTexels, ViewportFrame};
 
@@ -36,8 +38,7 @@ pub struct ViewportRenderer {
     adapter: Arc<wgpu::AdapterInfo>,
     health: DeviceHealth,
     egui: egui::Context,
-    /// The device can measure GPU time.
-    is_timed: bool,
+    time_source: TimeSource,
 }
 
 fn render_state<'a>(window: &'a eframe::CreationContext<'_>) -> Result<&'a eframe::egui_wgpu::RenderState, Error> {
@@ -62,18 +63,13 @@ impl ViewportRenderer {
         let health = DeviceHealth::watch(&render.device, &window.egui_ctx);
         if !IS_PAGE && render.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
             // Takes about 0.2 s on a GPU. A CPU adapter takes longer, and its paths cost about the same.
-            context.measure_paths(|encoder| {
-                render.queue.submit([encoder.finish()]);
-                let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_LIMIT) };
-                let waited = render.device.poll(wait);
-                waited.map(|_| ()).map_err(|error| Error::Device(error.to_string()))
-            })?;
+            context.measure_paths(|encoder| submit_and_wait(&render.device, &render.queue, encoder))?;
         }
         let tonemap_pass = TonemapPass::new(&render.device, render.target_format);
         let state = Arc::new(Mutex::new(RendererState::new(context, tonemap_pass)?));
         let (adapter, egui) = (Arc::new(render.adapter.get_info()), window.egui_ctx.clone());
-        let is_timed = render.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Self { state, adapter, health, egui, is_timed })
+        let time_source = TimeSource::of(&adapter, render.device.features());
+        Ok(Self { state, adapter, health, egui, time_source })
     }
 
     /// Returns a function that requests a repaint from any thread.
@@ -141,11 +137,15 @@ impl ViewportRenderer {
         self.lock().error()
     }
 
-    /// Turns the measurement of GPU time on or off.
+    /// Turns the measurement of the smoke's time on or off.
     pub fn measure(&self, is_on: bool) {
-        if self.is_timed {
-            self.lock().measure(is_on);
-        }
+        self.lock().measure(is_on.then_some(self.time_source));
+    }
+
+    /// Measures by timestamps, as on a GPU.
+    #[cfg(test)]
+    pub fn use_timestamps(&mut self) {
+        self.time_source = TimeSource::Timestamps;
     }
 
     /// Draws the image again although its shot is the same.
@@ -160,7 +160,7 @@ impl ViewportRenderer {
 
     /// Returns the cost of drawing the image.
     pub fn render_stats(&self) -> RenderStats {
-        self.lock().render_stats(self.is_timed)
+        self.lock().render_stats(self.time_source)
     }
 
     /// Returns the texels of each system in the last image; `None` if it was out of view or drawn forward.

@@ -2,7 +2,7 @@
 
 use eframe::wgpu;
 use glam::{IVec2, UVec2, Vec2};
-use haze::{Error, FrameCounts, FrameTimes, LightingChoice, Overdraw, PathChoice, ScaleChoice, Timing};
+use haze::{Error, FrameCounts, LightingChoice, Overdraw, PathChoice, ScaleChoice, Timing};
 use haze_core::settings::DebugView;
 use haze_demo::capture::Capture;
 use haze_demo::image_metrics::Comparison;
@@ -14,6 +14,7 @@ use super::cached_render::{CachedRender, Target, reduced, set_scale};
 use super::compared_side::ComparedSide;
 use super::comparison_image::{ComparisonImage, UploadedImage};
 use super::motion::MotionTimer;
+use super::smoke_times::{SmokeTimes, TimeSource};
 use crate::platform::clock::{self, Duration, Instant};
 
 /// Content of the viewport.
@@ -43,10 +44,9 @@ pub struct TargetTexels {
 pub struct RenderStats {
     /// Number of times that it was drawn.
     pub renders: u64,
-    /// GPU times of the last image for which they are known.
-    pub times: Option<FrameTimes>,
-    /// The device can measure GPU time.
-    pub is_timed: bool,
+    /// Times of the last image for which they are known.
+    pub times: Option<SmokeTimes>,
+    pub time_source: TimeSource,
     pub counts: FrameCounts,
     pub overdraw: Overdraw,
     /// Paths that were chosen where the preset leaves it open.
@@ -95,7 +95,9 @@ pub struct RendererState {
     /// Number of times that the image and the second one were drawn.
     renders: u64,
     comparison_renders: u64,
-    /// Set while images are measured: the first, and the second if it is drawn here.
+    /// Set while images are measured.
+    time_source: Option<TimeSource>,
+    /// Timestamps of the first image, and of the second if it is drawn here.
     timing: Option<Timing>,
     timing_of_second: Option<Timing>,
     /// Overrides the preset's accumulation scale, pixels per texel.
@@ -129,6 +131,7 @@ impl RendererState {
             exposures: Vec2::ZERO,
             renders: 0,
             comparison_renders: 0,
+            time_source: None,
             timing: None,
             timing_of_second: None,
             scale: None,
@@ -139,6 +142,7 @@ impl RendererState {
         let (main, strip) = (CachedRender::new(&context)?, CachedRender::new(&context)?);
         (self.main, self.strip, self.other, self.pair, self.captured) = (main, strip, None, None, None);
         self.context = context;
+        self.main.is_wall_timed = self.is_wall_timed();
         self.main.offscreen.set_timing(self.timing.as_ref())?;
         Ok(())
     }
@@ -157,30 +161,39 @@ impl RendererState {
             .find_map(|cached| cached.error.clone())
     }
 
-    pub fn measure(&mut self, is_on: bool) {
-        if is_on == self.timing.is_some() {
+    /// Measures images from a source, or no longer.
+    pub fn measure(&mut self, time_source: Option<TimeSource>) {
+        if time_source == self.time_source {
             return;
         }
-        self.timing = is_on.then(|| self.context.timing()).flatten();
+        self.time_source = time_source;
+        self.timing = if time_source == Some(TimeSource::Timestamps) { self.context.timing() } else { None };
+        self.main.is_wall_timed = self.is_wall_timed();
         // Cannot fail: both are of the same device.
         let _ = self.main.offscreen.set_timing(self.timing.as_ref());
         // It is created again, with measurement.
         self.other = None;
-        if is_on {
+        if time_source.is_some() {
             self.main.shot = None;
         }
     }
 
-    pub fn render_stats(&self, is_timed: bool) -> RenderStats {
+    fn is_wall_timed(&self) -> bool {
+        self.time_source == Some(TimeSource::WallTime)
+    }
+
+    pub fn render_stats(&self, time_source: TimeSource) -> RenderStats {
         let others = [Some(&self.strip), self.other.as_ref()].into_iter().flatten();
-        let times = self.timing.as_ref().and_then(Timing::latest);
-        let of_second = self.timing_of_second.as_ref().and_then(Timing::latest);
+        let times = SmokeTimes::latest(&self.main, self.renders, self.timing.as_ref());
+        let other = self.other.as_ref();
+        let of_second =
+            other.and_then(|other| SmokeTimes::latest(other, self.comparison_renders, self.timing_of_second.as_ref()));
         RenderStats {
             comparison_renders: self.comparison_renders,
-            smoke_ms_of_pair: [&times, &of_second].map(|times| times.as_ref().map(FrameTimes::smoke_ms)),
+            smoke_ms_of_pair: [&times, &of_second].map(|times| times.as_ref().map(SmokeTimes::sum_ms)),
             renders: self.renders,
             times,
-            is_timed,
+            time_source,
             counts: self.main.offscreen.renderer().counts(),
             overdraw: self.main.offscreen.renderer().overdraw(),
             choices: self.main.offscreen.path_choices().collect(),
@@ -290,8 +303,11 @@ impl RendererState {
                     self.other = CachedRender::new(&self.context).ok();
                     self.timing_of_second = self.timing.as_ref().and_then(|_| self.context.timing());
                     let timing = self.timing_of_second.as_ref();
-                    // Cannot fail: both are of the same device.
-                    self.other.iter_mut().for_each(|cached| drop(cached.offscreen.set_timing(timing)));
+                    if let Some(cached) = &mut self.other {
+                        cached.is_wall_timed = self.time_source == Some(TimeSource::WallTime);
+                        // Cannot fail: both are of the same device.
+                        let _ = cached.offscreen.set_timing(timing);
+                    }
                 }
                 if let Some(cached) = self.other.as_mut().filter(|cached| !cached.shows(shot)) {
                     is_new = cached.record(target, shot, &[shot.debug_view]);

@@ -77,14 +77,19 @@ fn settled(
     harness
 }
 
-/// Like [`window`], on a device with timestamp queries if the adapter has them.
+/// Like [`window`], measured by timestamps as on a GPU.
 pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
     let mut setup = wgpu_setup();
     if let egui_wgpu::WgpuSetup::CreateNew(setup) = &mut setup {
         setup.device_descriptor = std::sync::Arc::new(device);
     }
     let builder = Harness::builder().with_size(size).wgpu_setup(setup);
-    settled(builder, ViewportRenderer::new, start(preset, ShaderFolder::None))
+    let renderer = |window: &eframe::CreationContext<'_>| {
+        let mut renderer = ViewportRenderer::new(window)?;
+        renderer.use_timestamps();
+        Ok(renderer)
+    };
+    settled(builder, renderer, start(preset, ShaderFolder::None))
 }
 
 /// Opens the menu of the row whose control has this name.
