@@ -15,7 +15,7 @@ struct Light {
     // Color times intensity.
     color: vec3f,
     specular_scatter: f32,
-    // Cone fade: saturate(cos · spot_scale + spot_offset)². Scale 0, offset 1 for lights without a cone.
+    // Of cone_attenuation. Scale 0, offset 1 for lights without a cone.
     spot_scale: f32,
     spot_offset: f32,
     radius: f32,
@@ -43,6 +43,14 @@ fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) 
     return range_window(distance_squared, inverse_range) / max(distance_squared + radius * radius, 1.0e-4);
 }
 
+// Falloff of a spot across its cone: 1 in the core, 0 outside. `direction`: from the light, unit length. Half the squared
+// distance of two unit vectors is 1 - cos of the angle between them, and exact in narrow cones too.
+fn cone_attenuation(light: Light, direction: vec3f) -> f32 {
+    let apart = direction - light.direction;
+    let cone = saturate(light.spot_offset - 0.5 * dot(apart, apart) * light.spot_scale);
+    return cone * cone;
+}
+
 // Direction to the light and its attenuation at `position`.
 fn sample_light(light: Light, position: vec3f) -> LightSample {
     if light.directional > 0.5 {
@@ -51,9 +59,8 @@ fn sample_light(light: Light, position: vec3f) -> LightSample {
     let to_light = light.position - position;
     let distance_squared = dot(to_light, to_light);
     let direction = to_light * inverseSqrt(max(distance_squared, 1.0e-8));
-    let cone = saturate(dot(-direction, light.direction) * light.spot_scale + light.spot_offset);
-    let attenuation = distance_attenuation(distance_squared, light.inverse_range, light.radius) * cone * cone;
-    return LightSample(direction, attenuation);
+    let attenuation = distance_attenuation(distance_squared, light.inverse_range, light.radius);
+    return LightSample(direction, attenuation * cone_attenuation(light, -direction));
 }
 
 // Lookup coordinate of the diffuse ramp: 0 for a normal that faces away from the light, 1 for one that faces it. (OTEE

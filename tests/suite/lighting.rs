@@ -1,8 +1,9 @@
 //! Dependence of lighting on other particles, light range and intensity, the world's origin and the up vector.
 
-use glam::{UVec2, Vec3, Vec4, vec3};
+use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
 use haze::{Light, LightKind, Particle};
 use haze_core::assets::image::Image;
+use haze_core::formula::lighting::cone_attenuation;
 use haze_core::settings::{DebugView, DiffuseMode, RenderPath, Technique};
 use haze_reference::{FrameInput, ParticleSystem};
 
@@ -91,6 +92,56 @@ fn glow_changes_continuously_with_the_lights_range() {
     }
 }
 
+#[test]
+fn the_glow_of_a_spot_is_what_it_sends_to_the_viewer() {
+    let mut scene = TestScene::new(SIZE);
+    scene.debug_view = DebugView::SpecularScatter;
+    scene.lights.remove(0);
+    let lamp = scene.lights[0];
+    let viewer = scene.view.view_from_world.inverse().transform_point3(Vec3::ZERO);
+    let mut images_of = |light: Light| {
+        scene.lights = vec![light];
+        [scene.on_cpu(), scene.on_gpu(gpu()).picture]
+    };
+    let brightest = |image: &Image<Vec4>| {
+        image.texels.iter().map(|texel| (*texel - BACKDROP).truncate().max_element()).fold(0.0, f32::max)
+    };
+    let spot = |direction| Light { kind: LightKind::Spot, direction, ..lamp };
+    let of_lamp = images_of(lamp);
+    let towards = images_of(spot(viewer - lamp.position));
+    let away = images_of(spot(lamp.position - viewer));
+    for renderer in 0..2 {
+        assert!(brightest(&of_lamp[renderer]) > 0.1);
+        let apart = largest_difference(&of_lamp[renderer], &towards[renderer]);
+        assert!(apart < 1.0e-3, "towards the viewer, a spot glows like a lamp, not {apart} apart");
+        let rest = brightest(&away[renderer]);
+        assert!(rest < 1.0e-3, "a spot that shines away glows by {rest}");
+    }
+}
+
+#[test]
+fn narrow_spots_are_as_bright_on_their_axis_as_wide_ones() {
+    for outer_angle in [0.02_f32, 0.5, 0.8, 1.0, 35.0] {
+        let spot = Light {
+            kind: LightKind::Spot,
+            direction: vec3(0.3, -0.2, -1.0),
+            inner_angle: 0.8 * outer_angle,
+            outer_angle,
+            ..Light::default()
+        };
+        let uniform = spot.uniform(&Mat4::IDENTITY);
+        let aside = uniform.direction.any_orthonormal_vector();
+        for fraction in [0.0, 0.7, 0.85, 0.95, 1.05] {
+            let angle = f64::from(fraction * outer_angle).to_radians();
+            let direction = uniform.direction * angle.cos() as f32 + aside * angle.sin() as f32;
+            let [inner, outer] = [0.8, 1.0].map(|fraction| (fraction * f64::from(outer_angle)).to_radians().cos());
+            let law = ((angle.cos() - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2) as f32;
+            let found = cone_attenuation(&uniform, direction);
+            assert!((found - law).abs() < 2.0e-3, "{outer_angle}° at {fraction} of it: {found}, not {law}");
+        }
+    }
+}
+
 /// Share of pixels in which a channel differs by more than 1 % of the pixel's brightest channel.
 fn differing_share(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
     let apart = |(a, b): (&Vec4, &Vec4)| {
@@ -134,7 +185,7 @@ fn moved(by: Vec3) -> TestScene {
     for light in &mut scene.lights {
         light.position += by;
     }
-    scene.view.view_from_world *= glam::Mat4::from_translation(-by);
+    scene.view.view_from_world *= Mat4::from_translation(-by);
     scene
 }
 

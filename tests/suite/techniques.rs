@@ -6,8 +6,9 @@ mod intersection;
 mod invalid_input;
 
 use glam::camera::rh::proj::directx;
-use glam::{Mat4, UVec2, vec3};
+use glam::{Mat4, UVec2, Vec4, vec3};
 use haze::{Bounds, Particle};
+use haze_core::assets::image::Image;
 use haze_core::settings::*;
 
 pub use self::flipbook::flipbook;
@@ -49,6 +50,37 @@ fn assert_agreement(name: &str, scene: &TestScene) {
     println!("{name}: {psnr:.1} dB");
     let least = if scene.settings.sprite.debug_sprite { MIN_PSNR_WITH_STEPS } else { MIN_PSNR };
     assert!(psnr >= least, "{name}: {psnr:.1} dB");
+}
+
+#[test]
+fn every_technique_fades_to_nothing_at_the_near_plane() {
+    for near in [0.1, 0.3] {
+        for &technique in Technique::ALL {
+            let scene_at = |view_depth: f32| {
+                let mut scene = one_sprite(technique, view_depth);
+                scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, near, 80.0);
+                scene
+            };
+            let amount = |picture: &Image<Vec4>| picture.texels.iter().map(|texel| texel.x).fold(0.0, f32::max);
+            // Bisects for the depth at which the sprite disappears.
+            let mut hidden = near - 1.5;
+            let mut shown = near + 1.5;
+            assert!(amount(&scene_at(shown).on_cpu()) > 0.3, "{}", technique.name());
+            while shown - hidden > 1.0e-4 {
+                let middle = 0.5 * (hidden + shown);
+                if amount(&scene_at(middle).on_cpu()) > 0.0 {
+                    shown = middle;
+                } else {
+                    hidden = middle;
+                }
+            }
+            let millimetre_later = scene_at(shown + 1.0e-3);
+            for picture in [millimetre_later.on_cpu(), millimetre_later.on_gpu(gpu()).picture] {
+                let found = amount(&picture);
+                assert!(found < 0.02, "{}, near plane {near} m: {found} after a millimetre", technique.name());
+            }
+        }
+    }
 }
 
 #[test]

@@ -56,6 +56,27 @@ fn lights() -> Vec<Formula> {
             mutants: &[("1.0 - ratio * ratio", "1.0 - ratio"), ("window * window", "window")],
         },
         Formula {
+            name: "cone_attenuation",
+            file: "lib/lighting.wgsl",
+            wgsl: "let light = Light(vec3f(0.0), 0.0, vec3f(x(0), x(1), x(2)), 0.0, vec3f(1.0), 1.0, x(3), x(4), 0.0, 0.0); \
+                   y(0, cone_attenuation(light, vec3f(x(5), x(6), x(7))));",
+            reference: |x| {
+                let light = LightUniform { direction: v3(x), spot_scale: x[3], spot_offset: x[4], ..light(&[0.0; 11]) };
+                vec![lighting::cone_attenuation(&light, v3(&x[5..]))]
+            },
+            cases: {
+                let any = (-1.0, 1.0);
+                unit_vectors(unit_vectors(random(200, &[any, any, any, (0.0, 4.0), (0.0, 4.0), any, any, any]), 0), 5)
+            },
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("direction - light.direction", "direction + light.direction"),
+                ("saturate(light.spot_offset - ", "(light.spot_offset - "),
+                ("0.5 * dot(apart, apart)", "dot(apart, apart)"),
+                ("cone * cone", "cone"),
+            ],
+        },
+        Formula {
             name: "sample_light",
             file: "lib/lighting.wgsl",
             wgsl: "let light = Light(vec3f(x(0), x(1), x(2)), x(3), vec3f(x(4), x(5), x(6)), x(7), vec3f(1.0), \
@@ -76,8 +97,8 @@ fn lights() -> Vec<Formula> {
                     (-1.0, 1.0),
                     (-1.0, 1.0),
                     (-0.5, 1.0),
-                    (0.0, 8.0),
-                    (-4.0, 1.0),
+                    (0.0, 4.0),
+                    (0.0, 4.0),
                     (0.05, 0.5),
                     (-3.0, 3.0),
                     (-3.0, 3.0),
@@ -87,7 +108,7 @@ fn lights() -> Vec<Formula> {
             },
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("dot(-direction", "dot(direction"),
+                ("cone_attenuation(light, -direction)", "cone_attenuation(light, direction)"),
                 ("light.position - position", "position - light.position"),
                 ("LightSample(-light.direction", "LightSample(light.direction"),
             ],

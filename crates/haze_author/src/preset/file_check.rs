@@ -30,6 +30,14 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
         };
         let told = |(field, warning)| format!("systems[{index}].material.{field}: {warning}");
         warnings.extend(found.into_iter().map(told));
+        let near = preset.camera.near;
+        let near_fade_end = system.settings.soft_fade.near_fade_end;
+        if near_fade_end > 0.0 && near_fade_end <= near {
+            warnings.push(format!(
+                "systems[{index}].settings.soft_fade.near_fade_end: {near_fade_end} m is no further than the camera's near \
+                 plane, {near} m, at which smoke is gone anyway; expected more, or 0"
+            ));
+        }
     }
     errors.extend(check_particle_files(preset, path, folders).err().into_iter().flatten());
     errors.extend(Backdrop::load(preset, path, folders).err());
@@ -71,6 +79,7 @@ mod tests {
         name(2, |system| system.settings.technique = Technique::DepthSpriteSoft);
         name(2, |system| system.material.sprite = "clear.png".into());
         name(3, |system| system.cache.path = "gone.csv".into());
+        name(3, |system| system.settings.soft_fade.near_fade_end = 0.05);
         image::RgbaImage::new(16, 16).save(folder.path().join("clear.png")).unwrap();
         let (errors, warnings) = check_files(&preset, Path::new("my.json"), &AssetFolders::new(folder.path()));
         let errors: Vec<_> = errors.iter().map(ToString::to_string).collect();
@@ -89,9 +98,10 @@ mod tests {
             "systems[1].material.age_ramp: down.png: painted from top to bottom",
             "systems[2].material.sprite: clear.png: alpha is 0 everywhere",
             "systems[2].material.coverage_ramp: down.png: painted from top to bottom",
+            "systems[3].settings.soft_fade.near_fade_end: 0.05 m is no further than the camera's near plane, 0.1 m",
         ]) {
             assert!(said.starts_with(begins), "{begins}: {warnings:?}");
         }
-        assert_eq!(warnings.len(), 4, "{warnings:?}");
+        assert_eq!(warnings.len(), 5, "{warnings:?}");
     }
 }

@@ -29,6 +29,14 @@ pub fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f
     range_window(distance_squared, inverse_range) / (distance_squared + radius * radius).max(1.0e-4)
 }
 
+/// Falloff of a spot across its cone: 1 in the core, 0 outside. `direction`: from the light, unit length. Half the squared
+/// distance of two unit vectors is 1 - cos of the angle between them, and exact in narrow cones too.
+pub fn cone_attenuation(light: &LightUniform, direction: Vec3) -> f32 {
+    let apart = direction - light.direction;
+    let cone = saturate(light.spot_offset - 0.5 * apart.length_squared() * light.spot_scale);
+    cone * cone
+}
+
 /// Direction to the light and its attenuation at `position`, view space.
 pub fn sample_light(light: &LightUniform, position: Vec3) -> LightSample {
     if light.directional > 0.5 {
@@ -37,9 +45,8 @@ pub fn sample_light(light: &LightUniform, position: Vec3) -> LightSample {
     let to_light = light.position - position;
     let distance_squared = to_light.length_squared();
     let direction = to_light / distance_squared.max(1.0e-8).sqrt();
-    let cone = saturate((-direction).dot(light.direction) * light.spot_scale + light.spot_offset);
-    let attenuation = distance_attenuation(distance_squared, light.inverse_range, light.radius) * cone * cone;
-    LightSample { direction, attenuation }
+    let attenuation = distance_attenuation(distance_squared, light.inverse_range, light.radius);
+    LightSample { direction, attenuation: attenuation * cone_attenuation(light, -direction) }
 }
 
 /// Lookup coordinate of the diffuse ramp: 0 for a normal that faces away from the light, 1 for one that faces it. (OTEE

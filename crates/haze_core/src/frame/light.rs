@@ -71,7 +71,8 @@ settings! {
         /// Half angle at which the spot has faded to nothing, degrees; at least `inner_angle`. Higher: a softer edge.
         /// In between, light falls with the square of the cosine's progress.
         outer_angle: f32 = 35.0, number(|this| this.inner_angle..=89.9, "degrees");
-        /// Multiplies the glow of this light through the smoke, its specular scatter quad. 0 draws none.
+        /// Multiplies the glow of this light through the smoke, its specular scatter quad. 0 draws none. A spot glows as
+        /// brightly as it shines at the viewer.
         specular_scatter: f32 = 1.0, number(0.0..=100.0, "");
         /// Lets smoke shade this light, if it is one of the `shadow.lights` brightest. Off: the light shines through all smoke.
         smoke_shadow: bool = true, flag;
@@ -80,18 +81,24 @@ settings! {
     }
 }
 
+/// Least width of the edge of a spot's cone, as a fraction of 1 - cos of its outer angle.
+const MIN_SPOT_EDGE: f32 = 1.0e-3;
+
 impl Light {
     /// Returns the light as the shaders read it, in the space that `space_from_world` (rigid) leads to.
     pub fn uniform(&self, space_from_world: &Mat4) -> LightUniform {
         let directional = self.kind == LightKind::Directional;
-        // Cone fade: 1 at cos(inner), 0 at cos(outer).
-        let (spot_scale, spot_offset) = if self.kind == LightKind::Spot {
-            let (inner, outer) = (self.inner_angle.to_radians().cos(), self.outer_angle.to_radians().cos());
-            let scale = 1.0 / (inner - outer).max(1.0e-4);
-            (scale, -outer * scale)
-        } else {
-            (0.0, 1.0)
-        };
+        // Cone fade: 1 at the inner angle, 0 at the outer.
+        let mut spot_scale = 0.0;
+        let mut spot_offset = 1.0;
+        if self.kind == LightKind::Spot {
+            // 1 - cos, which loses its digits in narrow cones if it is subtracted.
+            let below_one = |degrees: f32| 2.0 * (0.5 * degrees.to_radians()).sin().powi(2);
+            let inner = below_one(self.inner_angle);
+            let outer = below_one(self.outer_angle);
+            spot_scale = 1.0 / (outer - inner).max(MIN_SPOT_EDGE * outer).max(MIN_SPOT_EDGE.powi(4));
+            spot_offset = outer * spot_scale;
+        }
         LightUniform {
             position: space_from_world.transform_point3(self.position),
             inverse_range: if directional { 0.0 } else { 1.0 / self.range },

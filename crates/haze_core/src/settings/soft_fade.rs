@@ -36,7 +36,8 @@ settings! {
         epsilon: f32 = 0.0, number(0.0..=10.0, "m");
         /// View depth at which a sprite has faded to nothing. Higher: smoke opens further in front of the camera.
         near_fade_start: f32 = 0.0, number(0.0..=1000.0, "m");
-        /// View depth from which a sprite is full; not less than `near_fade_start`. Both 0: no near fade.
+        /// View depth from which a sprite is full; not less than `near_fade_start`. Flat sprites also fade within a quarter of the
+        /// near plane's distance behind that plane, whatever is set here.
         near_fade_end: f32 = 0.5, number(|this| this.near_fade_start..=1000.0, "m");
     }
 }
@@ -45,5 +46,15 @@ impl SoftFade {
     /// Distance beyond which the scene behind a sprite has no effect on it, metres.
     pub fn max_distance(&self) -> f32 {
         (1.0 / self.fade_scale).max(self.epsilon)
+    }
+
+    /// Returns the view depths at which a sprite has faded to nothing, and from which it is full. The near plane would cut off what
+    /// is left of a flat sprite there; it takes the others away bit by bit.
+    pub(crate) fn near_fade_depths(&self, is_flat: bool, near: f32) -> [f32; 2] {
+        if !is_flat {
+            return [self.near_fade_start, self.near_fade_end];
+        }
+        let start = self.near_fade_start.max(near);
+        [start, self.near_fade_end.max(start).max(1.25 * near)]
     }
 }

@@ -103,6 +103,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
     // A sample does not include the farthest particle.
     let farthest = if particles_per_sample == 1 { extent.farthest } else { projected.far };
     let accumulate = &settings.accumulate;
+    let [near_fade_start, near_fade_end] =
+        settings.soft_fade.near_fade_depths(settings.technique.is_flat(), view.depth.near);
     let (scale, pixels) = (settings.scale, projected.max - projected.min);
     let rect = match accumulate.depth_source {
         DepthSource::Reduced => target_rect(projected.min, pixels, scale, view.size),
@@ -131,8 +133,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         fade_scale: settings.soft_fade.fade_scale,
         contrast_power: settings.soft_fade.contrast_power,
         epsilon: settings.soft_fade.epsilon,
-        near_fade_start: settings.soft_fade.near_fade_start,
-        near_fade_end: settings.soft_fade.near_fade_end,
+        near_fade_start,
+        near_fade_end,
         diffuse_intensity: settings.diffuse.intensity,
         soft_scatter_intensity: settings.soft_scatter.intensity,
         specular_scatter_size: settings.specular_scatter.size_in_pixels(view.size.y),

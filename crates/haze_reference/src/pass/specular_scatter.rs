@@ -4,7 +4,9 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::image::Image;
 use haze_core::formula::color::bounded_light;
 use haze_core::formula::depth::SKY_VIEW_DEPTH;
-use haze_core::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
+use haze_core::formula::lighting::{
+    VISIBILITY_TAPS, cone_attenuation, direction_to_viewer, range_window, specular_scatter_fade, visibility_tap,
+};
 use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::formula::uniforms::LightUniform;
 use haze_core::formula::view::{pixel_from_ndc, pixels_per_metre};
@@ -41,7 +43,8 @@ impl AccumulatedTarget<'_> {
         let clip = view.clip_from_view * homogeneous;
         let depth = if directional { SKY_VIEW_DEPTH } else { -light.position.z };
         let fade = specular_scatter_fade(depth, visible.system.smoke_near, visible.system.smoke_far);
-        let strength = light.specular_scatter * visible.system.specular_scatter_intensity * fade;
+        let cone = cone_attenuation(light, direction_to_viewer(light.position, view.orthographic));
+        let strength = light.specular_scatter * visible.system.specular_scatter_intensity * fade * cone;
         if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
             return None;
         }
