@@ -29,7 +29,7 @@ fn glow_of_light(light: Light) -> Glow {
     let clip = view.clip_from_view * homogeneous;
     let depth = select(-light.position.z, SKY_VIEW_DEPTH, light.directional > 0.5);
     let fade = specular_scatter_fade(depth, system.smoke_near, system.smoke_far);
-    // What shines through the smoke is what the light sends to the viewer.
+    // The light that the smoke scatters on was on its way to the viewer.
     let cone = cone_attenuation(light, direction_to_viewer(light.position, view.orthographic));
     let strength = light.specular_scatter * system.specular_scatter_intensity * fade * cone;
     if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {

@@ -133,9 +133,14 @@ fn encode(size: UVec2, channels: Vec<Channel>, path: &Path) -> Result<Vec<u8>, E
 /// Adds channels with these names, of the first components of an image.
 fn add<T: Copy>(channels: &mut Vec<Channel>, names: &[&str], image: &Image<T>, change: impl Fn(T) -> Vec4) {
     for (component, name) in names.iter().enumerate() {
-        let samples = image.texels.iter().map(|texel| f16::from_f32(change(*texel)[component])).collect();
+        let samples = image.texels.iter().map(|texel| half_float(change(*texel)[component])).collect();
         channels.push(AnyChannel::new(*name, FlatSamples::F16(samples)));
     }
+}
+
+/// Returns the nearest half float that is finite: a compositor spreads an infinity over all that it filters.
+fn half_float(value: f32) -> f16 {
+    f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32()))
 }
 
 #[cfg(test)]
@@ -146,6 +151,13 @@ mod tests {
 
     use super::*;
     use crate::image_format::ImageFormat;
+
+    #[test]
+    fn light_beyond_half_floats_is_their_largest() {
+        assert_eq!(half_float(1.0e9).to_f32(), 65_504.0);
+        assert_eq!(half_float(-1.0e9).to_f32(), -65_504.0);
+        assert_eq!(half_float(0.25).to_f32(), 0.25);
+    }
 
     /// Reads the channels of the smoke of a preset, by name.
     fn written(preset: &str) -> Vec<(String, Vec<f32>)> {

@@ -26,13 +26,13 @@ pub struct Arguments {
     view: DebugView,
     /// Render frames A to B, both included: to one PNG per frame, with the frame number in its name as in `f_%04d.png`,
     /// or to one animated GIF, `f.gif`. Frame 0 is at the preset's time, or at --time.
-    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
+    #[arg(long, value_name = "A..B", value_parser = parse_frames, allow_hyphen_values = true)]
     frames: Option<RangeInclusive<u32>>,
     /// Frames per second. Default: 60, or 25 for a GIF.
-    #[arg(long, value_name = "N", value_parser = parse_rate, requires = "frames")]
+    #[arg(long, value_name = "N", value_parser = parse_rate, allow_hyphen_values = true, requires = "frames")]
     rate: Option<f32>,
     /// Put all frames on one sheet of R rows and C columns, a flipbook; --size is the size of a frame.
-    #[arg(long, value_name = "RxC", value_parser = parse_sheet, requires = "frames")]
+    #[arg(long, value_name = "RxC", value_parser = parse_sheet, allow_hyphen_values = true, requires = "frames")]
     sheet: Option<UVec2>,
     /// Background of the image: `auto` leaves it out if the scene is `empty`. Without it, the smoke is alone, with its
     /// opacity in alpha; a name that ends in .exr is linear, premultiplied, and has layers.

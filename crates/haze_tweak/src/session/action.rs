@@ -105,6 +105,7 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Action::EngineFlipbook, "Flipbook with Normals…", COMMAND_ALT, Key::E),
     entry(Action::Export, "Export…", Modifiers::COMMAND, Key::E),
     entry(Action::Redo, "Redo", COMMAND_SHIFT, Key::Z),
+    entry(Action::Redo, "Redo", Modifiers::COMMAND, Key::Y),
     entry(Action::Undo, "Undo", Modifiers::COMMAND, Key::Z),
     entry(Action::Find, "Find Setting…", Modifiers::COMMAND, Key::P),
     entry(Action::Play, "Play or Pause", Modifiers::NONE, Key::Space),

@@ -64,6 +64,12 @@ fn controls_change_the_image_as_their_names_say() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);
     assert!((shown(&mut harness) - before).abs() < 0.5);
+    // Ctrl Y redoes, as Ctrl Shift Z does.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    harness.run_steps(3);
+    assert!((shown(&mut harness) - brighter).abs() < 0.5);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
     set(&mut harness, "Key light", 60.0);
     assert!(shown(&mut harness) > before + 5.0);
 }

@@ -27,16 +27,16 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     engine: Engine,
     /// Frames A to B, both included. Frame 0 is at the preset's time, or at --time.
-    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
+    #[arg(long, value_name = "A..B", value_parser = parse_frames, allow_hyphen_values = true)]
     frames: RangeInclusive<u32>,
     /// Frames per second.
-    #[arg(long, value_name = "N", value_parser = parse_rate, default_value = "24")]
+    #[arg(long, value_name = "N", value_parser = parse_rate, allow_hyphen_values = true, default_value = "24")]
     rate: f32,
     /// Rows and columns of the sheets.
-    #[arg(long, value_name = "RxC", value_parser = parse_sheet)]
+    #[arg(long, value_name = "RxC", value_parser = parse_sheet, allow_hyphen_values = true)]
     sheet: UVec2,
     /// Fade as many frames after the last into the first ones, so that the flipbook loops.
-    #[arg(long = "loop", value_name = "N", value_parser = whole_number(0..=1000), default_value = "0")]
+    #[arg(long = "loop", value_name = "N", value_parser = whole_number(0..=1000), allow_hyphen_values = true, default_value = "0")]
     loop_fade: u32,
     /// Add two maps of the smoke's light from six sides.
     #[arg(long)]

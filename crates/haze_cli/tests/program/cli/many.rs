@@ -85,6 +85,8 @@ fn each_frame_is_written_to_its_own_file() {
 
     let line = |arguments: &[&str]| refusal(folder.path(), &[&SMALL[..], arguments].concat());
     assert!(line(&["f.png", "--frames", "0..3"]).contains("expected a name with one place for the frame number"));
+    assert!(line(&["f_%d.png", "--frames", "-1..2"]).contains("--frames"));
+    assert!(line(&["f_%d.png", "--frames", "0..2", "--rate", "-1"]).contains("--rate"));
     assert!(line(&["f_%d.png", "--frames", "3..0"]).contains("is not a range of frames; expected A..B"));
     assert!(line(&["f.png", "--frames", "0..9", "--sheet", "3x3"]).contains("expected at least 10 cells"));
     let huge =
