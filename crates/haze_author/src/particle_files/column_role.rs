@@ -98,7 +98,7 @@ static VECTORS: [Vector; 3] = [
     Vector {
         attribute: Attribute::Color,
         roles: &[ColumnRole::Red, ColumnRole::Green, ColumnRole::Blue],
-        stems: &["", "cd", "color", "col", "rgb"],
+        stems: &["", "cd", "color", "col", "rgb", "diffuse"],
         components: &[["red", "green", "blue"], ["r", "g", "b"], ["0", "1", "2"]],
     },
 ];

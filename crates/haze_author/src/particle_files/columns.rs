@@ -344,6 +344,7 @@ mod tests {
             vector(names, Attribute::Color);
         }
         vector(["RGB:0", "RGB:1", "RGB:2"], Attribute::Color);
+        vector(["diffuse_red", "diffuse_green", "diffuse_blue"], Attribute::Color);
         for names in [["Points:0", "Points:1", "Points:2"], ["Points_0", "Points_1", "Points_2"]] {
             let columns = ColumnMap::from_names(&[&["velocity:0", "y"], &names[..]].concat()).unwrap();
             assert_eq!(columns.names(Attribute::Position), names.join(", "));

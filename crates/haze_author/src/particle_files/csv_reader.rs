@@ -1,12 +1,13 @@
 //! Reads particles from CSV: a line of column names, then one line per particle. The separator is the comma, semicolon
 //! or tab, whichever the names contain most often, or white space if they contain none. Cells may be quoted. Lines that
-//! begin with `#` or `//` are comments; if the first other line is one of numbers, the last comment with column names
+//! begin with `#` or `//` are comments; if the first other line has numbers, the last comment with column names
 //! names the columns, as NumPy and CloudCompare write them.
 //!
 //! The `csv` crate does not fit: it has no line comments of two characters, gives no column of an error, and accepts
 //! text after a closing quote and unclosed quotes, which are errors here.
 
 use std::borrow::Cow;
+use std::collections::VecDeque;
 
 use super::columns::{ColumnMap, MAX_COLUMNS, RowValues};
 use super::file_frame::FileFrame;
@@ -22,6 +23,9 @@ struct Header {
     separator: char,
     columns: ColumnMap,
 }
+
+/// Number of comments above the first particle among which column names are looked for.
+const MAX_COMMENTS: usize = 64;
 
 const EXPECTED_NAMES: &str = "a line of column names, such as x,y,z,pscale,id";
 
@@ -58,18 +62,21 @@ pub fn read(content: &[u8], max_particles: usize) -> Result<FileFrame, ParseErro
 }
 
 impl Header {
-    /// Finds the column names: the first line that is no comment, or a comment if that line is one of numbers.
+    /// Finds the column names: the first line that is no comment, or a comment if that line has numbers.
     fn of_file(text: &str) -> Result<Self, ParseError> {
-        let mut lines = (1..).zip(text.lines());
-        let mut comments = Vec::new();
+        let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim_start().is_empty());
+        let mut comments = VecDeque::new();
         let first = loop {
             match lines.next() {
                 Some(line) if is_data_line(line.1) => break Some(line),
-                Some(line) => comments.push(line),
+                Some(line) => comments.push_back(line),
                 None => break None,
             }
+            if comments.len() > MAX_COMMENTS {
+                comments.pop_front();
+            }
         };
-        if let Some(names) = first.filter(|(_, line)| !is_numbers(line)) {
+        if let Some(names) = first.filter(|(_, line)| !has_number(line)) {
             return Self::parse(names);
         }
         let last_names = comments.into_iter().rev().find_map(|comment| Self::parse(comment).ok());
@@ -112,11 +119,10 @@ fn is_data_line(line: &str) -> bool {
     !line.is_empty() && !line.starts_with('#') && !line.starts_with("//")
 }
 
-/// True if every cell is a number.
-fn is_numbers(line: &str) -> bool {
+/// True if a cell is a number: the line is a particle then, not names.
+fn has_number(line: &str) -> bool {
     let is_number = |cell: &str| cell.trim_matches(['"', ' ']).parse::<f64>().is_ok();
-    let mut cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.is_empty());
-    cells.all(is_number)
+    line.split([',', ';', '\t', ' ']).any(is_number)
 }
 
 /// Returns the separator: the candidate that occurs most often outside quotes in the line of names.
@@ -238,6 +244,7 @@ mod tests {
         ] {
             assert_eq!(read(same).as_ref(), Ok(&plain), "{same}");
         }
+        assert_eq!(read("# x,y,z,name\n1,2,3,smoke").unwrap().particles()[0].position, Vec3::new(1.0, 2.0, 3.0));
         assert_eq!(read("# x,y,z\n").unwrap().particles(), []);
         let at = |line, column, reason: &str| Err(ParseError::At { line, column, reason: reason.into() });
         assert_eq!(read("# x,y,z\n1,2,3\n1,a,3"), at(3, 3, "y: \"a\" is not valid; expected a number"));

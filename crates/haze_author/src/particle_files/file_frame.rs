@@ -189,7 +189,7 @@ impl ValueRange {
                 continue;
             }
             for particle in frame.particles() {
-                range.include(&values(particle, attribute), index);
+                range.include(values(particle, attribute), index);
             }
         }
         range.scale = range.scale(attribute).map_err(|expected| {
@@ -200,7 +200,7 @@ impl ValueRange {
         Ok(range)
     }
 
-    fn include(&mut self, values: &Vec3, frame: usize) {
+    fn include(&mut self, values: Vec3, frame: usize) {
         self.least = self.least.min(values.min_element());
         self.is_whole &= values.fract() == Vec3::ZERO;
         if values.max_element() > self.largest {
