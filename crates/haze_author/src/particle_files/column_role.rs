@@ -1,6 +1,39 @@
-//! Roles of columns, recognised by the names that other programs use.
+//! Attributes of particles and the roles of their columns, recognised by the names that other programs use.
 
-/// The particle attribute that a column holds.
+/// An attribute of particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Attribute {
+    Position,
+    Velocity,
+    Color,
+    Radius,
+    Rotation,
+    Amount,
+    Age,
+    Life,
+    Heat,
+    Id,
+}
+
+impl Attribute {
+    /// Returns the word for the attribute in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Color => "color",
+            Self::Radius => "radius",
+            Self::Rotation => "rotation",
+            Self::Amount => "amount",
+            Self::Age => "age",
+            Self::Life => "life",
+            Self::Heat => "heat",
+            Self::Id => "id",
+        }
+    }
+}
+
+/// The value of a particle that a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnRole {
     X,
@@ -26,100 +59,115 @@ pub enum ColumnRole {
 /// Number of roles.
 pub const ROLE_COUNT: usize = ColumnRole::Id as usize + 1;
 
-/// Column names in lower case, letters and digits only. If a file has two columns for a role, the name listed first is
-/// read.
-const NAMES: [(&str, ColumnRole); 22] = [
-    ("radius", ColumnRole::Radius),
-    ("pscale", ColumnRole::Radius),
-    ("width", ColumnRole::Width),
-    ("diameter", ColumnRole::Width),
-    ("rotation", ColumnRole::Rotation),
-    ("rot", ColumnRole::Rotation),
-    ("amount", ColumnRole::Amount),
-    ("alpha", ColumnRole::Amount),
-    ("opacity", ColumnRole::Amount),
-    ("age", ColumnRole::Age),
-    ("life", ColumnRole::Life),
-    ("red", ColumnRole::Red),
-    ("green", ColumnRole::Green),
-    ("blue", ColumnRole::Blue),
-    ("r", ColumnRole::Red),
-    ("g", ColumnRole::Green),
-    ("b", ColumnRole::Blue),
-    ("heat", ColumnRole::Heat),
-    ("temperature", ColumnRole::Heat),
-    ("flame", ColumnRole::Heat),
-    ("burn", ColumnRole::Heat),
-    ("id", ColumnRole::Id),
-];
+/// Columns that hold an attribute together: one, or the three of a vector.
+pub struct ColumnNames {
+    pub roles: &'static [ColumnRole],
+    /// Name of each column in lower case, letters and digits only.
+    pub names: Vec<String>,
+}
 
-/// A vector of three columns.
-struct VectorNames {
-    /// Names before the component, in order of preference.
+/// An attribute of one column.
+struct Scalar {
+    attribute: Attribute,
+    /// Names of columns in order of preference.
+    columns: &'static [(&'static str, ColumnRole)],
+}
+
+/// An attribute of three columns. A name is a stem and a component.
+struct Vector {
+    attribute: Attribute,
+    roles: &'static [ColumnRole],
+    /// In order of preference.
     stems: &'static [&'static str],
-    /// Letters of the components. They may also be numbered from 0.
-    letters: [char; 3],
-    roles: [ColumnRole; 3],
+    components: &'static [[&'static str; 3]],
 }
 
-const VECTORS: [VectorNames; 3] = [
-    VectorNames {
-        stems: &["", "p", "pos", "position", "location"],
-        letters: ['x', 'y', 'z'],
-        roles: [ColumnRole::X, ColumnRole::Y, ColumnRole::Z],
+static VECTORS: [Vector; 3] = [
+    Vector {
+        attribute: Attribute::Position,
+        roles: &[ColumnRole::X, ColumnRole::Y, ColumnRole::Z],
+        stems: &["", "p", "pos", "position", "location", "points"],
+        components: &[["x", "y", "z"], ["0", "1", "2"]],
     },
-    VectorNames {
+    Vector {
+        attribute: Attribute::Velocity,
+        roles: &[ColumnRole::VelocityX, ColumnRole::VelocityY, ColumnRole::VelocityZ],
         stems: &["v", "vel", "velocity"],
-        letters: ['x', 'y', 'z'],
-        roles: [ColumnRole::VelocityX, ColumnRole::VelocityY, ColumnRole::VelocityZ],
+        components: &[["x", "y", "z"], ["0", "1", "2"]],
     },
-    VectorNames {
-        stems: &["cd", "color", "col"],
-        letters: ['r', 'g', 'b'],
-        roles: [ColumnRole::Red, ColumnRole::Green, ColumnRole::Blue],
+    Vector {
+        attribute: Attribute::Color,
+        roles: &[ColumnRole::Red, ColumnRole::Green, ColumnRole::Blue],
+        stems: &["", "cd", "color", "col", "rgb", "diffuse"],
+        components: &[["red", "green", "blue"], ["r", "g", "b"], ["0", "1", "2"]],
     },
 ];
 
-/// Returns the role of a column by its name, with its rank: of several columns for a role the lowest rank is read.
-pub fn column_role(name: &str) -> Option<(usize, ColumnRole)> {
-    let name: String = name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect();
-    if let Some(found) = NAMES.iter().position(|(known, _)| *known == name) {
-        return Some((found, NAMES[found].1));
-    }
-    let (stem, axis) = name.split_at_checked(name.len().checked_sub(1)?)?;
-    let axis = axis.chars().next()?;
-    VECTORS.iter().find_map(|vector| {
-        let rank = vector.stems.iter().position(|known| *known == stem)?;
-        let is_component = |number: usize| {
-            axis == vector.letters[number] || !stem.is_empty() && axis.to_digit(10) == Some(number as u32)
-        };
-        let component = (0..3).find(|number| is_component(*number))?;
-        // After the names above.
-        Some((NAMES.len() + rank, vector.roles[component]))
-    })
+static SCALARS: [Scalar; 7] = [
+    Scalar {
+        attribute: Attribute::Radius,
+        columns: &[
+            ("radius", ColumnRole::Radius),
+            ("pscale", ColumnRole::Radius),
+            ("width", ColumnRole::Width),
+            ("diameter", ColumnRole::Width),
+            // Unless it is the red of a color: `ColumnMap` decides.
+            ("r", ColumnRole::Radius),
+        ],
+    },
+    Scalar {
+        attribute: Attribute::Rotation,
+        columns: &[("rotation", ColumnRole::Rotation), ("rot", ColumnRole::Rotation)],
+    },
+    Scalar {
+        attribute: Attribute::Amount,
+        columns: &[("amount", ColumnRole::Amount), ("alpha", ColumnRole::Amount), ("opacity", ColumnRole::Amount)],
+    },
+    Scalar { attribute: Attribute::Age, columns: &[("age", ColumnRole::Age)] },
+    Scalar { attribute: Attribute::Life, columns: &[("life", ColumnRole::Life)] },
+    Scalar {
+        attribute: Attribute::Heat,
+        columns: &[
+            ("heat", ColumnRole::Heat),
+            ("temperature", ColumnRole::Heat),
+            ("flame", ColumnRole::Heat),
+            ("burn", ColumnRole::Heat),
+        ],
+    },
+    Scalar { attribute: Attribute::Id, columns: &[("id", ColumnRole::Id)] },
+];
+
+/// Returns every attribute with the names that its columns may have, in order of preference.
+pub fn attributes() -> impl Iterator<Item = (Attribute, Vec<ColumnNames>)> {
+    let vectors = VECTORS.iter().map(|vector| (vector.attribute, vector.names()));
+    let names = |(name, role): &'static (&str, ColumnRole)| ColumnNames {
+        roles: std::slice::from_ref(role),
+        names: vec![(*name).into()],
+    };
+    let scalars = SCALARS.iter().map(move |scalar| (scalar.attribute, scalar.columns.iter().map(names).collect()));
+    vectors.chain(scalars)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn other_columns_have_no_role() {
-        for name in ["nx", "0", "v", "Cd[3]", "scale", "", "ä"] {
-            assert_eq!(column_role(name), None, "{name}");
-        }
+/// Returns a name as this module compares it: in lower case, letters and digits only, without CloudCompare's prefix
+/// `scalar_`.
+pub fn plain_name(name: &str) -> String {
+    let name: String = name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect();
+    match name.strip_prefix("scalar") {
+        Some(rest) if !rest.is_empty() => rest.into(),
+        _ => name,
     }
+}
 
-    #[test]
-    fn vectors_are_recognised_by_letters_and_numbers() {
-        let role = |name| column_role(name).map(|(_, role)| role);
-        for names in [["vx", "vy", "vz"], ["v[0]", "v[1]", "v[2]"], ["velocity.x", "velocity.y", "velocity.z"]] {
-            assert_eq!(role(names[2]), Some(ColumnRole::VelocityZ), "{names:?}");
-            assert_eq!(role(names[0]), Some(ColumnRole::VelocityX), "{names:?}");
-        }
-        for names in [["r", "g", "b"], ["Cd[0]", "Cd[1]", "Cd[2]"], ["red", "green", "blue"], ["Cd.r", "Cd.g", "Cd.b"]]
-        {
-            assert_eq!(role(names[1]), Some(ColumnRole::Green), "{names:?}");
-        }
+impl Vector {
+    fn names(&self) -> Vec<ColumnNames> {
+        let pairs = self.stems.iter().flat_map(|stem| self.components.iter().map(move |components| (stem, components)));
+        // A number alone names no component.
+        let pairs = pairs.filter(|(stem, components)| !stem.is_empty() || components[0] != "0");
+        pairs
+            .map(|(stem, components)| ColumnNames {
+                roles: self.roles,
+                names: components.iter().map(|component| format!("{stem}{component}")).collect(),
+            })
+            .collect()
     }
 }

@@ -8,12 +8,14 @@ mod column_role;
 mod columns;
 mod csv_reader;
 mod evaluate;
+mod file_frame;
 mod parse_error;
 mod particle_frame;
 mod particle_frames;
 mod ply;
 mod preset_files;
 
+pub use file_frame::ColumnUse;
 pub use parse_error::ParseError;
 pub use particle_frame::{FileParticle, ParticleFrame, ProvidedAttributes};
 pub use particle_frames::{FramePair, Limits, MAX_FILE_BYTES, ParticleFrames, parse};

@@ -37,7 +37,7 @@ pub struct ProvidedAttributes {
     pub rotation: bool,
     /// Amount.
     pub amount: bool,
-    /// At least one channel of a color.
+    /// Color.
     pub color: bool,
     /// Heat.
     pub heat: bool,
@@ -65,6 +65,15 @@ impl ParticleFrame {
     /// Returns the particles.
     pub fn particles(&self) -> &[FileParticle] {
         &self.particles
+    }
+
+    pub(super) fn particles_mut(&mut self) -> &mut [FileParticle] {
+        &mut self.particles
+    }
+
+    /// Removes the amount from the attributes that the file provides.
+    pub(super) fn unset_amount(&mut self) {
+        self.provided.amount = false;
     }
 
     /// Returns the attributes that the file provides.

@@ -1,6 +1,7 @@
 //! Loads the particle files of one preset: each is read once, and their total size is limited.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::path::Path;
 
 use haze_core::emitter::MAX_PARTICLES;
@@ -26,25 +27,56 @@ pub fn load_particle_files(
     path: &Path,
     folders: &AssetFolders,
 ) -> Result<Vec<Option<ParticleFrames>>, Error> {
-    check_particle_files(preset, path, folders).map_err(|mut errors| errors.swap_remove(0))
+    load_each(preset, path, folders).into_iter().collect()
 }
 
-/// As [`load_particle_files`], but returns all errors.
-///
-/// # Errors
-/// Errors of every system: at least one.
-pub fn check_particle_files(
-    preset: &Preset,
-    path: &Path,
-    folders: &AssetFolders,
-) -> Result<Vec<Option<ParticleFrames>>, Vec<Error>> {
+/// Loads the particle files of every system. Returns all errors; and notes on the columns: the attributes that they are
+/// read as, those that are not read, and those that the settings of their system do not use.
+pub fn check_particle_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
+    let (mut errors, mut notes) = (Vec::new(), Vec::new());
+    for (index, loaded) in load_each(preset, path, folders).into_iter().enumerate() {
+        match loaded {
+            Ok(Some(frames)) => notes.extend(column_notes(preset, index, &frames)),
+            Ok(None) => {}
+            Err(error) => errors.push(error),
+        }
+    }
+    (errors, notes)
+}
+
+fn column_notes(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<String> {
+    let settings = &preset.systems[index].settings;
+    let is_animated = |setting: &str| {
+        let path = format!("systems[{index}].settings.{setting}");
+        preset.animation.iter().any(|track| track.setting == path)
+    };
+    let is_tinted = settings.sprite.tint > 0.0 || is_animated("sprite.tint");
+    let burns = settings.burns() || is_animated("fire.intensity");
+    let mut notes = Vec::new();
+    for (file, columns) in frames.columns() {
+        let name = file.file_name().map(OsStr::to_string_lossy).unwrap_or_default();
+        let mut add = |note: &str| notes.push(format!("systems[{index}].cache.path: {}: {note}", one_line(&name)));
+        add(&columns.read);
+        columns.unread.iter().for_each(|note| add(note));
+        if !columns.color.is_empty() && !is_tinted {
+            add(&format!("{}: no effect; expected a sprite.tint above 0", columns.color));
+        }
+        if !columns.heat.is_empty() && !burns {
+            add(&format!("{}: no effect; expected a fire.intensity above 0", columns.heat));
+        }
+    }
+    notes
+}
+
+/// Loads the particle files of every system, each file once.
+fn load_each(preset: &Preset, path: &Path, folders: &AssetFolders) -> Vec<Result<Option<ParticleFrames>, Error>> {
     let mut known = HashMap::new();
     let (mut bytes, mut particles) = (0, 0.0);
-    let (mut loaded, mut errors) = (Vec::new(), Vec::new());
+    let mut loaded = Vec::new();
     for (index, system) in preset.systems.iter().enumerate() {
         if !system.cache.is_used() {
             particles += system.emitter.max_alive();
-            loaded.push(None);
+            loaded.push(Ok(None));
             continue;
         }
         let name = &system.cache.path;
@@ -64,12 +96,9 @@ pub fn check_particle_files(
             let problem = format!("with {name:?}, {particles:.0} particles of all systems are alive at once");
             Err(FieldError::from_problem("cache.path", problem, format!("at most {MAX_PARTICLES}")).into())
         });
-        match counted {
-            Ok(frames) => loaded.push(Some(frames)),
-            Err(error) => errors.push(with_system_context(path, index, error)),
-        }
+        loaded.push(counted.map(Some).map_err(|error| with_system_context(path, index, error)));
     }
-    if errors.is_empty() { Ok(loaded) } else { Err(errors) }
+    loaded
 }
 
 /// Replaces `particles` with those alive at `time`, seconds: those of `files` if the system names some and they are
@@ -122,11 +151,12 @@ mod tests {
         };
         let folders = AssetFolders::new(folder.path());
         let check = |paths: &[&str]| check_particle_files(&preset(paths), Path::new("my.json"), &folders);
-        let loaded = check(&["good.csv", "", "good.csv"]).unwrap();
+        let same = preset(&["good.csv", "", "good.csv"]);
+        let loaded = load_particle_files(&same, Path::new("my.json"), &folders).unwrap();
         let [Some(first), None, Some(second)] = &loaded[..] else { panic!("two files") };
         assert!(first.shares_memory(second));
         let said: Vec<_> = check(&["", "smok_##.csv", "good.csv", "smoke_##.csv", "../good.csv"])
-            .unwrap_err()
+            .0
             .iter()
             .map(ToString::to_string)
             .collect();
@@ -150,5 +180,54 @@ mod tests {
             said.ends_with("1048577 particles of all systems are alive at once; expected at most 1048576"),
             "{said}"
         );
+    }
+
+    #[test]
+    fn notes_say_what_every_column_is_read_as_and_what_has_no_effect() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        write("s_1.csv", "x,y,z,nx,amount,opacity,red,green,blue,alpha,temperature,\n1,2,3,0,2,1,9,0,0,255,1500,");
+        write("s_2.csv", "x,y,z,nx,amount,opacity,red,green,blue,alpha,temperature,\n1,2,3,0,1,1,0,0,0,255,300,");
+        write("s_3.csv", "x,y,z,r\n1,2,3,1");
+        let rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n";
+        let position = "property float x\nproperty float y\nproperty float z\nproperty list uchar int near\n";
+        let head = format!("ply\nformat ascii 1.0\nelement vertex 1\n{position}{rgb}end_header\n");
+        write("a.ply", &format!("{head}0 0 0 0 9 9 9 255"));
+        let mut preset = Preset { systems: vec![PresetSystem::default(); 2], ..Preset::default() };
+        preset.systems[0].cache.path = "s_#.csv".into();
+        preset.systems[1].cache.path = "a.ply".into();
+        let check =
+            |preset: &Preset| check_particle_files(preset, Path::new("my.json"), &AssetFolders::new(folder.path()));
+        let (errors, notes) = check(&preset);
+        assert!(errors.is_empty(), "{errors:?}");
+        let first = "systems[0].cache.path: s_1.csv: ";
+        let second = "systems[1].cache.path: a.ply: ";
+        let codes = "color from red, green, blue as sRGB codes";
+        let kelvin = "heat from temperature in kelvin: 800 is 0, 2000 is 1";
+        assert_eq!(
+            notes,
+            [
+                format!(
+                    "{first}position from x, y, z; {codes} of 0 to 255; amount from amount, 0 to 2, clamped to 0 to 1; {kelvin}"
+                ),
+                format!("{first}alpha is not read: the amount is read from amount"),
+                format!("{first}opacity is not read: the amount is read from amount"),
+                format!("{first}nx, column 12: not read; expected names that docs/particles.md lists"),
+                format!("{first}red, green, blue: no effect; expected a sprite.tint above 0"),
+                format!("{first}temperature: no effect; expected a fire.intensity above 0"),
+                "systems[0].cache.path: s_3.csv: position from x, y, z; radius from r".into(),
+                format!("{second}position from x, y, z; {codes}"),
+                format!(
+                    "{second}alpha is not read: it is full in every particle, as programs write it beside colors; \
+                 expected an alpha that varies, or a column named amount"
+                ),
+                format!("{second}near: not read; expected names that docs/particles.md lists"),
+                format!("{second}red, green, blue: no effect; expected a sprite.tint above 0"),
+            ]
+        );
+        preset.systems[0].settings.sprite.tint = 1.0;
+        preset.systems[0].settings.fire.intensity = 1.0;
+        let notes = check(&preset).1;
+        assert!(notes.iter().all(|note| !note.starts_with(first) || !note.contains("no effect")), "{notes:?}");
     }
 }

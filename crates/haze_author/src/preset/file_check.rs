@@ -9,8 +9,8 @@ use super::role_check::role_warnings;
 use crate::backdrop::Backdrop;
 use crate::particle_files::check_particle_files;
 
-/// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
-/// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
+/// Loads the images and particle files of every system. Returns all errors, and notes, each with its field: images that
+/// do not seem to fit their role, and the attributes that columns of particles are read as. Files are searched for in `folders`; `path`, the preset's
 /// file, is only named in errors.
 pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
     let mut pictures = ImageCache::new(ImageSource::Folders(folders.clone()));
@@ -39,7 +39,9 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
             ));
         }
     }
-    errors.extend(check_particle_files(preset, path, folders).err().into_iter().flatten());
+    let (of_particles, columns) = check_particle_files(preset, path, folders);
+    errors.extend(of_particles);
+    warnings.extend(columns);
     errors.extend(Backdrop::load(preset, path, folders).err());
     (errors, warnings)
 }

@@ -22,9 +22,10 @@ const MAX_STOPS: usize = 50_000;
 /// A fitted recipe and its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RampFit {
-    /// Recipe of the image's size; one row if all rows of the image are equal.
+    /// Recipe of an image's size; one row if all rows of the image are equal.
     pub recipe: RampRecipe,
-    /// Largest difference between the baked recipe and the image in any channel, steps of 255 of sRGB code.
+    /// Largest difference between the recipe and its source in any channel, steps of 255 of sRGB code. Of an image, at
+    /// every texel of the baked recipe; of a gradient, at sampled positions.
     pub error: f32,
 }
 

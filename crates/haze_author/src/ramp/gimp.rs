@@ -6,8 +6,12 @@ use glam::{Vec3, Vec4};
 
 use super::blend_space::srgb_from_linear;
 use super::fit_stops::RampFit;
-use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
+use super::gradient_text::{GradientParseError, parse_numbers};
 use super::ramp_recipe::{Blend, Curve, HexColor, RampStop};
+use super::source_gradient::{add_straight_stops, composite_over_black, sampled_fit};
+
+/// Difference of hues that counts as none, turns: above the rounding of `f32`, and below a step of 16 bits.
+const HUE_TOLERANCE: f32 = 1.0e-6;
 
 /// One segment of a gradient. Positions are 0 to 1; colors are sRGB codes with alpha, 0 to 1.
 struct Segment {
@@ -26,38 +30,23 @@ struct Segment {
 /// of at most a quarter of `max_error`.
 pub(super) fn read(text: &str, max_error: f32) -> Result<RampFit, GradientParseError> {
     let segments = segments(text)?;
-    let mut stops: Vec<RampStop> = Vec::new();
-    let mut add = |at: f32, code: Vec3, curve: Curve| {
-        let stop = RampStop { at, color: HexColor::from_srgb(code), curve };
-        // The segment begins where the previous one ended, with the same color.
-        if let Some(last) = stops.last_mut().filter(|last| (last.at, last.color) == (stop.at, stop.color)) {
-            last.curve = curve;
-        } else {
-            stops.push(stop);
-        }
-    };
+    let mut stops = Vec::new();
     for segment in &segments {
         if segment.blending == 5 {
-            add(segment.left, composite_over_black(segment.from), Curve::Constant);
-            add(segment.middle, composite_over_black(segment.to), Curve::Constant);
+            for (at, color) in [(segment.left, segment.from), (segment.middle, segment.to)] {
+                let color = HexColor::from_srgb(composite_over_black(color));
+                stops.push(RampStop { at, color, curve: Curve::Constant });
+            }
             continue;
         }
-        let mut add = |at| add(at, segment.code(at), Curve::Linear);
-        add(segment.left);
-        segment.subdivide(segment.left, segment.middle, max_error / 4.0, &mut add);
-        segment.subdivide(segment.middle, segment.right, max_error / 4.0, &mut add);
+        for (from, to) in [(segment.left, segment.middle), (segment.middle, segment.right)] {
+            add_straight_stops(&mut stops, from, to, max_error / 4.0, &|at| segment.code(at));
+        }
     }
-    let mut fitted = one_row_fit(Blend::Srgb, stops);
-    if let Ok(gradient) = fitted.recipe.gradient() {
-        // Samples at odd multiples of 1/2048, to avoid the positions where segments usually meet.
-        let off = (0..1024).map(|index| (index as f32 + 0.5) / 1024.0).filter_map(|at| {
-            let segment = segments.iter().find(|segment| at <= segment.right)?;
-            let made = gradient.sample(at, 0.0).map(srgb_from_linear);
-            Some((made - segment.code(at)).abs().max_element() * 255.0)
-        });
-        fitted.error = off.fold(fitted.error, f32::max);
-    }
-    Ok(fitted)
+    Ok(sampled_fit(Blend::Srgb, stops, |at| {
+        let segment = segments.iter().find(|segment| at <= segment.right).or(segments.last());
+        segment.map_or(Vec3::ZERO, |segment| segment.code(at))
+    }))
 }
 
 fn segments(text: &str) -> Result<Vec<Segment>, GradientParseError> {
@@ -124,26 +113,15 @@ impl Segment {
             return composite_over_black(mixed);
         }
         let (from, to) = (Blend::HsvNear.of_code(self.from.truncate()), Blend::HsvNear.of_code(self.to.truncate()));
-        let turn = (to.x - from.x).rem_euclid(1.0) - if self.colors == 2 { 1.0 } else { 0.0 };
+        // Equal hues are a full turn apart in either direction.
+        let is_equal = (to.x - from.x - (to.x - from.x).round()).abs() < HUE_TOLERANCE;
+        let increase = if is_equal { 0.0 } else { (to.x - from.x).rem_euclid(1.0) };
+        let turn = match self.colors {
+            1 if is_equal => 1.0,
+            1 => increase,
+            _ => increase - 1.0,
+        };
         let hsv = Vec3::new(from.x + turn * part, from.y + (to.y - from.y) * part, from.z + (to.z - from.z) * part);
         composite_over_black(Blend::HsvNear.linear(hsv).map(srgb_from_linear).extend(mixed.w))
-    }
-
-    /// Adds the end of a range, after dividing the range until each piece is within `max_error` steps of 255 of a
-    /// straight line.
-    fn subdivide(&self, from: f32, to: f32, max_error: f32, add: &mut impl FnMut(f32)) {
-        let is_straight = [0.25, 0.5, 0.75].into_iter().all(|part| {
-            let straight = self.code(from).lerp(self.code(to), part);
-            let off = self.code(from + (to - from) * part) - straight;
-            off.abs().max_element() * 255.0 <= max_error
-        });
-        // The minimum length of 1e-4 is smaller than a texel of the widest ramp.
-        if !is_straight && to - from > 1.0e-4 {
-            let middle = f32::midpoint(from, to);
-            self.subdivide(from, middle, max_error, add);
-            self.subdivide(middle, to, max_error, add);
-        } else {
-            add(to);
-        }
     }
 }

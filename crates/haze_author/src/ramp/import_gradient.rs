@@ -5,40 +5,51 @@ use std::path::Path;
 use glam::Vec4;
 use haze_core::assets::bounded_read;
 use haze_core::assets::image::read_color_png;
-use haze_core::error::{Error, FieldError, one_line};
+use haze_core::error::{Error, FieldError, display_path, one_line};
 
 use super::blend_space::srgb_from_linear;
 use super::fit_stops::{RampFit, fit_image, validate_max_error};
-use super::gimp;
-use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
-use super::ramp_recipe::{Blend, Curve, HexColor, RampStop};
+use super::gradient_text::{GradientParseError, parse_numbers};
+use super::ramp_recipe::Blend;
+use super::source_gradient::{Interpolation, SourceGradient, SourcePoint};
+use super::{gimp, godot};
 
 /// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
+/// A recipe made of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportedGradient {
+    /// The recipe and its error.
+    pub fit: RampFit,
+    /// File, line, the gradient that was read, and those that were not; `None` for a file of one gradient.
+    pub note: Option<String>,
+}
+
 /// Converts a file to a recipe. The format follows from the extension: `.png`, `.ggr` (GIMP), `.tres` (Godot) or `.txt`
-/// (Blender). `max_error` is the maximum error of a channel, 1 to 64 steps of 255. Transparent colors are darkened by
-/// their alpha, in linear light.
+/// (Blender). `max_error` is the maximum error of a channel, 1 to 64 steps of 255. `name` chooses one of several
+/// gradients in a file of Godot. Transparent colors are darkened by their alpha, in linear light.
 ///
 /// # Errors
 /// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
-/// [`Error::Field`] for a `max_error` out of range or an unknown extension.
-pub fn import_gradient(path: &Path, max_error: f32) -> Result<RampFit, Error> {
+/// [`Error::Field`] for a `max_error` out of range, an unknown extension, or a `name` for a file of one gradient.
+pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Result<ImportedGradient, Error> {
     validate_max_error(max_error)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let read: fn(&str, f32) -> Result<RampFit, GradientParseError> = match ending.as_str() {
-        "png" => {
-            let refuse = |error: FieldError| Error::Image { path: path.into(), reason: error.to_string() };
-            return fit_image(&read_color_png(path)?, max_error).map_err(refuse);
-        }
-        "ggr" => gimp::read,
-        "tres" => |text, _| godot(text),
-        "txt" => |text, _| blender(text),
-        _ => {
-            let expected = "a name that ends in .png, .ggr, .tres or .txt";
-            return Err(FieldError::new("file", path.display(), expected).into());
-        }
-    };
+    if let Some(name) = name.filter(|_| ending != "tres") {
+        return Err(
+            FieldError::new("gradient", format!("{name:?}"), "no name: only a .tres has several gradients").into()
+        );
+    }
+    if ending == "png" {
+        let refuse = |error: FieldError| Error::Image { path: path.into(), reason: error.to_string() };
+        let fit = fit_image(&read_color_png(path)?, max_error).map_err(refuse)?;
+        return Ok(ImportedGradient { fit, note: None });
+    }
+    if !["ggr", "tres", "txt"].contains(&ending.as_str()) {
+        let expected = "a name that ends in .png, .ggr, .tres or .txt";
+        return Err(FieldError::new("file", path.display(), expected).into());
+    }
     let refuse = |GradientParseError { line, reason }: GradientParseError| Error::Json {
         path: path.into(),
         line,
@@ -49,61 +60,25 @@ pub fn import_gradient(path: &Path, max_error: f32) -> Result<RampFit, Error> {
     let text = std::str::from_utf8(&bytes).map_err(|_| {
         refuse(GradientParseError { line: 1, reason: "not UTF-8; expected a gradient as UTF-8 text".into() })
     })?;
-    let fitted = read(text, max_error).map_err(refuse)?;
-    fitted.recipe.validate()?;
-    Ok(fitted)
-}
-
-/// Reads the first gradient of a Godot resource: `offsets`, `colors`, `interpolation_mode`,
-/// `interpolation_color_space`.
-fn godot(text: &str) -> Result<RampFit, GradientParseError> {
-    let error = |line: usize, reason: &str| GradientParseError { line: line + 1, reason: reason.into() };
-    let find = |name: &str| {
-        let mut lines = text.lines().enumerate();
-        lines.find_map(|(line, text)| {
-            let (key, value) = text.split_once('=')?;
-            (key.trim() == name).then(|| (line, value.trim()))
-        })
-    };
-    if !text.contains("Gradient") {
-        return Err(error(0, "no gradient; expected a Gradient saved by Godot as text"));
-    }
-    let list = |name: &str, default: &[f32]| match find(name) {
-        None => Ok((0, default.to_vec())),
-        Some((line, value)) => {
-            let inside = value.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
-            let numbers = inside.and_then(parse_numbers);
-            numbers
-                .map(|numbers| (line, numbers))
-                .ok_or_else(|| error(line, &format!("{name} is no list of numbers; expected a packed list of numbers")))
+    let mut note = None;
+    let fit = match ending.as_str() {
+        "ggr" => gimp::read(text, max_error).map_err(refuse)?,
+        "txt" => blender(text).map_err(refuse)?.fit(max_error),
+        _ => {
+            let read = godot::read(text, name).map_err(refuse)?;
+            note = read.note.map(|note| format!("{}:{note}", display_path(path)));
+            read.gradient.fit(max_error)
         }
     };
-    let choice = |name: &str, max: usize| {
-        let (line, value) = find(name).unwrap_or((0, "0"));
-        let index = value.parse().ok().filter(|index: &usize| *index <= max);
-        index.ok_or_else(|| error(line, &format!("{name}: {} is not valid; expected 0 to {max}", one_line(value))))
-    };
-    let (_, offsets) = list("offsets", &[0.0, 1.0])?;
-    let (line, colors) = list("colors", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])?;
-    if offsets.is_empty() || colors.len() != 4 * offsets.len() {
-        let reason = format!("{} numbers; expected four for each of {} offsets", colors.len(), offsets.len());
-        return Err(error(line, &reason));
-    }
-    let curve = [Curve::Linear, Curve::Constant, Curve::Monotone][choice("interpolation_mode", 2)?];
-    let blend = [Blend::Srgb, Blend::Linear, Blend::Oklab][choice("interpolation_color_space", 2)?];
-    let stop = |(at, color): (&f32, &[f32])| RampStop {
-        at: at.clamp(0.0, 1.0),
-        color: HexColor::from_srgb(composite_over_black(Vec4::from_slice(color))),
-        curve,
-    };
-    Ok(one_row_fit(blend, offsets.iter().zip(colors.chunks_exact(4)).map(stop).collect()))
+    fit.recipe.validate()?;
+    Ok(ImportedGradient { fit, note })
 }
 
 /// Reads lines of `position r g b [alpha]` in linear light, with optional brackets and commas, and lines of
 /// `interpolation NAME`.
-fn blender(text: &str) -> Result<RampFit, GradientParseError> {
-    let mut curve = Curve::Linear;
-    let mut stops = Vec::new();
+fn blender(text: &str) -> Result<SourceGradient, GradientParseError> {
+    let mut interpolation = Interpolation::Linear;
+    let mut points = Vec::new();
     for (line, text) in text.lines().enumerate() {
         let refuse = |reason: String| GradientParseError { line: line + 1, reason };
         let text = text.split('#').next().unwrap_or_default();
@@ -114,11 +89,12 @@ fn blender(text: &str) -> Result<RampFit, GradientParseError> {
         match words[..] {
             [] | ["color_mode", "RGB"] => {}
             ["interpolation", name] => {
-                curve = match name {
-                    "CONSTANT" => Curve::Constant,
-                    "LINEAR" => Curve::Linear,
-                    "EASE" => Curve::Ease,
-                    "CARDINAL" | "B_SPLINE" => Curve::Monotone,
+                interpolation = match name {
+                    "CONSTANT" => Interpolation::Constant,
+                    "LINEAR" => Interpolation::Linear,
+                    "EASE" => Interpolation::Ease,
+                    "CARDINAL" => Interpolation::Cardinal(0.71),
+                    "B_SPLINE" => Interpolation::BSpline,
                     _ => {
                         let expected = "CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE";
                         return Err(refuse(format!(
@@ -141,25 +117,26 @@ fn blender(text: &str) -> Result<RampFit, GradientParseError> {
                         return Err(refuse(format!("not a stop; expected {expected}")));
                     }
                 };
-                let light = light.clamp(Vec4::ZERO, Vec4::ONE);
-                let code = (light.truncate() * light.w).map(srgb_from_linear);
-                stops.push(RampStop::new(at.clamp(0.0, 1.0), HexColor::from_srgb(code)));
+                let code = light.truncate().map(srgb_from_linear).extend(light.w);
+                points.push(SourcePoint { at: at.clamp(0.0, 1.0), code });
             }
         }
     }
-    for stop in &mut stops {
-        stop.curve = curve;
-    }
-    if stops.is_empty() {
+    if points.is_empty() {
         let reason = "no stops; expected lines of a position and a color: 0.5 (0.8, 0.4, 0.1, 1.0)";
         return Err(GradientParseError { line: 1, reason: reason.into() });
     }
-    Ok(one_row_fit(Blend::Linear, stops))
+    let mut gradient = SourceGradient::new(Blend::Linear, interpolation, points);
+    if matches!(interpolation, Interpolation::Cardinal(_) | Interpolation::BSpline) {
+        // Blender's splines begin at 0 and end at 1.
+        gradient.extend_to_ends();
+    }
+    Ok(gradient)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::ramp_recipe::RampRecipe;
+    use super::super::ramp_recipe::{Curve, RampRecipe};
     use super::*;
 
     fn import_text(name: &str, text: &str) -> Result<RampRecipe, String> {
@@ -167,7 +144,7 @@ mod tests {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
         let shown = |error: Error| error.to_string().replace(&format!("{}/", folder.path().display()), "");
-        import_gradient(&path, 1.5).map(|fitted| fitted.recipe).map_err(shown)
+        import_gradient(&path, 1.5, None).map(|imported| imported.fit.recipe).map_err(shown)
     }
 
     fn stops(recipe: &RampRecipe) -> Vec<(f32, String, Curve)> {
@@ -197,6 +174,51 @@ mod tests {
         }
     }
 
+    const TWO_GRADIENTS: &str = "[gd_resource type=\"ParticleProcessMaterial\" load_steps=4 format=3]\n\n\
+        [sub_resource type=\"Gradient\" id=\"Gradient_a\"]\ncolors = PackedColorArray(1, 0.5, 0, 1, 0.1, 0.1, 0.1, 1)\n\n\
+        [sub_resource type=\"GradientTexture1D\" id=\"GradientTexture1D_a\"]\ngradient = SubResource(\"Gradient_a\")\n\n\
+        [sub_resource type=\"Gradient\" id=\"Gradient_b\"]\ninterpolation_mode = 1\noffsets = PackedFloat32Array(0, 0.5, 1)\n\
+        colors = PackedColorArray(0, 0, 0, 1, 0, 1, 0, 1, 1, 1, 1, 1)\n\n\
+        [resource]\ncolor_ramp = SubResource(\"GradientTexture1D_a\")\ninterpolation_mode = 9\n";
+
+    #[test]
+    fn gradients_of_one_godot_file_are_read_by_section() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("two.tres");
+        std::fs::write(&path, TWO_GRADIENTS).unwrap();
+        let import = |name| import_gradient(&path, 1.5, name);
+        let first = import(None).unwrap();
+        let stop = |at: f32, color: &str, curve| (at, color.to_owned(), curve);
+        let linear = [stop(0.0, "#ff8000", Curve::Linear), stop(1.0, "#1a1a1a", Curve::Linear)];
+        assert_eq!(stops(&first.fit.recipe), linear);
+        let note = first.note.unwrap();
+        assert!(
+            note.ends_with("two.tres:3: read gradient Gradient_a, not Gradient_b; --gradient chooses one"),
+            "{note}"
+        );
+        let second = import(Some("Gradient_b")).unwrap();
+        assert_eq!((stops(&second.fit.recipe).len(), second.note), (3, None));
+        assert_eq!(second.fit.recipe.rows[0].stops[1].curve, Curve::Constant);
+        let refused = import(Some("Gradient_c")).unwrap_err().to_string();
+        assert!(refused.ends_with("no gradient \"Gradient_c\"; expected one of Gradient_a, Gradient_b"), "{refused}");
+        let refused = import_gradient(Path::new("a.ggr"), 1.5, Some("b")).unwrap_err().to_string();
+        assert!(refused.contains("expected no name: only a .tres has several gradients"), "{refused}");
+    }
+
+    #[test]
+    fn equal_hues_of_gimp_are_a_full_turn_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ggr");
+        for colors in [1, 2] {
+            let text = format!("GIMP Gradient\nName: A\n1\n0 0.5 1 1 0.749 0.749 1 1 0.749 0.749 1 0 {colors}\n");
+            std::fs::write(&path, text).unwrap();
+            let fit = import_gradient(&path, 1.5, None).unwrap().fit;
+            let light = fit.recipe.gradient().unwrap().sample(0.5, 0.0);
+            let code = light.map(srgb_from_linear);
+            assert!(code.distance(glam::Vec3::new(0.749, 1.0, 1.0)) < 0.01 && fit.error <= 1.5, "{colors}: {code}");
+        }
+    }
+
     #[test]
     fn an_image_without_a_gradient_is_refused() {
         let folder = tempfile::tempdir().unwrap();
@@ -208,7 +230,7 @@ mod tests {
         };
         let noise = image::RgbImage::from_fn(256, 256, |_, _| image::Rgb([random(), random(), random()]));
         noise.save(&path).unwrap();
-        let error = import_gradient(&path, 1.0).unwrap_err().to_string();
+        let error = import_gradient(&path, 1.0, None).unwrap_err().to_string();
         assert!(
             error.contains("noise.png: stops: the picture needs 6") && error.contains("expected at most 50000"),
             "{error}"
@@ -217,11 +239,11 @@ mod tests {
 
     #[test]
     fn blender_stops_are_read_as_linear_light() {
-        let text = "# a ramp\ncolor_mode = 'RGB'\ninterpolation: EASE\n0.5 (0.2140, 0.0, 1.0, 1.0)\n0, 1, 1, 1, 0.5\n\n1.5 [0 0 0]";
+        let text = "# a ramp\ncolor_mode = 'RGB'\ninterpolation: EASE\n0.5 (0.2140, 0.0, 1.0, 1.0)\n0, 0.5, 0.5, 0.5, 1\n\n1.5 [0 0 0]";
         let recipe = import_text("a.txt", text).unwrap();
         assert_eq!(recipe.blend, Blend::Linear);
         let stop = |at: f32, color: &str| (at, color.to_owned(), Curve::Ease);
-        assert_eq!(stops(&recipe), [stop(0.5, "#7f00ff"), stop(0.0, "#bcbcbc"), stop(1.0, "#000000")]);
+        assert_eq!(stops(&recipe), [stop(0.0, "#bcbcbc"), stop(0.5, "#7f00ff"), stop(1.0, "#000000")]);
         for (text, expected) in [
             ("0.5 1 1", "a.txt:1:1: not a stop; expected a position and a color: 0.5 (0.8, 0.4, 0.1, 1.0)"),
             (
@@ -260,7 +282,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a.ggr");
             std::fs::write(&path, text).unwrap();
-            let fitted = import_gradient(&path, 1.5).unwrap();
+            let fitted = import_gradient(&path, 1.5, None).unwrap().fit;
             let count = fitted.recipe.rows[0].stops.len();
             assert!(fitted.error <= 1.5 && count > 4 && count < 80, "{blend} {color}: {count}, {}", fitted.error);
         }

@@ -3,6 +3,7 @@
 mod blend_space;
 pub mod fit_stops;
 mod gimp;
+mod godot;
 pub mod gradient;
 mod gradient_text;
 pub mod import_gradient;
@@ -12,6 +13,7 @@ mod paint;
 mod place_formula;
 mod ramp_recipe;
 pub mod response;
+mod source_gradient;
 pub mod template;
 
 pub use ramp_recipe::{Blend, Curve, Gradient, HexColor, RECIPE_VERSION, RampRecipe, RampRow, RampStop};

@@ -28,7 +28,8 @@ const SIZE: UVec2 = UVec2::new(1280, 720);
 enum Command {
     /// List the built-in presets.
     List,
-    /// Load presets and their files, and report errors, doubtful values, and settings without effect.
+    /// Load presets and their files, and report errors, doubtful values, the use of columns of particle files, and
+    /// settings without effect.
     Check {
         /// Names or paths of presets.
         #[arg(required = true)]

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::*;
 
 fn read(content: &[u8]) -> Result<ParticleFrame, ParseError> {
-    super::read(content, 4)
+    super::read(content, 4).map(|read| read.frame)
 }
 
 const NAMES: &str = "property float x\nproperty double y\nproperty short z\nproperty uchar Alpha\nproperty int id\n\
@@ -166,6 +166,10 @@ fn errors_name_their_position() {
         (
             "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n",
             "a.ply: no column for the x position among the columns \"\"; expected x",
+        ),
+        (
+            "ply\nformat ascii 1.0\nelement vertex 0\nproperty float opacity\nproperty float scale_0\nend_header\n",
+            "a.ply: properties scale_0 and opacity or rot_0 are those of a Gaussian splat",
         ),
         (
             "ply\nformat ascii 1.0\nelement vertex 5\nproperty char x\nend_header\n1 2 3 4 5",

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use haze::Error;
 use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, MAX_ERROR_RANGE};
-use haze_author::ramp::import_gradient::import_gradient;
+use haze_author::ramp::import_gradient::{ImportedGradient, import_gradient};
 use haze_export::options::number;
-use haze_export::output::{FileChecks, print_line};
+use haze_export::output::{FileChecks, print_error, print_line};
 use haze_export::progress::with_progress;
 
 use super::ramp_io::{check_recipe_output, write_recipe};
@@ -23,11 +23,17 @@ pub struct Arguments {
     #[arg(long, value_name = "STEPS", default_value_t = DEFAULT_MAX_ERROR, allow_hyphen_values = true)]
     #[arg(value_parser = number(MAX_ERROR_RANGE))]
     error: f32,
+    /// Gradient to read of a Godot file with several: the id of its sub-resource. Without, the first.
+    #[arg(long, value_name = "ID")]
+    gradient: Option<String>,
 }
 
-pub fn run(Arguments { file, output, error }: &Arguments) -> Result<(), Error> {
+pub fn run(Arguments { file, output, error, gradient }: &Arguments) -> Result<(), Error> {
     check_recipe_output(&mut FileChecks::for_inputs([file]), output)?;
-    let fitted = with_progress(format!("haze: fitting {}", file.display()), || import_gradient(file, *error))?;
+    let ImportedGradient { fit: fitted, note } = with_progress(format!("haze: fitting {}", file.display()), || {
+        import_gradient(file, *error, gradient.as_deref())
+    })?;
+    note.iter().for_each(print_error);
     write_recipe(output, &fitted.recipe)?;
     let rows = fitted.recipe.rows.len();
     let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();

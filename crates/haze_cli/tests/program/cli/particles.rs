@@ -52,7 +52,11 @@ fn particle_files_are_checked_shown_and_copied_with_their_preset() {
     write("smoke_####.csv");
     let check = haze(folder.path(), &["preset", "check", "my.json"]);
     let said = String::from_utf8(check.stdout).unwrap();
-    assert_eq!(said, "my.json: good\n  systems[0].emitter.rate has no effect: the particles come from files\n");
+    let read = "systems[0].cache.path: smoke_0007.csv: position from P[x], P[y], P[z]; radius from pscale; amount from Alpha; id from id";
+    assert_eq!(
+        said,
+        format!("my.json: good\n  {read}\n  systems[0].emitter.rate has no effect: the particles come from files\n")
+    );
     let show = haze(folder.path(), &["preset", "show", "my.json", "--changed"]);
     let said = String::from_utf8(show.stdout).unwrap();
     for wanted in

@@ -84,6 +84,12 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
     fs::write(folder.path().join("a.txt"), "0 (0 0 0)\n1 (1 1 1)\n").unwrap();
     let line = stdout_of(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json"]);
     assert_eq!(line, "a.ramp.json: 2 stops, at most 0.5/255 off\n");
+    let gradients = ["a", "b"].map(|id| format!("[sub_resource type=\"Gradient\" id=\"{id}\"]\n"));
+    fs::write(folder.path().join("two.tres"), format!("[gd_resource type=\"Curve\"]\n{}", gradients.concat())).unwrap();
+    let two = haze(folder.path(), &["ramp", "import", "two.tres", "-o", "b.ramp.json"]);
+    assert_eq!(stderr(&two), "haze: two.tres:2: read gradient a, not b; --gradient chooses one\n");
+    let chosen = haze(folder.path(), &["ramp", "import", "two.tres", "-o", "b.ramp.json", "--gradient", "b"]);
+    assert_eq!((chosen.status.success(), stderr(&chosen)), (true, String::new()));
     let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.txt"]);
     assert!(line.contains("expected a name that ends in .ramp.json"), "{line}");
     fs::write(folder.path().join("a.png"), "GIF89a").unwrap();
