@@ -388,6 +388,9 @@ fn skies_that_cannot_be_read_say_what_would_be_right() {
             "{said}"
         );
     }
+    // Another first line, which Photoshop and others write.
+    let renamed = [b"#?RGBE", &whole[10..]].concat();
+    assert!(load(&renamed).unwrap().texels == load(&whole).unwrap().texels);
     let wide = load(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n").unwrap_err();
     assert!(wide.contains("40000x20000 texels, more than 8192x4096"), "{wide}");
 }
