@@ -22,7 +22,7 @@ fn shot(size: UVec2) -> Shot {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_scene/my.json");
     let mut shot = Shot::new(preset, &folder, size).unwrap();
     let backdrop = shot.backdrop.clone();
-    assert!(backdrop.take_camera(&mut shot.preset) && backdrop.take_lights(&mut shot.preset));
+    assert!(backdrop.take_camera(None, &mut shot.preset) && backdrop.take_lights(&mut shot.preset));
     shot
 }
 

@@ -10,7 +10,7 @@ use crate::backdrop::Backdrop;
 use crate::particle_files::check_particle_files;
 
 /// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
-/// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
+/// do not seem to fit their role, each with its field, and about parts of a scene file that are not shown. Files are searched for in `folders`; `path`, the preset's
 /// file, is only named in errors.
 pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
     let mut pictures = ImageCache::new(ImageSource::Folders(folders.clone()));
@@ -32,7 +32,10 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
         warnings.extend(found.into_iter().map(told));
     }
     errors.extend(check_particle_files(preset, path, folders).err().into_iter().flatten());
-    errors.extend(Backdrop::load(preset, path, folders).err());
+    match Backdrop::load(preset, path, folders) {
+        Ok(backdrop) => warnings.extend(backdrop.notes()),
+        Err(error) => errors.push(error),
+    }
     (errors, warnings)
 }
 
