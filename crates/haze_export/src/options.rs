@@ -136,7 +136,7 @@ impl ShotArguments {
     /// have no effect.
     pub fn load_outputs(&self, outputs: &[(&str, PathBuf, &str)]) -> Result<Shot, Error> {
         let ChangedShot { shot, names } = self.changed_shot(None)?;
-        for note in shot.backdrop.notes() {
+        for note in shot.backdrop.notes(&shot.preset.environment) {
             print_error(note);
         }
         for ((field, _), name) in self.set.iter().zip(&names) {

@@ -1,6 +1,7 @@
 //! Vectors of a glTF file, of any type of number.
 
-use gltf::accessor::{DataType, Item, Iter};
+use glam::{Vec3, Vec4};
+use gltf::accessor::{DataType, Dimensions, Item, Iter};
 
 /// Vectors of an accessor as floats: integers are whole numbers, or parts of 1 if the file says so.
 ///
@@ -14,12 +15,39 @@ where
     [i16; N]: Item,
     [u16; N]: Item,
 {
+    read(accessor, buffers, accessor.normalized())
+}
+
+/// Colors of an accessor, with alpha. Integers are parts of 1, also in files that do not say so.
+///
+/// # Errors
+/// As [`vectors`].
+pub fn colors(accessor: &gltf::Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<Vec4>, String> {
+    if accessor.dimensions() == Dimensions::Vec3 {
+        let colors = read::<3>(accessor, buffers, true)?;
+        return Ok(colors.into_iter().map(|color| Vec3::from(color).extend(1.0)).collect());
+    }
+    Ok(read::<4>(accessor, buffers, true)?.into_iter().map(Vec4::from).collect())
+}
+
+fn read<const N: usize>(
+    accessor: &gltf::Accessor<'_>,
+    buffers: &[Vec<u8>],
+    is_normalized: bool,
+) -> Result<Vec<[f32; N]>, String>
+where
+    [f32; N]: Item,
+    [i8; N]: Item,
+    [u8; N]: Item,
+    [i16; N]: Item,
+    [u16; N]: Item,
+{
     let index = accessor.index();
     let length = accessor.dimensions().multiplicity();
     if length != N {
         return Err(format!("accessor {index} has {length} numbers per item; expected {N}"));
     }
-    let scale = |most: f32| if accessor.normalized() { 1.0 / most } else { 1.0 };
+    let scale = |most: f32| if is_normalized { 1.0 / most } else { 1.0 };
     let read = match accessor.data_type() {
         _ if accessor.count() == 0 => Some(Vec::new()),
         DataType::F32 => items::<[f32; N]>(accessor, buffers).map(Iterator::collect),

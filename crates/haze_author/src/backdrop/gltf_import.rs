@@ -9,7 +9,6 @@ use std::path::Path;
 
 use glam::{Affine3A, Mat3, Mat4, Quat, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles as _};
 use gltf::Semantic;
-use gltf::accessor::Dimensions;
 use gltf::material::AlphaMode;
 use gltf::mesh::Mode;
 use haze_core::assets::image::{Image, catch_decoder_panic};
@@ -20,7 +19,7 @@ use image::{ImageDecoder as _, ImageReader, Limits};
 use super::bvh::Bvh;
 use super::color_texture::{ColorTexture, Wrap};
 use super::file_limits::MAX_DISTANCE;
-use super::gltf_accessor::vectors;
+use super::gltf_accessor::{colors, vectors};
 use super::gltf_files::{self, GltfFiles};
 use super::gltf_json::{GltfJson, Instances};
 use super::gltf_view::{camera_of, light_of, roll_of};
@@ -453,17 +452,12 @@ impl Shape {
             };
             shape.uvs = vectors::<2>(&uvs, buffers).map_err(named)?.into_iter().map(moved).collect();
         }
-        if let Some(colors) = primitive.get(&Semantic::Colors(0)) {
-            let colors: Vec<Vec4> = match colors.dimensions() {
-                Dimensions::Vec3 => {
-                    let colors = vectors::<3>(&colors, buffers).map_err(named)?;
-                    colors.into_iter().map(|color| Vec3::from(color).extend(1.0)).collect()
-                }
-                _ => vectors::<4>(&colors, buffers).map_err(named)?.into_iter().map(Vec4::from).collect(),
+        if let Some(of_corners) = primitive.get(&Semantic::Colors(0)) {
+            let painted = |of_corner: Vec4| match of_corner.is_finite() {
+                true => color * of_corner.max(Vec4::ZERO),
+                false => color,
             };
-            let painted =
-                |of_corner: Vec4| if of_corner.is_finite() { color * of_corner.max(Vec4::ZERO) } else { color };
-            shape.colors = colors.into_iter().map(painted).collect();
+            shape.colors = colors(&of_corners, buffers).map_err(named)?.into_iter().map(painted).collect();
         }
         let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
         shape.indices = match (reader.read_indices(), primitive.indices()) {

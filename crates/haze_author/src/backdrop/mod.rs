@@ -131,11 +131,20 @@ impl Backdrop {
         self.scene.as_deref().filter(|_| !cfg!(target_arch = "wasm32"))
     }
 
-    /// Parts of the scene file that are not shown, each in a line that begins with the file's name.
-    pub fn notes(&self) -> Vec<String> {
+    /// Parts of the scene file that are not shown, and a sky that may be turned wrong beside it, each in a line that begins with
+    /// the file's name.
+    pub fn notes(&self, environment: &Environment) -> Vec<String> {
         let Some(scene) = self.mesh() else { return Vec::new() };
         let file = scene.files.first().and_then(|file| file.file_name()).unwrap_or_default().to_string_lossy();
-        scene.notes.iter().map(|note| format!("{file}: {note}")).collect()
+        let mut notes: Vec<_> = scene.notes.iter().map(|note| format!("{file}: {note}")).collect();
+        if scene.is_from_blender && self.sky.is_some() && environment.sky_rotation == 0.0 {
+            notes.push(format!(
+                "{}: environment.sky_rotation is 0; expected {BLENDER_SKY_ROTATION} if it is the world of {file}, a scene \
+                 from Blender",
+                environment.sky_file
+            ));
+        }
+        notes
     }
 
     /// True if Blender wrote the scene file.

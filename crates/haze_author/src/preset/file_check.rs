@@ -33,7 +33,7 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
     }
     errors.extend(check_particle_files(preset, path, folders).err().into_iter().flatten());
     match Backdrop::load(preset, path, folders) {
-        Ok(backdrop) => warnings.extend(backdrop.notes()),
+        Ok(backdrop) => warnings.extend(backdrop.notes(&preset.environment)),
         Err(error) => errors.push(error),
     }
     (errors, warnings)
