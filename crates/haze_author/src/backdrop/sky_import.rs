@@ -18,6 +18,11 @@ use super::sky_image::{MAX_SKY_WIDTH, SkyImage};
 /// First line of a Radiance file as the decoder expects it.
 const SIGNATURE: &[u8] = b"#?RADIANCE";
 
+/// Format of a Radiance file whose colors are CIE XYZ.
+const XYZE: &[u8] = b"32-bit_rle_xyze";
+/// Length of a Radiance header in which the format is looked for, bytes.
+const MAX_HDR_HEADER: usize = 1 << 16;
+
 /// Loads a panorama. Its colors become linear Rec.709.
 ///
 /// # Errors
@@ -55,6 +60,10 @@ fn decode(bytes: &[u8]) -> Result<Decoded, String> {
     let after_first_line = |rest: &'_ [u8]| rest.iter().position(|byte| *byte == b'\n');
     let rest = bytes.strip_prefix(b"#?").and_then(|rest| rest.get(after_first_line(rest)?..));
     let rest = rest.ok_or_else(|| format!("neither of the two; expected {expected}"))?;
+    let header = rest.windows(2).take(MAX_HDR_HEADER).position(|two| two == b"\n\n").and_then(|end| rest.get(..end));
+    if header.is_some_and(|header| header.windows(XYZE.len()).any(|text| text == XYZE)) {
+        return Err("its colors are XYZ; expected RGB: export it as 32-bit_rle_rgbe".into());
+    }
     let image = pixels(HdrDecoder::new(SIGNATURE.chain(rest)), expected)?;
     Ok(Decoded { image, conversion: None })
 }

@@ -393,6 +393,8 @@ fn skies_that_cannot_be_read_say_what_would_be_right() {
     // Another first line, which Photoshop and others write.
     let renamed = [b"#?RGBE", &whole[10..]].concat();
     assert!(load(&renamed).unwrap().texels == load(&whole).unwrap().texels);
+    let xyz = load(b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 2\n").unwrap_err();
+    assert!(xyz.ends_with("its colors are XYZ; expected RGB: export it as 32-bit_rle_rgbe"), "{xyz}");
     let wide = load(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n").unwrap_err();
     assert!(wide.contains("40000x20000 texels, more than 8192x4096"), "{wide}");
 }
