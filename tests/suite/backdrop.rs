@@ -1,8 +1,10 @@
 //! Scene and sky from files: both renderers show the same, and the settings about them do what they say.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{UVec2, Vec3, Vec4};
+use haze_author::backdrop::{Bvh, SceneMaterial, SceneMesh, SceneVertex};
 use haze_author::preset::no_effect_reason;
 use haze_core::assets::image::Image;
 use haze_core::settings::set_field;
@@ -22,7 +24,7 @@ fn shot(size: UVec2) -> Shot {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_scene/my.json");
     let mut shot = Shot::new(preset, &folder, size).unwrap();
     let backdrop = shot.backdrop.clone();
-    assert!(backdrop.take_camera(&mut shot.preset) && backdrop.take_lights(&mut shot.preset));
+    assert!(backdrop.take_camera(None, &mut shot.preset) && backdrop.take_lights(&mut shot.preset));
     shot
 }
 
@@ -58,6 +60,51 @@ fn gpu_and_cpu_agree_on_a_scene_and_a_sky_from_files() {
         println!("{what}: smoke {smoke:.1} dB, scene {scene:.1} dB");
         assert!(smoke >= MIN_PSNR && scene >= MIN_PSNR, "{what}: smoke {smoke:.1} dB, scene {scene:.1} dB");
     }
+}
+
+#[test]
+fn gpu_and_cpu_agree_on_alpha_of_corners() {
+    let mut shot = shot(UVec2::new(160, 90));
+    // A floor, and a card above it whose alpha falls from left to right.
+    let corner = |position: Vec3, alpha| SceneVertex {
+        position,
+        normal: Vec3::Y,
+        color: Vec3::splat(0.5),
+        alpha,
+        ..SceneVertex::default()
+    };
+    let square = |height: f32, side: f32, right: f32| {
+        let at = |x: f32, z: f32| corner(Vec3::new(x * side, height, z * side), if x > 0.0 { right } else { 1.0 });
+        [at(-1.0, 1.0), at(1.0, 1.0), at(1.0, -1.0), at(-1.0, 1.0), at(1.0, -1.0), at(-1.0, -1.0)]
+    };
+    let picture = |right: f32, shot: &mut Shot| {
+        let vertices = [square(0.0, 5.0, 1.0), square(1.5, 1.5, right)].concat();
+        let triangles: Vec<_> =
+            vertices.as_chunks::<3>().0.iter().map(|corners| corners.map(|corner| corner.position)).collect();
+        let cut_out = SceneMaterial { cutoff: Some(0.5), ..SceneMaterial::default() };
+        let mut mesh = SceneMesh {
+            bvh: Bvh::new(&triangles),
+            vertices,
+            parts: vec![(0, 0..2), (1, 2..4)],
+            materials: vec![SceneMaterial::default(), cut_out],
+            ..SceneMesh::default()
+        };
+        mesh.make_masks();
+        shot.backdrop.scene = Some(Arc::new(mesh));
+        let behind = without_smoke(shot);
+        [render_on_gpu(&behind, true), behind.render_on_cpu().unwrap()]
+    };
+    (shot.preset.camera.position, shot.preset.camera.target) = (Vec3::new(0.0, 6.0, 6.0), Vec3::ZERO);
+    let black = Image::new(shot.size, Vec4::ZERO);
+    let solid = picture(1.0, &mut shot);
+    let faded = picture(0.0, &mut shot);
+    for pair in [&solid, &faded] {
+        let psnr = psnr_over(pair.each_ref(), [&black, &black]);
+        assert!(psnr >= MIN_PSNR, "{psnr:.1} dB");
+    }
+    let [before, after] = [&solid[0], &faded[0]];
+    let changed = before.texels.iter().zip(&after.texels).filter(|(a, b)| !a.abs_diff_eq(**b, 1e-3)).count();
+    assert!(changed > 200, "{changed} pixels of the card and its shadow");
 }
 
 #[test]

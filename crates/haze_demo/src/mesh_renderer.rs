@@ -58,6 +58,10 @@ impl UploadedMesh {
 
     /// Draws all triangles with a pipeline whose group 1 is a material.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        // A file of cameras and lights alone.
+        if self.parts.is_empty() {
+            return;
+        }
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         for (material, vertices) in &self.parts {
             pass.set_bind_group(1, material, &[]);
@@ -114,7 +118,7 @@ impl MeshPipelines {
             layout(&[(0, plain), (1, plain), (2, texture(false, wgpu::TextureViewDimension::D2Array))]);
         let drawn = [Some(scene_layout), Some(&material_layout)];
         let lit = [Some(scene_layout), Some(&sample_layout), Some(&hierarchy_layout)];
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32];
         let vertices = [Some(wgpu::VertexBufferLayout {
             array_stride: size_of::<SceneVertex>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,
@@ -248,9 +252,11 @@ impl MeshPipelines {
 }
 
 /// A triangle as `blocks` in scene_mesh.wgsl reads it.
-fn triangle_texels(mesh: &SceneMesh, triangle: u32) -> [[f32; 4]; 4] {
+fn triangle_texels(mesh: &SceneMesh, triangle: u32) -> [[f32; 4]; 5] {
     let shape = mesh.ray_triangle(triangle);
-    let mask = mesh.material(triangle).and_then(|material| material.mask).map_or(-1.0, |mask| mask as f32);
+    let material = mesh.material(triangle);
+    let mask = material.and_then(|material| material.mask).map_or(-1.0, |mask| mask as f32);
+    let cutoff = material.and_then(|material| material.cutoff).unwrap_or_default();
     let corner = |corner: u32| mesh.vertices.get((3 * triangle + corner) as usize).copied().unwrap_or_default();
     let [a, b, c] = [0, 1, 2].map(corner);
     let [first, second] = shape.edges;
@@ -259,6 +265,7 @@ fn triangle_texels(mesh: &SceneMesh, triangle: u32) -> [[f32; 4]; 4] {
         first.extend(a.u).to_array(),
         second.extend(a.v).to_array(),
         [b.u, b.v, c.u, c.v],
+        [a.alpha, b.alpha, c.alpha, cutoff],
     ]
 }
 

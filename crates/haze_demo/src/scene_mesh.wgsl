@@ -26,6 +26,8 @@ struct MeshVertex {
     @location(3) color: vec3f,
     // Texels per metre.
     @location(4) @interpolate(flat, either) texel_density: f32,
+    // Multiplies the alpha of the texture.
+    @location(5) alpha: f32,
 }
 
 @vertex
@@ -33,6 +35,7 @@ fn mesh_vertex(
     @location(0) position_u: vec4f,
     @location(1) normal_v: vec4f,
     @location(2) color_density: vec4f,
+    @location(3) alpha: f32,
 ) -> MeshVertex {
     let world = position_u.xyz * scene.mesh_scale;
     return MeshVertex(
@@ -42,11 +45,12 @@ fn mesh_vertex(
         vec2f(position_u.w, normal_v.w),
         color_density.rgb,
         color_density.w / scene.mesh_scale,
+        alpha,
     );
 }
 
-fn is_cut_out(uv: vec2f) -> bool {
-    return material.cutoff > 0.0 && textureSampleLevel(base_color, base_sampler, uv, 0.0).a < material.cutoff;
+fn is_cut_out(uv: vec2f, alpha: f32) -> bool {
+    return material.cutoff > 0.0 && textureSampleLevel(base_color, base_sampler, uv, 0.0).a * alpha < material.cutoff;
 }
 
 struct MeshPaint {
@@ -56,7 +60,7 @@ struct MeshPaint {
 
 @fragment
 fn mesh_paint_fragment(in: MeshVertex, @builtin(front_facing) is_front: bool) -> MeshPaint {
-    if is_cut_out(in.uv) {
+    if is_cut_out(in.uv, in.alpha) {
         discard;
     }
     let length_squared = dot(in.normal, in.normal);
@@ -77,7 +81,7 @@ fn texture_level(texel_density: f32, view_depth: f32, facing: f32) -> f32 {
 
 @fragment
 fn mesh_linear_fragment(in: MeshVertex) -> @location(0) vec4f {
-    if is_cut_out(in.uv) {
+    if is_cut_out(in.uv, in.alpha) {
         discard;
     }
     return vec4f((scene.clip_from_world * vec4f(in.world, 1.0)).w, 0.0, 0.0, 1.0);
@@ -86,7 +90,7 @@ fn mesh_linear_fragment(in: MeshVertex) -> @location(0) vec4f {
 // Writes depth alone.
 @fragment
 fn mesh_depth_fragment(in: MeshVertex) {
-    if is_cut_out(in.uv) {
+    if is_cut_out(in.uv, in.alpha) {
         discard;
     }
 }
@@ -109,9 +113,9 @@ fn place_of(index: u32) -> vec2u {
 
 // True if the ray meets the triangle at a distance from 0 to `far`, where it is not cut out. (Möller and Trumbore, 1997)
 fn blocks(index: u32, origin: vec3f, direction: vec3f, far: f32) -> bool {
-    let corner = textureLoad(triangles, place_of(4u * index), 0);
-    let first = textureLoad(triangles, place_of(4u * index + 1u), 0);
-    let second = textureLoad(triangles, place_of(4u * index + 2u), 0);
+    let corner = textureLoad(triangles, place_of(5u * index), 0);
+    let first = textureLoad(triangles, place_of(5u * index + 1u), 0);
+    let second = textureLoad(triangles, place_of(5u * index + 2u), 0);
     let across = cross(direction, second.xyz);
     let determinant = dot(first.xyz, across);
     if abs(determinant) < 1.0e-12 {
@@ -128,12 +132,14 @@ fn blocks(index: u32, origin: vec3f, direction: vec3f, far: f32) -> bool {
     if corner.w < 0.0 {
         return true;
     }
-    let others = textureLoad(triangles, place_of(4u * index + 3u), 0);
+    let others = textureLoad(triangles, place_of(5u * index + 3u), 0);
     let uv_corner = vec2f(first.w, second.w);
     let uv = uv_corner + (others.xy - uv_corner) * u + (others.zw - uv_corner) * v;
     let side = vec2f(textureDimensions(masks));
     let at = min(vec2u(fract(uv) * side), vec2u(side) - 1u);
-    return textureLoad(masks, at, u32(corner.w), 0).r > 0.5;
+    let alphas = textureLoad(triangles, place_of(5u * index + 4u), 0);
+    let alpha = alphas.x + (alphas.y - alphas.x) * u + (alphas.z - alphas.x) * v;
+    return textureLoad(masks, at, u32(corner.w), 0).r * alpha >= alphas.w;
 }
 
 // True if a surface lies at a distance from 0 to `far`. In units of the mesh.

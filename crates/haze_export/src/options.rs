@@ -16,7 +16,7 @@ use haze_demo::shot::Shot;
 use haze_preset::{AssetFolders, CompressionEffort, MAX_TIME, Preset, write_png};
 use image::DynamicImage;
 
-use super::backdrop_options::BackdropArguments;
+use super::backdrop_options::{BackdropArguments, BackdropShot, SKY_ROTATION};
 use super::backend::Backend;
 use super::inputs::image_paths;
 use super::memory_check::{BYTES_PER_PIXEL, check_memory};
@@ -132,8 +132,44 @@ impl ShotArguments {
         self.load_outputs(&outputs)
     }
 
-    /// Like [`Self::load_for`], with the ending of each output.
+    /// Like [`Self::load_for`], with the ending of each output. Says which parts of a scene file are not shown, and which changes
+    /// have no effect.
     pub fn load_outputs(&self, outputs: &[(&str, PathBuf, &str)]) -> Result<Shot, Error> {
+        let ChangedShot { shot, names } = self.changed_shot(None)?;
+        for note in shot.backdrop.notes(&shot.preset.environment) {
+            print_error(note);
+        }
+        for ((field, _), name) in self.set.iter().zip(&names) {
+            let reason = self.backdrop.no_effect_reason(name);
+            if let Some(reason) = reason.or_else(|| no_effect_reason_of_set(&shot.preset, field, name, self.run.size)) {
+                print_error(format_args!("--set {field} has no effect: {reason}"));
+            }
+        }
+        let is_turned = names.iter().any(|name| name == SKY_ROTATION);
+        if let Some(line) = self.backdrop.sky_note(&shot, is_turned) {
+            print_error(line);
+        }
+        self.check_outputs(&shot, outputs)?;
+        Ok(shot)
+    }
+
+    /// Refuses outputs that cannot be written, or that the shot was read from.
+    pub fn check_outputs(&self, shot: &Shot, outputs: &[(&str, PathBuf, &str)]) -> Result<(), Error> {
+        let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
+        let inputs = pictures.iter().map(PathBuf::as_path).chain(shot.backdrop.files()).chain([self.preset.as_path()]);
+        let mut files = FileChecks::for_inputs(inputs);
+        outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))
+    }
+
+    /// Builds the shot with one more field set, as by `--set`.
+    pub fn varied_shot(&self, option: &'static str, assignment: (&str, &str)) -> Result<VariedShot, Error> {
+        let (field, value) = assignment;
+        let ChangedShot { shot, names } = self.changed_shot(Some(Assignment { option, field, value }))?;
+        Ok(VariedShot { shot, name: names.last().cloned().unwrap_or_default() })
+    }
+
+    /// Applies all changes. Fields that a scene file replaces are set once more afterwards: `--set` is the last word.
+    fn changed_shot(&self, varied: Option<Assignment<'_>>) -> Result<ChangedShot, Error> {
         let mut preset = Preset::load(&self.preset)?;
         let of_systems = [
             ("systems.emitter.seed", self.seed.map(|seed| seed.to_string())),
@@ -147,34 +183,29 @@ impl ShotArguments {
             value.map_or(Ok(String::new()), |value| preset.set_field(field, &value))?;
         }
         preset.time = self.time.unwrap_or(preset.time);
-        let mut set = Vec::new();
-        for (field, value) in &self.set {
-            let name = preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
-            set.push((field, name));
-        }
-        for (field, name) in &set {
-            if let Some(reason) = no_effect_reason_of_set(&preset, field, name, self.run.size) {
-                print_error(format_args!("--set {field} has no effect: {reason}"));
+        let of_option = self.set.iter().map(|(field, value)| Assignment { option: "--set", field, value });
+        let assignments: Vec<_> = of_option.chain(varied).collect();
+        let mut names = Vec::new();
+        for assignment in &assignments {
+            match assignment.apply(&mut preset) {
+                Ok(name) => names.push(name),
+                // It may be a field of a light that the scene file has.
+                Err(_) if self.backdrop.replaces_settings() => names.push(String::new()),
+                Err(error) => return Err(error.into()),
             }
         }
-        let shot = self.shot(preset)?;
-        self.check_outputs(&shot, outputs)?;
-        Ok(shot)
-    }
-
-    /// Refuses outputs that cannot be written, or that the shot was read from.
-    pub fn check_outputs(&self, shot: &Shot, outputs: &[(&str, PathBuf, &str)]) -> Result<(), Error> {
-        let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
-        let inputs = pictures.iter().map(PathBuf::as_path).chain(shot.backdrop.files()).chain([self.preset.as_path()]);
-        let mut files = FileChecks::for_inputs(inputs);
-        outputs.iter().try_for_each(|(option, path, kind)| files.check_output(option, path, kind))
-    }
-
-    /// Builds a shot of a changed preset.
-    pub fn shot(&self, preset: Preset) -> Result<Shot, Error> {
         preset.validate()?;
         let folders = self.assets.folders(&self.preset)?;
-        self.backdrop.apply(preset, |preset| Shot::from_folders(preset, &self.preset, &folders, self.run.size))
+        let load = |preset| Shot::from_folders(preset, &self.preset, &folders, self.run.size);
+        let BackdropShot { mut shot, replaced } = self.backdrop.apply(preset, load)?;
+        for (assignment, name) in assignments.iter().zip(&mut names) {
+            let is_replaced = replaced.iter().any(|group| name.strip_prefix(group).is_some_and(is_field_or_end));
+            if name.is_empty() || is_replaced {
+                *name = assignment.apply(&mut shot.preset)?;
+            }
+        }
+        shot.preset.validate()?;
+        Ok(ChangedShot { shot, names })
     }
 
     /// Effort to compress PNGs.
@@ -187,6 +218,41 @@ impl ShotArguments {
         write_png(&self.output, &picture.into(), self.effort())?;
         print_line!("{}: {} on {}", self.output.display(), shot.preset.name, backend.description())
     }
+}
+
+/// A shot of a changed preset.
+struct ChangedShot {
+    shot: Shot,
+    /// Full names of the fields of all assignments.
+    names: Vec<String>,
+}
+
+/// A shot with one more field set.
+pub struct VariedShot {
+    /// The shot.
+    pub shot: Shot,
+    /// Full name of the field.
+    pub name: String,
+}
+
+/// A field and its value, as an option gives them.
+#[derive(Clone, Copy)]
+struct Assignment<'a> {
+    option: &'static str,
+    field: &'a str,
+    value: &'a str,
+}
+
+impl Assignment<'_> {
+    /// Sets the field. Returns its full name.
+    fn apply(&self, preset: &mut Preset) -> Result<String, FieldError> {
+        preset.set_field(self.field, self.value).map_err(|error| with_option(self.option, error))
+    }
+}
+
+/// True for the end of a name after that of its group.
+fn is_field_or_end(rest: &str) -> bool {
+    rest.is_empty() || rest.starts_with('.')
 }
 
 impl RunArguments {

@@ -1,25 +1,29 @@
-//! Reads a glTF file: triangles with base color, the first perspective camera, lights.
+//! Reads a glTF file: triangles with base color and their instances, perspective cameras, lights.
 //!
 //! glTF and haze agree on axes and unit: y up, right-handed, metres. Not read: emission, normal maps, roughness, metal,
-//! animation, skins, morph targets. Surfaces are matte, and both sides are drawn.
+//! animation, skins, morph targets. Surfaces are matte, and both sides are drawn. A note tells each part of a file that is not
+//! shown.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use glam::{Affine3A, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4};
-use gltf::khr_lights_punctual::Kind;
+use glam::{Affine3A, Mat3, Mat4, Quat, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles as _};
+use gltf::Semantic;
 use gltf::material::AlphaMode;
 use gltf::mesh::Mode;
 use haze_core::assets::image::{Image, catch_decoder_panic};
 use haze_core::error::{Error, one_line};
-use haze_core::frame::{Light, LightKind};
-use haze_preset::Camera;
+use haze_core::frame::MAX_LIGHTS;
 use image::{ImageDecoder as _, ImageReader, Limits};
 
 use super::bvh::Bvh;
 use super::color_texture::{ColorTexture, Wrap};
+use super::file_limits::MAX_DISTANCE;
+use super::gltf_accessor::{colors, vectors};
 use super::gltf_files::{self, GltfFiles};
-use super::scene_mesh::{SceneMaterial, SceneMesh, SceneVertex};
+use super::gltf_json::{GltfJson, Instances};
+use super::gltf_view::{camera_of, light_of, roll_of};
+use super::scene_mesh::{SceneCamera, SceneMaterial, SceneMesh, SceneVertex};
 
 /// Maximum number of triangles of a scene.
 pub const MAX_TRIANGLES: usize = 1_000_000;
@@ -29,10 +33,6 @@ pub const MAX_TEXTURE_SIDE: u32 = 8192;
 const SHOWN_TEXTURE_SIDE: u32 = 4096;
 /// Maximum memory of all textures as they are shown, bytes.
 pub const MAX_TEXTURE_BYTES: u64 = 512 << 20;
-/// Maximum distance from the origin, metres. As of lights and cameras.
-const MAX_DISTANCE: f32 = 1.0e5;
-/// Luminous efficacy by which Blender and others export watts as lumens, lm/W.
-const LUMENS_PER_WATT: f32 = 683.0;
 /// Maximum number of materials that are cut out.
 const MAX_MASKS: usize = 128;
 /// Alpha below which a blended material is cut out.
@@ -40,9 +40,8 @@ const BLEND_CUTOFF: f32 = 0.5;
 /// Alpha below which a masked material is cut out if the file does not say it: glTF's default.
 const MASK_CUTOFF: f32 = 0.5;
 
-/// Extensions whose data is read, or may be left out without harm to the shape.
-const KNOWN_EXTENSIONS: [&str; 4] =
-    ["KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_unlit", "KHR_materials_emissive_strength"];
+/// Roll of a camera that a note tells, degrees: half a pixel at the edge of an image of 1920x1080.
+const MIN_ROLL: f32 = 0.03;
 
 /// Loads a scene.
 ///
@@ -76,17 +75,7 @@ struct Import {
 
 impl Import {
     fn read(bytes: &[u8], files: &mut GltfFiles) -> Result<SceneMesh, String> {
-        let invalid = |error: gltf::Error| format!("{}; expected a glTF 2.0 file", one_line(error));
-        let unvalidated = gltf::Gltf::from_slice_without_validation(bytes).map_err(invalid)?;
-        let mut needed = unvalidated.extensions_required();
-        if let Some(unknown) = needed.find(|name| !KNOWN_EXTENSIONS.contains(name)) {
-            let expected = "an export without compression of meshes, with PNG or JPEG images";
-            return Err(format!(
-                "needs the extension {}, which haze does not read; expected {expected}",
-                one_line(unknown)
-            ));
-        }
-        let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(bytes).map_err(invalid)?;
+        let GltfJson { document, blob, instances, notes } = GltfJson::read(bytes)?;
         let mut blob = blob;
         let mut buffers = Vec::new();
         for buffer in document.buffers() {
@@ -100,8 +89,8 @@ impl Import {
             }
             buffers.push(data);
         }
-        let mut import =
-            Self { buffers, vertices: Vec::new(), triangles: 0, mesh: SceneMesh::default(), textures: HashMap::new() };
+        let mesh = SceneMesh { notes, ..SceneMesh::default() };
+        let mut import = Self { buffers, vertices: Vec::new(), triangles: 0, mesh, textures: HashMap::new() };
         // The last material is glTF's default.
         for material in document.materials() {
             import.add_material(&material, files)?;
@@ -110,11 +99,21 @@ impl Import {
         import.vertices = vec![Vec::new(); import.mesh.materials.len()];
         let scene = document.default_scene().or_else(|| document.scenes().next());
         let scene = scene.ok_or("has no scene; expected an export with a scene")?;
-        import.add_nodes(&scene)?;
-        import.finish()
+        let scenes = document.scenes().len();
+        if scenes > 1 {
+            import.note(&format!("scene {} of {scenes} is shown", scene.index() + 1));
+        }
+        import.add_nodes(&document, &scene, &instances)?;
+        let generator = document.as_json().asset.generator.as_deref().unwrap_or_default();
+        import.finish(generator)
     }
 
-    fn add_nodes(&mut self, scene: &gltf::Scene<'_>) -> Result<(), String> {
+    fn add_nodes(
+        &mut self,
+        document: &gltf::Document,
+        scene: &gltf::Scene<'_>,
+        instances: &HashMap<usize, Instances>,
+    ) -> Result<(), String> {
         let mut open: Vec<_> = scene.nodes().map(|node| (node, Affine3A::IDENTITY)).collect();
         open.reverse();
         let mut seen = HashSet::new();
@@ -122,14 +121,24 @@ impl Import {
             if !seen.insert(node.index()) {
                 return Err(format!("node {} has two parents; expected a tree of nodes", node.index()));
             }
+            let name = name_of(&node);
             let local = Mat4::from_cols_array_2d(&node.transform().matrix());
             let world = parent * Affine3A::from_mat4(local);
             if !world.is_finite() {
-                return Err(format!("the transform of {} is not finite; expected numbers", name_of(&node)));
+                return Err(format!("the transform of {name} is not finite; expected numbers"));
             }
             if let Some(mesh) = node.mesh() {
+                let instances = instances.get(&node.index());
+                let worlds = match instances {
+                    Some(instances) => self.transforms(document, instances, &world, &name)?,
+                    None => vec![world],
+                };
                 for primitive in mesh.primitives() {
-                    self.add_primitive(&primitive, &world, &name_of(&node))?;
+                    self.add_primitive(&primitive, &worlds, &name)?;
+                }
+                let weights = node.weights().or_else(|| mesh.weights()).unwrap_or_default();
+                if weights.iter().any(|weight| *weight != 0.0) {
+                    self.note("morph targets are not shown, whatever their weights");
                 }
             }
             if node.skin().is_some() {
@@ -138,8 +147,8 @@ impl Import {
             if let Some(light) = node.light() {
                 self.mesh.lights.push(light_of(&light, &world));
             }
-            if let Some(camera) = node.camera().filter(|_| self.mesh.camera.is_none()) {
-                self.mesh.camera = camera_of(&camera, &world);
+            if let Some(camera) = node.camera() {
+                self.add_camera(&node, &camera, &world);
             }
             let mut children: Vec<_> = node.children().map(|child| (child, world)).collect();
             children.reverse();
@@ -148,7 +157,75 @@ impl Import {
         Ok(())
     }
 
-    fn add_primitive(&mut self, primitive: &gltf::Primitive<'_>, world: &Affine3A, node: &str) -> Result<(), String> {
+    fn add_camera(&mut self, node: &gltf::Node<'_>, camera: &gltf::Camera<'_>, world: &Affine3A) {
+        let name = node.name().or(camera.name());
+        let name = name.map_or_else(|| format!("camera {}", camera.index()), str::to_owned);
+        let Some(found) = camera_of(camera, world) else {
+            self.note(&format!("camera {name:?} is orthographic; haze has perspective cameras only"));
+            return;
+        };
+        let roll = roll_of(&found, world).to_degrees();
+        if roll.abs() > MIN_ROLL {
+            self.note(&format!("camera {name:?} is rolled by {roll:.1} degrees; haze shows it upright"));
+        }
+        let own_name = camera.name().map(str::to_owned);
+        let is_taken = self.mesh.cameras.iter().any(|other| other.name == name);
+        let name = if is_taken { format!("{name} {}", self.mesh.cameras.len() + 1) } else { name };
+        self.mesh.cameras.push(SceneCamera { name, own_name, camera: found });
+    }
+
+    /// Transforms of the instances of a node.
+    fn transforms(
+        &self,
+        document: &gltf::Document,
+        instances: &Instances,
+        world: &Affine3A,
+        node: &str,
+    ) -> Result<Vec<Affine3A>, String> {
+        let accessor = |index: Option<usize>| {
+            let Some(index) = index else { return Ok(None) };
+            let found = document.accessors().nth(index).filter(|accessor| accessor.count() <= MAX_TRIANGLES);
+            let expected = format!("a whole file, with at most {MAX_TRIANGLES} instances");
+            found
+                .map(Some)
+                .ok_or_else(|| format!("the instances of {node} have no accessor {index}; expected {expected}"))
+        };
+        let damaged = |reason| format!("the instances of {node}: {reason}");
+        let read = |accessor: Option<gltf::Accessor<'_>>| {
+            accessor.map(|accessor| vectors::<3>(&accessor, &self.buffers)).transpose().map_err(damaged)
+        };
+        let translations = read(accessor(instances.translation)?)?;
+        let scales = read(accessor(instances.scale)?)?;
+        let rotations = accessor(instances.rotation)?.map(|accessor| vectors::<4>(&accessor, &self.buffers));
+        let rotations = rotations.transpose().map_err(damaged)?;
+        let counts =
+            [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+        let count = counts.into_iter().flatten().max().unwrap_or(1);
+        if counts.into_iter().flatten().any(|other| other != count) {
+            return Err(damaged("their attributes differ in number; expected a whole file".into()));
+        }
+        let place = |index: usize| {
+            let of =
+                |list: &Option<Vec<[f32; 3]>>| list.as_ref().and_then(|list| list.get(index)).copied().map(Vec3::from);
+            let rotation = rotations.as_ref().and_then(|list| list.get(index)).copied();
+            let rotation = rotation.map_or(Vec4::W, |rotation| Vec4::from(rotation).normalize_or(Vec4::W));
+            let local = Affine3A::from_scale_rotation_translation(
+                of(&scales).unwrap_or(Vec3::ONE),
+                Quat::from_vec4(rotation),
+                of(&translations).unwrap_or(Vec3::ZERO),
+            );
+            *world * local
+        };
+        Ok((0..count).map(place).collect())
+    }
+
+    /// Adds the triangles of a primitive, once for each transform.
+    fn add_primitive(
+        &mut self,
+        primitive: &gltf::Primitive<'_>,
+        worlds: &[Affine3A],
+        node: &str,
+    ) -> Result<(), String> {
         let corners: fn(usize) -> [usize; 3] = match primitive.mode() {
             Mode::Triangles => |triangle| [0, 1, 2].map(|corner| 3 * triangle + corner),
             // Every second triangle of a strip is turned.
@@ -170,89 +247,57 @@ impl Import {
         {
             return Err(too_many());
         }
-        let buffers = &self.buffers;
-        let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
-        let positions: Vec<_> = match reader.read_positions() {
-            Some(positions) => positions.map(|position| world.transform_point3(position.into())).collect(),
-            None => return Err(format!("{node} has no positions; expected a whole file")),
-        };
-        let is_far = |position: &Vec3| !position.is_finite() || position.abs().max_element() > MAX_DISTANCE;
-        if let Some(index) = positions.iter().position(is_far) {
-            let expected = format!("finite numbers up to {MAX_DISTANCE} m from the origin");
-            return Err(format!("corner {index} of {node} is at {}; expected {expected}", positions[index]));
-        }
-        let material = primitive.material();
-        let part = material.index().unwrap_or(self.mesh.materials.len() - 1);
-        let pbr = material.pbr_metallic_roughness();
-        let factor = Vec4::from(pbr.base_color_factor()).truncate();
-        let factor = if factor.is_finite() { factor.max(Vec3::ZERO) } else { Vec3::ONE };
-        let info = pbr.base_color_texture();
-        let transform = info.as_ref().and_then(gltf::texture::Info::texture_transform);
-        let set = transform.as_ref().and_then(gltf::texture::TextureTransform::tex_coord);
-        let set = set.or(info.as_ref().map(gltf::texture::Info::tex_coord)).unwrap_or_default();
-        let uvs: Vec<Vec2> =
-            reader.read_tex_coords(set).map(|uvs| uvs.into_f32().map(Vec2::from).collect()).unwrap_or_default();
-        let colors: Vec<Vec3> =
-            reader.read_colors(0).map(|colors| colors.into_rgb_f32().map(Vec3::from).collect()).unwrap_or_default();
-        let linear = Mat3::from(world.matrix3);
-        let is_mirrored = linear.determinant() < 0.0;
-        // Adjugate transposed: like the inverse transposed, but defined for flattened nodes too.
-        let of_normals = Mat3::from_cols(
-            linear.y_axis.cross(linear.z_axis),
-            linear.z_axis.cross(linear.x_axis),
-            linear.x_axis.cross(linear.y_axis),
-        );
-        let sign = if is_mirrored { -1.0 } else { 1.0 };
-        let normals: Vec<Vec3> = reader
-            .read_normals()
-            .map(|normals| normals.map(|normal| sign * (of_normals * Vec3::from(normal))).collect())
-            .unwrap_or_default();
-        let indices: Vec<usize> = match reader.read_indices() {
-            Some(indices) => indices.into_u32().map(|index| index as usize).collect(),
-            None => (0..positions.len()).collect(),
-        };
-        let count = if is_list { indices.len() / 3 } else { indices.len().saturating_sub(2) };
-        self.triangles += count;
+        let shape = Shape::read(primitive, &self.buffers, node)?;
+        let count = if is_list { shape.indices.len() / 3 } else { shape.indices.len().saturating_sub(2) };
+        self.triangles = self.triangles.saturating_add(count.saturating_mul(worlds.len()));
         if self.triangles > MAX_TRIANGLES {
             return Err(too_many());
         }
+        let part = primitive.material().index().unwrap_or(self.mesh.materials.len() - 1);
         let texture = self.mesh.materials.get(part).and_then(|material| material.texture);
         let texels = texture.and_then(|index| self.mesh.textures.get(index)).and_then(|texture| texture.levels.first());
         let texels = texels.map_or(Vec2::ZERO, |level| level.size.as_vec2());
         let vertices = self.vertices.get_mut(part).ok_or("a material is missing; expected a whole file")?;
-        for triangle in 0..count {
-            let mut corners = corners(triangle);
-            if is_mirrored {
-                corners.swap(1, 2);
-            }
-            let indices = corners.map(|corner| indices.get(corner).copied().unwrap_or(usize::MAX));
-            if let Some(index) = indices.into_iter().find(|&index| index >= positions.len()) {
-                return Err(format!("{node} names corner {index} of {}; expected a whole file", positions.len()));
-            }
-            let places = indices.map(|index| positions[index]);
-            let across = (places[1] - places[0]).cross(places[2] - places[0]);
-            if across == Vec3::ZERO {
-                continue;
-            }
-            let flat = across.normalize_or(Vec3::Y);
-            let uvs = indices.map(|index| {
-                let uv = uvs.get(index).copied().unwrap_or_default();
-                let moved = transform.as_ref().map_or(uv, |transform| transformed(uv, transform));
-                if moved.is_finite() { moved } else { Vec2::ZERO }
-            });
-            let [first, second] = [uvs[1] - uvs[0], uvs[2] - uvs[0]].map(|edge| edge * texels);
-            let texel_density = (first.perp_dot(second).abs() / across.length().max(f32::MIN_POSITIVE)).sqrt();
-            for (corner, index) in indices.into_iter().enumerate() {
-                let color = colors.get(index).copied().filter(|color| color.is_finite()).unwrap_or(Vec3::ONE);
-                let normal = normals.get(index).copied().unwrap_or(flat).normalize_or(flat);
-                vertices.push(SceneVertex {
-                    position: places[corner],
-                    u: uvs[corner].x,
-                    normal: if normal.is_finite() { normal } else { flat },
-                    v: uvs[corner].y,
-                    color: factor * color.max(Vec3::ZERO),
-                    texel_density: if texel_density.is_finite() { texel_density } else { 0.0 },
-                });
+        for world in worlds.iter().filter(|_| count > 0) {
+            let placed = Placed::new(world);
+            for triangle in 0..count {
+                let mut corners = corners(triangle);
+                if placed.is_mirrored {
+                    corners.swap(1, 2);
+                }
+                let indices = corners.map(|corner| shape.indices.get(corner).copied().unwrap_or(usize::MAX));
+                let count = shape.positions.len();
+                if let Some(index) = indices.into_iter().find(|&index| index >= count) {
+                    return Err(format!("{node} names corner {index} of {count}; expected a whole file"));
+                }
+                let places = indices.map(|index| world.transform_point3(shape.positions[index]));
+                let is_far = |place: &Vec3| !place.is_finite() || place.abs().max_element() > MAX_DISTANCE;
+                if let Some((index, place)) = indices.iter().zip(&places).find(|(_, place)| is_far(place)) {
+                    let expected = format!("finite numbers up to {MAX_DISTANCE} m from the origin");
+                    return Err(format!("corner {index} of {node} is at {place}; expected {expected}"));
+                }
+                let across = (places[1] - places[0]).cross(places[2] - places[0]);
+                if across == Vec3::ZERO {
+                    continue;
+                }
+                let flat = across.normalize_or(Vec3::Y);
+                let uvs = indices.map(|index| shape.uvs.get(index).copied().unwrap_or_default());
+                let [first, second] = [uvs[1] - uvs[0], uvs[2] - uvs[0]].map(|edge| edge * texels);
+                let texel_density = (first.perp_dot(second).abs() / across.length().max(f32::MIN_POSITIVE)).sqrt();
+                for (corner, index) in indices.into_iter().enumerate() {
+                    let color = shape.colors.get(index).copied().unwrap_or(shape.color);
+                    let normal = shape.normals.get(index).map_or(flat, |normal| placed.normals * *normal);
+                    let normal = normal.normalize_or(flat);
+                    vertices.push(SceneVertex {
+                        position: places[corner],
+                        u: uvs[corner].x,
+                        normal: if normal.is_finite() { normal } else { flat },
+                        v: uvs[corner].y,
+                        color: color.xyz(),
+                        texel_density: if texel_density.is_finite() { texel_density } else { 0.0 },
+                        alpha: color.w,
+                    });
+                }
             }
         }
         Ok(())
@@ -269,12 +314,12 @@ impl Import {
                 Some(BLEND_CUTOFF)
             }
         };
-        let alpha = material.pbr_metallic_roughness().base_color_factor()[3];
-        // The factor multiplies the texture's alpha.
-        let cutoff = cutoff.map(|cutoff| if alpha > 0.0 { cutoff / alpha } else { f32::INFINITY });
         self.mesh.materials.push(SceneMaterial { texture, cutoff: cutoff.filter(|cutoff| *cutoff > 0.0), mask: None });
         if material.emissive_factor().iter().any(|channel| *channel > 0.0) {
             self.note("surfaces that glow are shown without their glow");
+        }
+        if material.normal_texture().is_some() {
+            self.note("normal maps are not shown");
         }
         Ok(())
     }
@@ -323,21 +368,124 @@ impl Import {
         }
     }
 
-    fn finish(self) -> Result<SceneMesh, String> {
-        let Self { vertices, mut mesh, .. } = self;
-        for (material, vertices) in vertices.into_iter().enumerate().filter(|(_, vertices)| !vertices.is_empty()) {
-            let first = mesh.triangle_count();
-            mesh.vertices.extend(vertices);
-            mesh.parts.push((material, first..mesh.triangle_count()));
+    fn finish(mut self, generator: &str) -> Result<SceneMesh, String> {
+        for (material, vertices) in std::mem::take(&mut self.vertices).into_iter().enumerate() {
+            if !vertices.is_empty() {
+                let first = self.mesh.triangle_count();
+                self.mesh.vertices.extend(vertices);
+                self.mesh.parts.push((material, first..self.mesh.triangle_count()));
+            }
         }
-        if mesh.vertices.is_empty() {
-            return Err("has no triangles; expected a scene with meshes".into());
-        }
-        let masks = mesh.materials.iter().filter(|material| material.cutoff.is_some()).count();
+        let masks = self.mesh.materials.iter().filter(|material| material.cutoff.is_some()).count();
         if masks > MAX_MASKS {
             return Err(format!("{masks} materials are cut out by alpha; expected at most {MAX_MASKS}"));
         }
-        Ok(mesh)
+        let has_view = !self.mesh.cameras.is_empty() || !self.mesh.lights.is_empty();
+        if self.mesh.vertices.is_empty() && !has_view {
+            let notes: String = self.mesh.notes.iter().map(|note| format!(" ({note})")).collect();
+            return Err(format!("has no triangles, cameras or lights{notes}; expected a scene with meshes"));
+        }
+        let lights = self.mesh.lights.len();
+        if lights > MAX_LIGHTS {
+            self.note(&format!("{MAX_LIGHTS} of {lights} lights can be used"));
+        }
+        // haze's own example has Blender's unit.
+        if lights > 0 && !is_from_blender(generator) && generator != "haze" {
+            self.note(
+                "lights are read as Blender writes them, watts times 683: in another unit they are too dark or bright",
+            );
+        }
+        self.mesh.is_from_blender = is_from_blender(generator);
+        Ok(self.mesh)
+    }
+}
+
+/// Program that wrote a file, as Blender names itself: `Khronos glTF Blender I/O v5.0.21`.
+fn is_from_blender(generator: &str) -> bool {
+    generator.contains("Blender")
+}
+
+/// Data of a primitive, in the space of its node.
+struct Shape {
+    positions: Vec<Vec3>,
+    /// Empty for flat ones.
+    normals: Vec<Vec3>,
+    /// Places in the texture, transformed. Empty if there are none.
+    uvs: Vec<Vec2>,
+    /// Linear colors and alpha of corners, times those of the material. Empty if there are none.
+    colors: Vec<Vec4>,
+    /// Linear color and alpha of the material.
+    color: Vec4,
+    indices: Vec<usize>,
+}
+
+impl Shape {
+    fn read(primitive: &gltf::Primitive<'_>, buffers: &[Vec<u8>], node: &str) -> Result<Self, String> {
+        let named = |reason| format!("{node}: {reason}");
+        let pbr = primitive.material().pbr_metallic_roughness();
+        let of_file = Vec4::from(pbr.base_color_factor());
+        let color = if of_file.is_finite() { of_file.max(Vec4::ZERO) } else { Vec4::ONE };
+        let info = pbr.base_color_texture();
+        let transform = info.as_ref().and_then(gltf::texture::Info::texture_transform);
+        let set = transform.as_ref().and_then(gltf::texture::TextureTransform::tex_coord);
+        let set = set.or(info.as_ref().map(gltf::texture::Info::tex_coord)).unwrap_or_default();
+        let Some(positions) = primitive.get(&Semantic::Positions) else {
+            return Err(format!("{node} has no positions; expected a whole file"));
+        };
+        let positions = vectors::<3>(&positions, buffers).map_err(named)?;
+        let mut shape = Self {
+            positions: positions.into_iter().map(Vec3::from).collect(),
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            colors: Vec::new(),
+            color,
+            indices: Vec::new(),
+        };
+        if let Some(normals) = primitive.get(&Semantic::Normals) {
+            shape.normals = vectors::<3>(&normals, buffers).map_err(named)?.into_iter().map(Vec3::from).collect();
+        }
+        if let Some(uvs) = primitive.get(&Semantic::TexCoords(set)) {
+            let moved = |uv: [f32; 2]| {
+                let uv = Vec2::from(uv);
+                let moved = transform.as_ref().map_or(uv, |transform| transformed(uv, transform));
+                if moved.is_finite() { moved } else { Vec2::ZERO }
+            };
+            shape.uvs = vectors::<2>(&uvs, buffers).map_err(named)?.into_iter().map(moved).collect();
+        }
+        if let Some(of_corners) = primitive.get(&Semantic::Colors(0)) {
+            let painted = |of_corner: Vec4| match of_corner.is_finite() {
+                true => color * of_corner.max(Vec4::ZERO),
+                false => color,
+            };
+            shape.colors = colors(&of_corners, buffers).map_err(named)?.into_iter().map(painted).collect();
+        }
+        let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
+        shape.indices = match (reader.read_indices(), primitive.indices()) {
+            (Some(indices), _) => indices.into_u32().map(|index| index as usize).collect(),
+            (None, Some(_)) => return Err(format!("{node} has no indices; expected a whole file")),
+            (None, None) => (0..shape.positions.len()).collect(),
+        };
+        Ok(shape)
+    }
+}
+
+/// Place of an instance, as its normals and corners need it.
+struct Placed {
+    is_mirrored: bool,
+    normals: Mat3,
+}
+
+impl Placed {
+    fn new(world: &Affine3A) -> Self {
+        let linear = Mat3::from(world.matrix3);
+        let is_mirrored = linear.determinant() < 0.0;
+        // Adjugate transposed: like the inverse transposed, but defined for flattened nodes too.
+        let normals = Mat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        );
+        Self { is_mirrored, normals: if is_mirrored { -normals } else { normals } }
     }
 }
 
@@ -349,49 +497,6 @@ fn transformed(uv: Vec2, transform: &gltf::texture::TextureTransform<'_>) -> Vec
     let (sin, cos) = transform.rotation().sin_cos();
     let scaled = uv * Vec2::from(transform.scale());
     Vec2::new(cos * scaled.x + sin * scaled.y, cos * scaled.y - sin * scaled.x) + Vec2::from(transform.offset())
-}
-
-fn camera_of(camera: &gltf::Camera<'_>, world: &Affine3A) -> Option<Camera> {
-    let gltf::camera::Projection::Perspective(perspective) = camera.projection() else { return None };
-    let position: Vec3 = world.translation.into();
-    let forward = world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
-    let near = perspective.znear().clamp(0.001, 100.0);
-    Some(Camera {
-        position: position.clamp(Vec3::splat(-MAX_DISTANCE), Vec3::splat(MAX_DISTANCE)),
-        target: position + forward,
-        fov: perspective.yfov().to_degrees().clamp(1.0, 150.0),
-        near,
-        far: perspective.zfar().unwrap_or(Camera::default().far).clamp(near * 1.01, 1.0e5),
-        ..Camera::default()
-    })
-}
-
-/// Light in haze's unit: candela or lux, divided by π, and by the factor by which exporters turn watts into lumens. A white
-/// matte surface is then as bright as in Blender at exposure 0.
-fn light_of(light: &gltf::khr_lights_punctual::Light<'_>, world: &Affine3A) -> Light {
-    let (kind, inner, outer) = match light.kind() {
-        Kind::Directional => (LightKind::Directional, 0.0, 0.0),
-        Kind::Point => (LightKind::Point, 0.0, 0.0),
-        Kind::Spot { inner_cone_angle, outer_cone_angle } => (LightKind::Spot, inner_cone_angle, outer_cone_angle),
-    };
-    let finite = |value: f32| if value.is_finite() { value.max(0.0) } else { 0.0 };
-    let intensity = finite(light.intensity() / (LUMENS_PER_WATT * std::f32::consts::PI)).min(1.0e9);
-    // The distance at which it has faded to what no picture shows.
-    let seen = (intensity / 1.0e-3).sqrt().clamp(5.0, 1.0e3);
-    let mut found = Light {
-        kind,
-        position: Vec3::from(world.translation).clamp(Vec3::splat(-MAX_DISTANCE), Vec3::splat(MAX_DISTANCE)),
-        direction: world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Y),
-        color: Vec3::from(light.color().map(finite)).min(Vec3::splat(100.0)),
-        intensity,
-        range: light.range().filter(|range| *range > 0.01).unwrap_or(seen),
-        ..Light::default()
-    };
-    if kind == LightKind::Spot {
-        found.outer_angle = finite(outer.to_degrees()).clamp(0.1, 89.9);
-        found.inner_angle = finite(inner.to_degrees()).min(found.outer_angle).min(89.0);
-    }
-    found
 }
 
 fn decode(bytes: &[u8]) -> Result<Image<[u8; 4]>, String> {

@@ -2,11 +2,19 @@
 
 mod bvh;
 mod color_texture;
+#[cfg(not(target_arch = "wasm32"))]
+mod exr_header;
 mod file_limits;
+#[cfg(not(target_arch = "wasm32"))]
+mod gltf_accessor;
 #[cfg(not(target_arch = "wasm32"))]
 mod gltf_files;
 #[cfg(not(target_arch = "wasm32"))]
 mod gltf_import;
+#[cfg(not(target_arch = "wasm32"))]
+mod gltf_json;
+#[cfg(not(target_arch = "wasm32"))]
+mod gltf_view;
 mod scene_mesh;
 mod sky_image;
 #[cfg(not(target_arch = "wasm32"))]
@@ -31,11 +39,15 @@ pub use color_texture::{ColorTexture, Wrap};
 pub use file_limits::MAX_BACKDROP_FILE_BYTES;
 #[cfg(not(target_arch = "wasm32"))]
 pub use gltf_import::{MAX_TEXTURE_BYTES, MAX_TEXTURE_SIDE, MAX_TRIANGLES, load_scene};
-pub use scene_mesh::{MASK_SIDE, SceneMaterial, SceneMesh, SceneVertex, SurfacePoint};
+pub use scene_mesh::{MASK_SIDE, SceneCamera, SceneMaterial, SceneMesh, SceneVertex, SurfacePoint};
 pub use sky_image::{MAX_SKY_WIDTH, SkyImage, uv as sky_uv};
 #[cfg(not(target_arch = "wasm32"))]
 pub use sky_import::load_sky;
 pub use sky_light::SkyLight;
+
+/// `environment.sky_rotation` of a panorama that is the world of a Blender scene, beside the glTF file of that scene. The middle
+/// of such a panorama lies in the direction +X of Blender, +x of the file; that of haze's in -z.
+pub const BLENDER_SKY_ROTATION: f32 = 90.0;
 
 /// Scene and sky that a preset names. Clones share them. Two are equal if they share them: files are not compared.
 #[derive(Clone, Debug, Default)]
@@ -119,15 +131,41 @@ impl Backdrop {
         self.scene.as_deref().filter(|_| !cfg!(target_arch = "wasm32"))
     }
 
-    /// Replaces a preset's camera by that of the scene, except for the exposure. False if there is none.
-    pub fn take_camera(&self, preset: &mut Preset) -> bool {
+    /// Parts of the scene file that are not shown, and a sky that may be turned wrong beside it, each in a line that begins with
+    /// the file's name.
+    pub fn notes(&self, environment: &Environment) -> Vec<String> {
+        let Some(scene) = self.mesh() else { return Vec::new() };
+        let file = scene.files.first().and_then(|file| file.file_name()).unwrap_or_default().to_string_lossy();
+        let mut notes: Vec<_> = scene.notes.iter().map(|note| format!("{file}: {note}")).collect();
+        if scene.is_from_blender && self.sky.is_some() && environment.sky_rotation == 0.0 {
+            notes.push(format!(
+                "{}: environment.sky_rotation is 0; expected {BLENDER_SKY_ROTATION} if it is the world of {file}, a scene \
+                 from Blender",
+                environment.sky_file
+            ));
+        }
+        notes
+    }
+
+    /// True if Blender wrote the scene file.
+    pub fn is_from_blender(&self) -> bool {
+        self.mesh().is_some_and(|scene| scene.is_from_blender)
+    }
+
+    /// Replaces a preset's camera by that of the scene with this name, or its first, except for the exposure. Its tracks go.
+    /// False if there is none.
+    pub fn take_camera(&self, name: Option<&str>, preset: &mut Preset) -> bool {
         let scale = preset.environment.scene_scale;
-        let Some(camera) = self.mesh().and_then(|scene| scene.camera_at_scale(scale)) else { return false };
+        let Some(camera) = self.mesh().and_then(|scene| scene.camera_at_scale(name, scale)) else { return false };
         preset.camera = Camera { exposure: preset.camera.exposure, ..camera };
+        preset.animation.retain(|track| {
+            let of_camera = track.setting.strip_prefix("camera.");
+            of_camera.is_none_or(|field| field == "exposure")
+        });
         true
     }
 
-    /// Replaces a preset's lights by those of the scene. False if it has none.
+    /// Replaces a preset's lights by those of the scene. Their tracks go. False if it has none.
     pub fn take_lights(&self, preset: &mut Preset) -> bool {
         let scale = preset.environment.scene_scale;
         let lights = self.mesh().map(|scene| scene.lights_at_scale(scale)).unwrap_or_default();
@@ -135,6 +173,7 @@ impl Backdrop {
             return false;
         }
         preset.lights = lights;
+        preset.animation.retain(|track| !track.setting.starts_with("lights["));
         true
     }
 }

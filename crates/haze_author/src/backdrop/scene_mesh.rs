@@ -11,7 +11,7 @@ use haze_preset::Camera;
 use super::bvh::{Bvh, RayHit, RayTriangle};
 use super::color_texture::ColorTexture;
 
-/// Corner of a triangle, as a vertex buffer holds it: three `vec4f`.
+/// Corner of a triangle, as a vertex buffer holds it: three `vec4f` and a float.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct SceneVertex {
@@ -27,6 +27,25 @@ pub struct SceneVertex {
     pub color: Vec3,
     /// Texels of the texture per unit of the file, the same at all corners of a triangle.
     pub texel_density: f32,
+    /// Multiplies the alpha of the texture, if the material is cut out.
+    pub alpha: f32,
+}
+
+/// Camera of a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneCamera {
+    /// Name of its node, or else its own: in Blender, that of the object.
+    pub name: String,
+    /// Its own name: in Blender, that of the object's data.
+    pub own_name: Option<String>,
+    /// Its place and planes are in units of the file; it has the default exposure.
+    pub camera: Camera,
+}
+
+impl SceneCamera {
+    fn is_named(&self, name: &str) -> bool {
+        self.name == name || self.own_name.as_deref() == Some(name)
+    }
 }
 
 /// Material of a scene.
@@ -34,9 +53,9 @@ pub struct SceneVertex {
 pub struct SceneMaterial {
     /// Index of its texture; `None` for a plain color.
     pub texture: Option<usize>,
-    /// Alpha below which it is cut out; `None` for a solid surface.
+    /// Alpha, that of a corner times that of the texture, below which it is cut out; `None` for a solid surface.
     pub cutoff: Option<f32>,
-    /// Index in [`SceneMesh::masks`] of what it leaves, if it is cut out.
+    /// Index in [`SceneMesh::masks`] of the alpha of its texture, if it is cut out.
     pub mask: Option<usize>,
 }
 
@@ -54,16 +73,18 @@ pub struct SceneMesh {
     pub materials: Vec<SceneMaterial>,
     /// Textures.
     pub textures: Vec<ColorTexture>,
-    /// Masks of materials that are cut out, as rays to lights see them: [`MASK_SIDE`] squared, 255 where a surface is.
+    /// Alpha of materials that are cut out, as rays to lights see it: [`MASK_SIDE`] squared, 255 for 1.
     pub masks: Vec<Image<u8>>,
     /// Hierarchy over all triangles.
     pub bvh: Bvh,
-    /// First perspective camera. Its place and planes are in units of the file; it has the default exposure.
-    pub camera: Option<Camera>,
+    /// Perspective cameras, in the order of the file's tree.
+    pub cameras: Vec<SceneCamera>,
     /// Lights. Their places and ranges are in units of the file.
     pub lights: Vec<Light>,
     /// Files that it was read from: the scene file first, then buffers and images beside it.
     pub files: Vec<PathBuf>,
+    /// True if Blender wrote the file.
+    pub is_from_blender: bool,
     /// Parts of the file that are not shown, in words.
     pub notes: Vec<String>,
 }
@@ -89,14 +110,15 @@ impl SceneMesh {
 
     /// Its parts in words: `1204 triangles, a camera, 2 lights`, and what of the file is not shown.
     pub fn description(&self) -> String {
-        let camera = self.camera.map(|_| ", a camera").unwrap_or_default();
-        let lights = match self.lights.len() {
+        let counted = |count: usize, noun: &str| match count {
             0 => String::new(),
-            1 => ", a light".into(),
-            count => format!(", {count} lights"),
+            1 => format!(", a {noun}"),
+            count => format!(", {count} {noun}s"),
         };
+        let cameras = counted(self.cameras.len(), "camera");
+        let lights = counted(self.lights.len(), "light");
         let notes: String = self.notes.iter().map(|note| format!("; {note}")).collect();
-        format!("{} triangles{camera}{lights}{notes}", self.triangle_count())
+        format!("{} triangles{cameras}{lights}{notes}", self.triangle_count())
     }
 
     /// Corners of the box around all triangles, in units of the file; `None` without triangles.
@@ -104,10 +126,10 @@ impl SceneMesh {
         self.bvh.nodes.first().map(|root| (root.min, root.max))
     }
 
-    /// Camera in metres, with the point in the middle of its image at the depth of the scene's middle. `scale`: metres per unit
-    /// of the file.
-    pub fn camera_at_scale(&self, scale: f32) -> Option<Camera> {
-        let camera = self.camera?;
+    /// Camera of this name, or the first, in metres, with the point in the middle of its image at the depth of the scene's
+    /// middle. `scale`: metres per unit of the file.
+    pub fn camera_at_scale(&self, name: Option<&str>, scale: f32) -> Option<Camera> {
+        let camera = self.cameras.iter().find(|camera| name.is_none_or(|name| camera.is_named(name)))?.camera;
         let forward = camera.target - camera.position;
         let middle = self.bounds().map_or(camera.target, |(min, max)| 0.5 * (min + max));
         let depth = forward.dot(middle - camera.position).max(1.0);
@@ -163,28 +185,27 @@ impl SceneMesh {
 
     /// Makes the masks of all materials that are cut out.
     pub fn make_masks(&mut self) {
-        for material in &mut self.materials {
-            let Some(cutoff) = material.cutoff else { continue };
-            let texture = material.texture.and_then(|index| self.textures.get(index));
+        for material in self.materials.iter_mut().filter(|material| material.cutoff.is_some()) {
             let mut mask = Image::new(UVec2::splat(MASK_SIDE), 255);
-            mask.for_each(|at, texel| {
-                let uv = (at.as_vec2() + 0.5) / MASK_SIDE as f32;
-                let alpha = texture.map_or(1.0, |texture| {
-                    let side = texture.levels.first().map_or(1, |level| level.size.max_element());
-                    texture.sample(uv, (side as f32 / MASK_SIDE as f32).log2()).w
+            if let Some(texture) = material.texture.and_then(|index| self.textures.get(index)) {
+                let side = texture.levels.first().map_or(1, |level| level.size.max_element());
+                let level = (side as f32 / MASK_SIDE as f32).log2();
+                mask.for_each(|at, texel| {
+                    let uv = (at.as_vec2() + 0.5) / MASK_SIDE as f32;
+                    *texel = (texture.sample(uv, level).w * 255.0).round() as u8;
                 });
-                *texel = if alpha < cutoff { 0 } else { 255 };
-            });
+            }
             material.mask = Some(self.masks.len());
             self.masks.push(mask);
         }
     }
 
     fn is_in_mask(&self, hit: &RayHit) -> bool {
-        let mask = self.material(hit.triangle).and_then(|material| self.masks.get(material.mask?));
-        let Some(mask) = mask else { return true };
+        let Some(material) = self.material(hit.triangle) else { return true };
+        let Some(mask) = material.mask.and_then(|mask| self.masks.get(mask)) else { return true };
         let uv = self.uv(hit);
-        mask.load(((uv - uv.floor()) * MASK_SIDE as f32).as_ivec2()) > 127
+        let alpha = f32::from(mask.load(((uv - uv.floor()) * MASK_SIDE as f32).as_ivec2())) / 255.0;
+        alpha * self.alpha(hit) >= material.cutoff.unwrap_or_default()
     }
 
     /// Texture of a triangle.
@@ -208,10 +229,15 @@ impl SceneMesh {
         a + (b - a) * hit.weights[0] + (c - a) * hit.weights[1]
     }
 
+    fn alpha(&self, hit: &RayHit) -> f32 {
+        let [a, b, c] = self.corners(hit.triangle).map(|corner| corner.alpha);
+        a + (b - a) * hit.weights[0] + (c - a) * hit.weights[1]
+    }
+
     /// False where the material is cut out.
     fn is_solid(&self, hit: &RayHit) -> bool {
         let Some(cutoff) = self.material(hit.triangle).and_then(|material| material.cutoff) else { return true };
         let alpha = self.texture(hit.triangle).map_or(1.0, |texture| texture.sample(self.uv(hit), 0.0).w);
-        alpha >= cutoff
+        alpha * self.alpha(hit) >= cutoff
     }
 }

@@ -1,5 +1,7 @@
 //! Scenes made by code: the example of the documents, and damaged files.
 
+mod gltf;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -286,10 +288,10 @@ fn triangles_camera_and_lights_of_the_example_come_back() {
     // The floor has 48 m, the beam ends at 4 m.
     let (min, max) = scene.bounds().unwrap();
     assert!(min.abs_diff_eq(Vec3::new(-24.0, 0.0, -24.0), 1e-4) && max.abs_diff_eq(Vec3::new(24.0, 4.0, 24.0), 1e-4));
-    let camera = scene.camera_at_scale(1.0).unwrap();
+    let camera = scene.camera_at_scale(None, 1.0).unwrap();
     assert!(camera.position.abs_diff_eq(Vec3::new(0.4, 1.9, 8.2), 1e-5));
     assert!((camera.fov - 0.66_f32.to_degrees()).abs() < 1e-3 && camera.target.z.abs() < 0.1, "{camera:?}");
-    let doubled = scene.camera_at_scale(2.0).unwrap();
+    let doubled = scene.camera_at_scale(None, 2.0).unwrap();
     assert!(doubled.position.abs_diff_eq(camera.position * 2.0, 1e-4));
     let [sun, lamp] = &scene.lights_at_scale(1.0)[..] else { panic!("two lights") };
     // 3 W/m² on white are 3/π, 800 W of a lamp are 800 / 4π / π at one metre, as in Blender.
@@ -320,7 +322,7 @@ fn nodes_are_transformed_and_normals_made_up() {
     // Mirrored: the corners are turned round, so that the front stays in front.
     assert_eq!(places, [Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 2.0, 5.0), Vec3::new(-2.0, 0.0, 5.0)]);
     assert!(scene.vertices.iter().all(|vertex| vertex.normal.abs_diff_eq(Vec3::Z, 1e-6)), "{:?}", scene.vertices);
-    assert!(scene.camera.is_none() && scene.lights.is_empty());
+    assert!(scene.cameras.is_empty() && scene.lights.is_empty());
 }
 
 #[test]
@@ -346,7 +348,7 @@ fn damaged_and_unknown_files_say_what_would_be_right() {
         "{draco}"
     );
     let empty = said(&triangle(CORNERS, "{}", ""));
-    assert!(empty.contains("has no triangles; expected a scene with meshes"), "{empty}");
+    assert!(empty.contains("has no triangles, cameras or lights; expected a scene with meshes"), "{empty}");
     let counted = String::from_utf8_lossy(&whole).replace(r#""count":3,"#, r#""count":9,"#);
     assert!(said(counted.as_bytes()).contains("expected"), "an accessor beyond its buffer");
     let huge = String::from_utf8_lossy(&whole).replace(r#""count":3,"type""#, r#""count":4000000000,"type""#);
@@ -388,6 +390,11 @@ fn skies_that_cannot_be_read_say_what_would_be_right() {
             "{said}"
         );
     }
+    // Another first line, which Photoshop and others write.
+    let renamed = [b"#?RGBE", &whole[10..]].concat();
+    assert!(load(&renamed).unwrap().texels == load(&whole).unwrap().texels);
+    let xyz = load(b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 2\n").unwrap_err();
+    assert!(xyz.ends_with("its colors are XYZ; expected RGB: export it as 32-bit_rle_rgbe"), "{xyz}");
     let wide = load(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n").unwrap_err();
     assert!(wide.contains("40000x20000 texels, more than 8192x4096"), "{wide}");
 }

@@ -9,9 +9,9 @@ use super::role_check::role_warnings;
 use crate::backdrop::Backdrop;
 use crate::particle_files::check_particle_files;
 
-/// Loads the images and particle files of every system. Returns all errors, and notes, each with its field: images that
-/// do not seem to fit their role, and the attributes that columns of particles are read as. Files are searched for in `folders`; `path`, the preset's
-/// file, is only named in errors.
+/// Loads all files that a preset names. Returns all errors, and notes, each with its field: images that do not seem to fit
+/// their role, the attributes that columns of particles are read as, and parts of a scene file that are not shown. Files
+/// are searched for in `folders`; `path`, the preset's file, is only named in errors.
 pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
     let mut pictures = ImageCache::new(ImageSource::Folders(folders.clone()));
     let (mut errors, mut warnings) = (Vec::new(), Vec::new());
@@ -42,7 +42,10 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec
     let (of_particles, columns) = check_particle_files(preset, path, folders);
     errors.extend(of_particles);
     warnings.extend(columns);
-    errors.extend(Backdrop::load(preset, path, folders).err());
+    match Backdrop::load(preset, path, folders) {
+        Ok(backdrop) => warnings.extend(backdrop.notes(&preset.environment)),
+        Err(error) => errors.push(error),
+    }
     (errors, warnings)
 }
 

@@ -2,12 +2,12 @@
 
 use clap::Args;
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::Error;
 use haze_author::preset::no_effect_reason_of_set;
 use pollster::block_on;
 
 use haze_export::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
-use haze_export::options::{ShotArguments, parse_assignment, with_option};
+use haze_export::options::{ShotArguments, VariedShot, parse_assignment};
 use haze_export::output::print_error;
 
 #[derive(Args)]
@@ -39,11 +39,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut name = String::new();
     let (mut cells, mut reasons) = (Vec::new(), Vec::new());
     for value in values {
-        let mut preset = base.preset.clone();
-        let set = preset.set_field(field, value).map_err(|error: FieldError| with_option("--vary", error));
-        name = set?;
-        reasons.push(no_effect_reason_of_set(&preset, field, &name, size));
-        let mut shot = arguments.shot.shot(preset)?;
+        let VariedShot { mut shot, name: varied } = arguments.shot.varied_shot("--vary", (field, value))?;
+        reasons.push(no_effect_reason_of_set(&shot.preset, field, &varied, size));
+        name = varied;
         shot.size = size;
         cells.push((value.clone(), shot));
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use haze::{Error, FieldError};
-use haze_author::backdrop::Backdrop;
+use haze_author::backdrop::{BLENDER_SKY_ROTATION, Backdrop};
 use haze_core::settings::BackdropKind;
 use haze_preset::AssetFolders;
 
@@ -50,16 +50,29 @@ impl DroppedBackdrop {
         if !is_known {
             session.backdrop_folders.push(folder);
         }
+        let beside = session.backdrop.of(&session.document.preset);
+        let is_turned = kind == BackdropKind::Sky && beside.is_from_blender();
         let said = match (kind, &loaded.scene) {
-            (BackdropKind::Scene, Some(scene)) => format!("{name} is now the scene: {}", scene.description()),
+            (BackdropKind::Scene, Some(scene)) => {
+                let is_unturned = session.document.preset.environment.sky_rotation == 0.0;
+                let hint = match scene.is_from_blender && beside.sky.is_some() && is_unturned {
+                    true => "; if the sky is its world, press Sky from Blender",
+                    false => "",
+                };
+                format!("{name} is now the scene: {}{hint}", scene.description())
+            }
             _ => {
                 let mut systems = session.document.preset.systems.iter();
                 let is_dark = !systems.any(|system| system.settings.ambient.intensity > 0.0);
                 let smoke =
                     if is_dark { ", but not the smoke, whose ambient intensity is 0" } else { " and the smoke" };
-                format!("{name} is now the sky. It lights the scene{smoke}")
+                let turned = if is_turned { ", turned as the world of a scene from Blender" } else { "" };
+                format!("{name} is now the sky{turned}. It lights the scene{smoke}")
             }
         };
+        if is_turned {
+            session.document.preset.environment.sky_rotation = BLENDER_SKY_ROTATION;
+        }
         session.backdrop.put(kind, &name, loaded);
         *session.document.preset.environment.backdrop_name_mut(kind) = name;
         session.messages.clear("backdrop");

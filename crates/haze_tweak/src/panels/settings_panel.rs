@@ -1,7 +1,7 @@
 //! Settings panel at the right of the window: the look first, then the parts of the preset.
 
 use eframe::egui::{self, Ui};
-use haze_author::backdrop::Backdrop;
+use haze_author::backdrop::{BLENDER_SKY_ROTATION, Backdrop};
 use haze_core::settings::{Fields, field_path};
 use haze_preset::Preset;
 
@@ -178,17 +178,37 @@ fn surroundings(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, 
     if let Some(scene) = backdrop.mesh() {
         ui.label(egui::RichText::new(format!("The scene file has {}.", scene.description())).weak());
         ui.horizontal_wrapped(|ui| {
-            let mut button =
-                |name, is_there, tooltip| ui.add_enabled(is_there, egui::Button::new(name)).on_hover_text(tooltip);
-            let camera = button("Use its camera", scene.camera.is_some(), "Replaces the camera of the preset");
-            let lights = button("Use its lights", !scene.lights.is_empty(), "Replaces the lights of the preset");
-            if camera.clicked() {
-                backdrop.take_camera(preset);
+            let button = |ui: &mut Ui, name, is_there, tooltip| {
+                let button = ui.add_enabled(is_there, egui::Button::new(name));
+                button.on_hover_text(tooltip).clicked()
+            };
+            if let [_, _, ..] = &scene.cameras[..] {
+                let menu = ui.menu_button("Use its camera", |ui| {
+                    for camera in &scene.cameras {
+                        if ui.button(&camera.name).clicked() {
+                            backdrop.take_camera(Some(&camera.name), preset);
+                        }
+                    }
+                });
+                menu.response.on_hover_text("Replaces the camera of the preset by one of the file");
+            } else {
+                let has_camera = !scene.cameras.is_empty();
+                if button(ui, "Use its camera", has_camera, "Replaces the camera of the preset") {
+                    backdrop.take_camera(None, preset);
+                }
             }
-            if lights.clicked() {
+            let has_lights = !scene.lights.is_empty();
+            if button(ui, "Use its lights", has_lights, "Replaces the lights of the preset") {
                 backdrop.take_lights(preset);
             }
         });
+    }
+    if backdrop.sky.is_some() {
+        let button = ui.button("Sky from Blender");
+        let tooltip = "Turns the sky to where it is in Blender, as the world of a scene that was exported as glTF";
+        if button.on_hover_text(tooltip).clicked() {
+            preset.environment.sky_rotation = BLENDER_SKY_ROTATION;
+        }
     }
     section(ui, context, &[("camera", None)], true, &mut preset.camera);
 }

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use glam::{DMat3, DVec2, DVec3, Vec3};
+use glam::{DMat3, Vec3};
 use image::{DynamicImage, ImageBuffer, Rgba};
 
 use super::icc_profile::is_srgb;
 use super::png::{decode_with_profile, is_png, read_file};
 use super::png_chunks::{ColorTags, color_tags};
+use super::primaries::{self, BT2020, D65, DISPLAY_P3, Primaries, SRGB, differs, xyz_from_linear};
 use crate::error::{Error, display_path};
 use crate::formula::color::{linear_from_srgb, srgb_from_linear};
 
@@ -90,14 +91,6 @@ enum Transfer {
     Power(f32),
 }
 
-/// xy chromaticities of white, red, green and blue.
-type Primaries = [[f64; 2]; 4];
-
-const D65: [f64; 2] = [0.3127, 0.329];
-const SRGB: Primaries = [D65, [0.64, 0.33], [0.3, 0.6], [0.15, 0.06]];
-const DISPLAY_P3: Primaries = [D65, [0.68, 0.32], [0.265, 0.69], [0.15, 0.06]];
-const BT2020: Primaries = [D65, [0.708, 0.292], [0.17, 0.797], [0.131, 0.046]];
-
 impl ColorTags {
     /// Returns the color space of the tags. The error describes an unsupported one.
     fn space(&self, profile: Option<&[u8]>) -> Result<Space, String> {
@@ -140,21 +133,14 @@ impl ColorTags {
 
 /// Returns the matrix from linear light of these primaries to linear sRGB; `None` for sRGB primaries.
 fn from_primaries(primaries: Primaries) -> Result<Option<DMat3>, String> {
-    let far = |(a, b): (&[f64; 2], &[f64; 2])| (DVec2::from(*a) - DVec2::from(*b)).abs().max_element() > 0.002;
-    if far((&primaries[0], &D65)) {
+    if differs((&primaries[0], &D65)) {
         return Err(format!("colors with the white point {}, {}", primaries[0][0], primaries[0][1]));
     }
-    if !primaries.iter().zip(&SRGB).any(far) {
+    if primaries::is_srgb(&primaries) {
         return Ok(None);
     }
     let matrix = xyz_from_linear(SRGB).inverse() * xyz_from_linear(primaries);
     if matrix.is_finite() { Ok(Some(matrix)) } else { Err("degenerate primaries".into()) }
-}
-
-fn xyz_from_linear([white, red, green, blue]: Primaries) -> DMat3 {
-    let xyz = |[x, y]: [f64; 2]| DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
-    let columns = DMat3::from_cols(xyz(red), xyz(green), xyz(blue));
-    columns * DMat3::from_diagonal(columns.inverse() * xyz(white))
 }
 
 impl Space {

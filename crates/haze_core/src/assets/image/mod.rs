@@ -5,6 +5,7 @@ mod decoder_panic;
 mod icc_profile;
 mod png;
 pub mod png_chunks;
+pub mod primaries;
 
 pub use color_space::{color_conversion_notes, decode_color_png, read_color_png};
 pub use decoder_panic::{catch_decoder_panic, is_decoding};

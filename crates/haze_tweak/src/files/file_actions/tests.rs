@@ -256,6 +256,37 @@ fn a_dropped_scene_and_sky_are_shown_from_any_folder_and_copied_when_the_preset_
 }
 
 #[test]
+fn a_sky_beside_a_scene_from_blender_is_turned() {
+    let mut bench = bench();
+    let scene = bench.path("view.gltf");
+    let text = r#"{"asset":{"version":"2.0","generator":"Khronos glTF Blender I/O v5.0.21"},"scenes":[{"nodes":[0,1]}],
+        "nodes":[{"camera":0,"name":"front"},{"camera":0,"name":"back","translation":[0,0,-9]}],
+        "cameras":[{"type":"perspective","perspective":{"yfov":0.8,"znear":0.1}}]}"#;
+    fs::write(&scene, text).unwrap();
+    bench.drop_file(&scene);
+    bench.until(|bench| bench.session().document.preset.environment.scene_file == "view.gltf");
+    assert_eq!(bench.said(), "view.gltf is now the scene: 0 triangles, 2 cameras");
+    bench.drop_file(&example("dusk.hdr"));
+    bench.until(|bench| bench.session().document.preset.environment.sky_file == "dusk.hdr");
+    let rotation = |bench: &mut Bench| bench.session().document.preset.environment.sky_rotation.to_bits();
+    assert!(
+        bench.said().starts_with("dusk.hdr is now the sky, turned as the world of a scene from Blender. It lights")
+    );
+    assert_eq!(rotation(&mut bench), 90.0_f32.to_bits());
+    bench.session().document.preset.environment.sky_rotation = 0.0;
+    bench.window.get_by_role_and_label(egui::accesskit::Role::Button, "Light").click();
+    bench.window.run_steps(4);
+    bench.window.get_by_label("Sky from Blender").scroll_to_me();
+    bench.window.run_steps(4);
+    bench.click("Sky from Blender");
+    assert_eq!(rotation(&mut bench), 90.0_f32.to_bits());
+    // Of several cameras, one is chosen.
+    bench.click("Use its camera");
+    bench.click("back");
+    assert_eq!(bench.session().document.preset.camera.position.z.to_bits(), (-9.0_f32).to_bits());
+}
+
+#[test]
 fn a_dropped_file_that_is_no_scene_changes_nothing_and_says_why() {
     let mut bench = bench();
     let before = bench.session().document.preset.clone();
