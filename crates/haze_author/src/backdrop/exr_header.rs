@@ -10,6 +10,8 @@ use haze_core::assets::image::primaries::{
 };
 use haze_core::error::one_line;
 
+use super::name_list::listed;
+
 /// First bytes of a file.
 pub const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
@@ -19,8 +21,6 @@ const UNREAD_COMPRESSIONS: [(u8, &str); 3] = [(10, "HTJ2K"), (11, "HTJ2K"), (12,
 const LAST_COMPRESSION: u8 = 9;
 /// Flag of the version field: several parts, each with a header.
 const MULTIPART: u32 = 0x1000;
-/// Names that a message lists.
-const LISTED_NAMES: usize = 4;
 
 /// Linear color spaces by their interop ID, without `_scene` or `_display`.
 const LINEAR_SPACES: [(&str, Primaries); 6] = [
@@ -116,14 +116,6 @@ fn reason_without_color(parts: &[Part]) -> String {
         _ => "",
     };
     format!("its channels are {}{kind}; expected R, G, B: export it as RGB", listed(&names))
-}
-
-/// Names in one line; a file may have any number.
-fn listed(names: &BTreeSet<&str>) -> String {
-    let shown: Vec<_> = names.iter().take(LISTED_NAMES).map(one_line).collect();
-    let others = names.len().saturating_sub(LISTED_NAMES);
-    let more = if others > 0 { format!(" and {others} more") } else { String::new() };
-    shown.join(", ") + &more
 }
 
 /// Headers of all parts; `None` if they are damaged.

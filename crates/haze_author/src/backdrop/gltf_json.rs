@@ -6,6 +6,8 @@ use std::collections::{BTreeSet, HashMap};
 use haze_core::error::one_line;
 use serde_json::Value;
 
+use super::name_list::listed;
+
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Extensions that are read, or whose loss another note tells.
@@ -28,8 +30,6 @@ const OPTIONAL: [&str; 6] = [
 ];
 /// Extensions of materials that change more than their gloss.
 const NOT_GLOSS: [&str; 3] = ["KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_pbrSpecularGlossiness"];
-/// Names that a note lists.
-const LISTED_NAMES: usize = 4;
 
 /// Document of a glTF file, and what was taken out of it.
 pub struct GltfJson {
@@ -173,12 +173,4 @@ fn remove_extras(json: &mut Value) {
         Value::Array(items) => items.iter_mut().for_each(remove_extras),
         _ => {}
     }
-}
-
-/// Names in one line; a file may have any number.
-fn listed(names: &BTreeSet<String>) -> String {
-    let shown: Vec<_> = names.iter().take(LISTED_NAMES).map(one_line).collect();
-    let others = names.len().saturating_sub(LISTED_NAMES);
-    let more = if others > 0 { format!(" and {others} more") } else { String::new() };
-    shown.join(", ") + &more
 }

@@ -15,6 +15,8 @@ mod gltf_import;
 mod gltf_json;
 #[cfg(not(target_arch = "wasm32"))]
 mod gltf_view;
+#[cfg(not(target_arch = "wasm32"))]
+mod name_list;
 mod scene_mesh;
 mod sky_image;
 #[cfg(not(target_arch = "wasm32"))]
