@@ -16,7 +16,7 @@ use super::name_list::listed;
 pub const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Names of the compressions that the decoder does not have, by their code.
-const UNREAD_COMPRESSIONS: [(u8, &str); 3] = [(10, "HTJ2K"), (11, "HTJ2K"), (12, "ZSTD")];
+const UNREAD_COMPRESSIONS: [(u8, &str); 3] = [(10, "HTJ2K"), (11, "HTJ2K"), (13, "ZSTD")];
 /// Highest code of a compression that the decoder has: DWAB.
 const LAST_COMPRESSION: u8 = 9;
 /// Flag of the version field: several parts, each with a header.
@@ -294,7 +294,7 @@ mod tests {
         let compressed = |code| color(&exr(&COLOR, code, &[])).unwrap_err();
         let cure = "which haze does not read; expected ZIP, PIZ, DWAA or none";
         assert_eq!(compressed(11), format!("compressed by HTJ2K, {cure}"));
-        assert_eq!(compressed(12), format!("compressed by ZSTD, {cure}"));
+        assert_eq!(compressed(13), format!("compressed by ZSTD, {cure}"));
         assert_eq!(compressed(77), format!("compressed by method 77, {cure}"));
         let of_channels = |names: &[&'static str]| {
             let channels: Vec<_> = names.iter().map(|name| (*name, 0.5)).collect();
