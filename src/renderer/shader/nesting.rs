@@ -18,9 +18,9 @@
 const MAX_DEPTH: usize = 40;
 /// Depth of a block or an `else`, which takes 1.4 times the stack of an operator.
 const BLOCK: usize = 2;
-/// Maximum number of declarations outside functions, whose references naga and its back ends follow recursively: 1.5 times as
-/// many fit in 2 MiB without optimization. haze's own shaders have up to 351.
-const MAX_DECLARATIONS: usize = 704;
+/// Maximum number of declarations outside functions, whose references naga and its back ends follow recursively: 1.4 times as
+/// many fit in 2 MiB without optimization. haze's own shaders have up to 353.
+const MAX_DECLARATIONS: usize = 720;
 
 /// Place of the first token that is too deep.
 #[derive(Debug, PartialEq, Eq)]

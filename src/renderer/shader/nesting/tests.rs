@@ -65,7 +65,7 @@ fn every_kind_of_nesting_is_refused_in_one_line() {
         chain(&|link| format!("fn f{link}() {{ f{}(); }}\n", link + 1)),
     ] {
         let refused = check_nesting(&declarations).unwrap_err();
-        assert_eq!((refused.line, refused.reason.contains("more than 704 declarations")), (705, true));
+        assert_eq!((refused.line, refused.reason.contains("more than 720 declarations")), (721, true));
     }
 }
 
