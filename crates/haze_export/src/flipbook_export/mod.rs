@@ -1,5 +1,6 @@
 //! Flipbooks for engines: sheets of color, normals, motion vectors, fire and six-way light, which fit each other.
 
+mod cut_smoke;
 mod fill;
 mod frame_layers;
 mod motion_fit;
@@ -19,6 +20,7 @@ use image::DynamicImage;
 use crate::backend::Backend;
 use crate::engine::Engine;
 use crate::image_export::{ExportProgress, Frames, check_sheet, image_label, stopped_before_writing};
+pub use cut_smoke::CutSmoke;
 use frame_layers::FrameLayers;
 use numbers::FlipbookNumbers;
 use sheets::Sheets;
@@ -55,6 +57,14 @@ impl FlipbookOptions {
         let bytes = sheets::bytes_per_pixel(frames.burns(shot, count + fade), self.has_six_way);
         check_sheet(shot.size, frames, self.cells, bytes)
     }
+
+    /// Widens the field of view until it holds the smoke of all frames.
+    ///
+    /// # Errors
+    /// [`Error::Field`] if none does, and if keyframes set it; errors of rendering.
+    pub async fn fit(&self, backend: &Backend, shot: &mut Shot, frames: &Frames) -> Result<(), Error> {
+        cut_smoke::fit(backend, shot, frames, frames.count().saturating_add(self.loop_fade)).await
+    }
 }
 
 /// Files of a flipbook.
@@ -63,6 +73,8 @@ pub struct FlipbookExport {
     pub images: Vec<(&'static str, DynamicImage)>,
     /// Numbers that a shader needs beside the sheets.
     pub numbers: FlipbookNumbers,
+    /// Smoke that the borders of frames cut off; `None` if there is none.
+    pub cut_smoke: Option<CutSmoke>,
     readme: String,
 }
 
@@ -120,10 +132,13 @@ impl FlipbookExport {
         let mut sheets = Sheets::new(shot.size, options.cells);
         // A frame is placed when the next one is known, for its motion.
         let mut last = layers(0).await?;
+        let mut cut_smoke = None;
+        CutSmoke::add_frame(&mut cut_smoke, 0, &last.light);
         let first_frame = encoded(&last.light, 1.0);
         let mut last_frame = first_frame.clone();
         for index in 1..count {
             let next = layers(index).await?;
+            CutSmoke::add_frame(&mut cut_smoke, index, &next.light);
             let next_frame = encoded(&next.light, 1.0);
             sheets.place(index - 1, &last, [&last_frame, &next_frame]);
             if index + 1 == count && fade == 0 {
@@ -144,8 +159,14 @@ impl FlipbookExport {
             motion_scale: made.motion_scale,
             six_way_intensity: made.six_way_intensity,
         };
-        let readme = readme::readme(options.engine, &shot.preset.name, &numbers, &made.images);
-        Ok(Self { images: made.images, numbers, readme })
+        if let Some(cut_smoke) = &mut cut_smoke {
+            cut_smoke.fitting_fov = cut_smoke::fitting_fov(backend, shot, frames, all).await?;
+        }
+        let mut readme = readme::readme(options.engine, &shot.preset.name, &numbers, &made.images);
+        if let Some(cut_smoke) = &cut_smoke {
+            readme += &format!("\nBeware: {cut_smoke}.\n");
+        }
+        Ok(Self { images: made.images, numbers, cut_smoke, readme })
     }
 
     /// Writes the files into a folder.

@@ -202,6 +202,38 @@ fn six_way_maps_are_the_smoke_under_each_light() {
 }
 
 #[test]
+fn smoke_that_borders_cut_off_is_told_and_fits_a_wider_view() {
+    let frames = frames(4, 4.0);
+    let options = FlipbookOptions { engine: Engine::Unity, cells: UVec2::splat(2), loop_fade: 0, has_six_way: false };
+    let cut = |shot: &Shot| {
+        let folder = tempfile::tempdir().unwrap();
+        let export = block_on(FlipbookExport::render(&Backend::Cpu, shot, &frames, options, &GO_ON, folder.path()));
+        let export = export.unwrap();
+        assert_eq!(export.cut_smoke.is_some(), export.readme.contains("cuts off smoke"));
+        export.cut_smoke
+    };
+    let mut shot = shot("column");
+    shot.preset.camera.fov = 20.0;
+    let found = cut(&shot).unwrap();
+    assert!(found.frame == 0 && found.frames == 4 && found.alpha > 0.2, "{found:?}");
+    let text = found.to_string();
+    assert!(text.starts_with(&format!("frame 0 cuts off smoke on its {} side, with alpha", found.side)), "{text}");
+    let fov = found.fitting_fov.unwrap();
+    assert!(text.ends_with(&format!("a camera.fov of {fov:.1} degrees holds all of it (--fit)")), "{text}");
+    block_on(options.fit(&Backend::Cpu, &mut shot, &frames)).unwrap();
+    assert_eq!(shot.preset.camera.fov.to_bits(), fov.to_bits());
+    assert_eq!(cut(&shot), None);
+    // A view that is a tenth narrower is too narrow.
+    shot.preset.camera.fov *= 0.9;
+    assert!(cut(&shot).is_some());
+    // Inside the smoke nothing fits.
+    shot.preset.camera.position = shot.preset.camera.target;
+    shot.preset.camera.target.x += 1.0;
+    let refused = block_on(options.fit(&Backend::Cpu, &mut shot, &frames)).unwrap_err().to_string();
+    assert_eq!(refused, "--fit: no field of view holds all of the smoke; expected a camera further back");
+}
+
+#[test]
 fn stopped_flipbooks_leave_no_file() {
     let (shot, frames) = (shot("column"), frames(3, 8.0));
     let folder = tempfile::tempdir().unwrap();

@@ -13,7 +13,7 @@ use haze_export::frame_range::{parse_frames, parse_rate, parse_sheet};
 use haze_export::image_export::{ExportProgress, Frames};
 use haze_export::image_format::ImageFormat;
 use haze_export::options::{ShotArguments, whole_number};
-use haze_export::output::print_line;
+use haze_export::output::{print_error, print_line};
 
 #[derive(Args)]
 #[command(
@@ -41,11 +41,14 @@ pub struct Arguments {
     /// Add two maps of the smoke's light from six sides.
     #[arg(long)]
     six_way: bool,
+    /// Widen the camera's field of view until it holds the smoke of all frames.
+    #[arg(long)]
+    fit: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let folder = &arguments.shot.output;
-    let shot = arguments.shot.load_outputs(&[])?;
+    let mut shot = arguments.shot.load_outputs(&[])?;
     let frames = Frames { range: arguments.frames.clone(), rate: arguments.rate, format: ImageFormat::default() };
     let options = FlipbookOptions {
         engine: arguments.engine,
@@ -55,6 +58,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     };
     options.check(&shot, &frames)?;
     let backend = arguments.shot.run.backend()?;
+    if arguments.fit {
+        block_on(options.fit(&backend, &mut shot, &frames))?;
+    }
     // The folder is made when all else is known to be right.
     std::fs::create_dir_all(folder).map_err(|error| Error::Io { path: folder.into(), error })?;
     let outputs = FILES.map(|name| ("--output", folder.join(name), name.rsplit('.').next().unwrap_or_default()));
@@ -62,5 +68,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let progress = ExportProgress::terminal();
     let export = block_on(FlipbookExport::render(&backend, &shot, &frames, options, &progress, folder))?;
     export.write(folder, arguments.shot.effort())?;
+    if let Some(cut_smoke) = &export.cut_smoke {
+        print_error(cut_smoke);
+    }
     export.files().try_for_each(|name| print_line!("{}", folder.join(name).display()))
 }

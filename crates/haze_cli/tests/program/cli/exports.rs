@@ -51,6 +51,20 @@ fn materials_of_other_systems_have_their_numbers() {
 }
 
 #[test]
+fn flipbooks_say_where_they_cut_off_smoke() {
+    let folder = folder();
+    let narrow = ["--engine", "unity", "--set", "camera.fov=15"];
+    let said = |more: &[&str]| {
+        let output = haze(folder.path(), &[&FLIPBOOK[..], &narrow, more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let cut = said(&[]);
+    assert!(cut.starts_with("haze: frame 0 cuts off smoke on its ") && cut.contains("(--fit)"), "{cut}");
+    assert!(!said(&["--fit"]).contains("cuts off smoke"));
+}
+
+#[test]
 fn flipbooks_are_written_with_their_numbers() {
     let folder = folder();
     let output = haze(folder.path(), &[&FLIPBOOK[..], &["--engine", "unity", "--loop", "1", "--six-way"]].concat());

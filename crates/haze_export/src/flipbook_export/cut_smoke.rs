@@ -1,0 +1,136 @@
+//! Smoke that the borders of frames cut off, and the field of view that holds all of it.
+
+use std::fmt::{Display, Formatter};
+
+use glam::{UVec2, Vec4};
+use haze::{Error, FieldError};
+use haze_core::assets::image::Image;
+use haze_demo::shot::Shot;
+
+use crate::backend::Backend;
+use crate::image_export::Frames;
+use crate::smoke_layers::SmokeLayers;
+
+/// Largest field of view of a camera, degrees.
+const MAX_FOV: f32 = 150.0;
+/// Longer side of the images by which a field of view is found, pixels.
+const PROBE_SIDE: u32 = 64;
+/// Growth of the view from one image to the next.
+const WIDENING: f32 = 1.05;
+/// Least alpha that is not stored as 0.
+const MIN_ALPHA: f32 = 0.5 / 255.0;
+
+/// Smoke at the borders of frames, where an engine draws it as a hard edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutSmoke {
+    /// Index of the first frame that has some.
+    pub frame: u32,
+    /// Number of frames that have some.
+    pub frames: u32,
+    /// Side of that frame with the largest alpha.
+    pub side: &'static str,
+    /// Largest alpha there, 0 to 1.
+    pub alpha: f32,
+    /// Vertical field of view that holds the smoke of all frames, degrees; `None` if none does.
+    pub fitting_fov: Option<f32>,
+}
+
+impl CutSmoke {
+    /// Adds what the borders of a frame cut off.
+    pub(super) fn add_frame(found: &mut Option<Self>, frame: u32, smoke: &Image<Vec4>) {
+        let (side, alpha) = densest_side(smoke);
+        if alpha < MIN_ALPHA {
+            return;
+        }
+        match found {
+            Some(found) => found.frames += 1,
+            None => *found = Some(Self { frame, frames: 1, side, alpha, fitting_fov: None }),
+        }
+    }
+}
+
+impl Display for CutSmoke {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { frame, frames, side, alpha, fitting_fov } = self;
+        write!(f, "frame {frame} cuts off smoke on its {side} side, with alpha {alpha:.2}")?;
+        match frames {
+            1 => {}
+            2 => write!(f, ", and so does 1 more")?,
+            _ => write!(f, ", and so do {} more", frames - 1)?,
+        }
+        match fitting_fov {
+            Some(fov) => write!(f, "; a camera.fov of {fov:.1} degrees holds all of it (--fit)"),
+            None => write!(f, "; no field of view holds all of it: it takes a camera further back"),
+        }
+    }
+}
+
+/// Returns the side with the largest alpha on its border, and that alpha.
+fn densest_side(smoke: &Image<Vec4>) -> (&'static str, f32) {
+    let last = smoke.size.saturating_sub(UVec2::ONE);
+    let mut densest = ("left", 0.0);
+    for (index, texel) in (0..).zip(&smoke.texels) {
+        let at = UVec2::new(index % smoke.size.x, index / smoke.size.x);
+        let side = if at.x == 0 {
+            "left"
+        } else if at.x == last.x {
+            "right"
+        } else if at.y == 0 {
+            "upper"
+        } else if at.y == last.y {
+            "lower"
+        } else {
+            continue;
+        };
+        if texel.w > densest.1 {
+            densest = (side, texel.w);
+        }
+    }
+    densest
+}
+
+/// Returns the vertical field of view that holds the smoke of the first `count` frames, degrees; `None` if none does. It is at
+/// least that of the camera, and found by small images.
+pub(super) async fn fitting_fov(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    count: u32,
+) -> Result<Option<f32>, Error> {
+    let mut small = shot.clone();
+    small.size = (shot.size * PROBE_SIDE / shot.size.max_element().max(1)).max(UVec2::splat(8));
+    let mut fov = shot.preset.camera.fov;
+    for index in 0..count {
+        loop {
+            let mut frame = frames.shot(&small, frames.range.start() + index);
+            frame.preset.camera.fov = fov;
+            let layers = SmokeLayers::new(backend, &frame).await?;
+            if densest_side(&layers.light).1 < MIN_ALPHA {
+                break;
+            }
+            let slope = (0.5 * fov).to_radians().tan() * WIDENING;
+            fov = 2.0 * slope.atan().to_degrees();
+            if fov > MAX_FOV {
+                return Ok(None);
+            }
+        }
+    }
+    Ok(Some(fov))
+}
+
+/// Sets the field of view that holds the smoke of the first `count` frames.
+///
+/// # Errors
+/// [`Error::Field`] if none does, and if keyframes set it; errors of rendering.
+pub(super) async fn fit(backend: &Backend, shot: &mut Shot, frames: &Frames, count: u32) -> Result<(), Error> {
+    let refused = |problem: &str, expected: &str| Err(FieldError::from_problem("--fit", problem, expected).into());
+    let Some(fov) = fitting_fov(backend, shot, frames, count).await? else {
+        return refused("no field of view holds all of the smoke", "a camera further back");
+    };
+    shot.preset.camera.fov = fov;
+    let animated = frames.shot(shot, *frames.range.start()).preset.camera.fov;
+    if animated.to_bits() != fov.to_bits() {
+        return refused("keyframes set camera.fov", "a preset whose camera.fov has none");
+    }
+    Ok(())
+}
