@@ -1,5 +1,6 @@
 //! FLIP, the perceived difference of two images.
 
+use haze_export::interrupt;
 use image::RgbImage;
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
 
@@ -10,7 +11,7 @@ pub fn flip_of(reference: &RgbImage, picture: &RgbImage) -> f64 {
     f64::from(FlipPool::from_image(&flip(reference, picture, DEFAULT_PIXELS_PER_DEGREE)).mean())
 }
 
-/// Mean FLIP of many pairs, computed on all processors.
+/// Mean FLIP of many pairs, computed on all processors. After a request to stop, the others are 0.
 pub fn flips(pairs: &[[&RgbImage; 2]]) -> Vec<f64> {
     let mut flips = vec![0.0; pairs.len()];
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -18,7 +19,12 @@ pub fn flips(pairs: &[[&RgbImage; 2]]) -> Vec<f64> {
     std::thread::scope(|scope| {
         for (pairs, flips) in pairs.chunks(each).zip(flips.chunks_mut(each)) {
             scope.spawn(move || {
-                pairs.iter().zip(flips).for_each(|([reference, picture], flip)| *flip = flip_of(reference, picture));
+                for ([reference, picture], flip) in pairs.iter().zip(flips) {
+                    if interrupt::is_requested() {
+                        break;
+                    }
+                    *flip = flip_of(reference, picture);
+                }
             });
         }
     });

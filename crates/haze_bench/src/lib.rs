@@ -21,6 +21,7 @@ mod shadow_suite;
 mod soft_particles;
 mod sprite_shots;
 mod sprites_suite;
+mod stop;
 mod suite;
 mod suites;
 mod terminal_table;

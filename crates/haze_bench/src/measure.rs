@@ -18,6 +18,7 @@ use super::limit_work::bytes;
 use super::quality::{Quality, Reference, check_image};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
 use super::sprite_shots::mean_alpha;
+use super::stop::check_stop;
 use super::suites::{Case, Group, Suite};
 
 /// Warm-up rounds of a GPU, which are not counted. Software adapters need none: the first look at a case has compiled its shaders.
@@ -94,26 +95,27 @@ impl<'a> CaseBench<'a> {
     pub fn measure_paths(&self) -> Result<(), Error> {
         // The model comes from wall time, which would include the wait for filler work.
         let _pause = self.keepalive.pause();
-        self.context.measure_paths(|encoder| self.gpu.submit(encoder)).map(|_| ())
+        let submit = |encoder| {
+            check_stop()?;
+            self.gpu.submit(encoder)
+        };
+        self.context.measure_paths(submit).map(|_| ())
     }
 
     fn clock(&self) -> Clock {
         if self.timing.is_some() { Clock::Gpu } else { Clock::Wall }
     }
 
-    /// Measures a group for about `budget`. Returns false if Ctrl-C was pressed; the cases measured so far are in the
-    /// rows.
+    /// Measures a group for about `budget`.
     ///
     /// # Errors
-    /// If the device failed.
-    pub fn group(&mut self, group: &Group, budget: Duration) -> Result<bool, Error> {
+    /// If the device failed, or a stop was requested; the cases measured so far are in the rows.
+    pub fn group(&mut self, group: &Group, budget: Duration) -> Result<(), Error> {
         let started = Instant::now();
         let reference = self.reference(group)?;
         let (mut running, mut pictures) = (Vec::new(), Vec::new());
         for case in &group.cases {
-            if interrupt::is_requested() {
-                return Ok(false);
-            }
+            check_stop()?;
             match self.start_case(case, &reference)? {
                 Ok((case, picture)) => {
                     running.push(case);
@@ -123,13 +125,12 @@ impl<'a> CaseBench<'a> {
             }
         }
         running.iter_mut().zip(reference.flips(&pictures)).for_each(|(case, flip)| case.quality.flip = Some(flip));
+        check_stop()?;
         drop((reference, pictures));
-        let mut is_whole = true;
         let warm_up_rounds = if self.is_software { 0 } else { WARM_UP_ROUNDS };
         for round in 0..warm_up_rounds + MAX_ROUNDS {
-            is_whole = !interrupt::is_requested();
             let is_late = started.elapsed() > budget;
-            if !is_whole || (is_late && round >= warm_up_rounds + MIN_ROUNDS) {
+            if interrupt::is_requested() || (is_late && round >= warm_up_rounds + MIN_ROUNDS) {
                 break;
             }
             for case in &mut running {
@@ -150,7 +151,7 @@ impl<'a> CaseBench<'a> {
             let row = self.row(group.suite, case);
             self.rows.extend(row);
         }
-        Ok(is_whole)
+        check_stop()
     }
 
     fn reference(&self, group: &Group) -> Result<Reference, Error> {
@@ -184,8 +185,10 @@ impl<'a> CaseBench<'a> {
             Err(Error::Field(error)) => return Ok(Err(error.to_string())),
             Err(error) => return Err(error),
         }
+        check_stop()?;
         let mut offscreen = OffscreenRenderer::new(&self.context, false)?;
         offscreen.warm_up(&case.shot)?;
+        check_stop()?;
         offscreen.set_timing(self.timing.as_ref())?;
         match self.frame(&mut offscreen, &case.shot)? {
             None => return Ok(Err("the GPU returned no valid timestamps for it".into())),

@@ -11,6 +11,7 @@ use haze_demo::tonemap_pass::{exposure, tonemap};
 use image::RgbImage;
 
 use crate::flip::flips;
+use crate::stop::check_stop;
 
 /// Difference of an image from its reference; `None` where it is infinite or not measured.
 #[derive(Clone, Copy, Debug, Default)]
@@ -83,7 +84,9 @@ pub fn check_image(gpu: &Headless, context: &OffscreenContext, shot: &Shot) -> R
     }
     let mut renderer = OffscreenRenderer::new(context, false)?;
     renderer.warm_up(&shot)?;
+    check_stop()?;
     renderer.draw(gpu, &shot)?;
+    check_stop()?;
     let drawn = renderer.read(gpu, &shot)?;
     if drawn.texels.iter().any(|texel| !texel.is_finite()) {
         return Ok(Err("its image has pixels that are NaN or infinite".into()));

@@ -19,6 +19,7 @@ use super::limits;
 use super::measure::CaseBench;
 use super::particle_cpu_time;
 use super::report::{Report, VERSION};
+use super::stop::check_stop;
 use super::suites::{Group, Suite, groups};
 
 #[derive(Args)]
@@ -97,16 +98,8 @@ fn measure(arguments: &Arguments, gpu: &Headless, keepalive: &ClockKeepalive<'_>
     let mut bench = CaseBench::new(gpu, keepalive, longest);
     let result = bench.measure_paths().and_then(|()| arguments.all(gpu, keepalive, &mut bench, size));
     (report.discarded, report.rows, report.left_out) = (bench.discarded, bench.rows, bench.left_out);
-    report.complete = matches!(result, Ok(true));
-    let failure = match result {
-        Ok(true) => None,
-        Ok(false) => Some(Error::Io {
-            path: "haze bench".into(),
-            error: std::io::Error::other("stopped by Ctrl-C; the report is partial"),
-        }),
-        Err(error) => Some(error),
-    };
-    (report, failure)
+    report.complete = result.is_ok();
+    (report, result.err())
 }
 
 impl Arguments {
@@ -120,14 +113,14 @@ impl Arguments {
         SHOTS.into_iter().filter(|&suite| self.suite == Suite::All || self.suite == suite)
     }
 
-    /// Measures all requested suites. Returns false if Ctrl-C stopped the run.
+    /// Measures all requested suites.
     fn all(
         &self,
         gpu: &Headless,
         keepalive: &ClockKeepalive<'_>,
         bench: &mut CaseBench<'_>,
         size: UVec2,
-    ) -> Result<bool, Error> {
+    ) -> Result<(), Error> {
         // All other rows are compared with the limits.
         let limits = with_progress("haze: measuring the limits of this adapter".into(), || {
             limits::measure(gpu, keepalive, size, self.quick)
@@ -160,9 +153,7 @@ impl Arguments {
                 groups.len(),
                 left.as_secs()
             );
-            if !with_progress(what, || bench.group(group, budget))? {
-                return Ok(false);
-            }
+            with_progress(what, || bench.group(group, budget))?;
             if group.suite == Suite::Particles {
                 // The CPU is measured without filler work on the GPU.
                 let _pause = keepalive.pause();
@@ -170,7 +161,7 @@ impl Arguments {
                 bench.rows.extend(rows);
             }
         }
-        Ok(!interrupt::is_requested())
+        check_stop()
     }
 
     fn write(&self, report: &Report) -> Result<(), Error> {

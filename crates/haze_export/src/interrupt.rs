@@ -1,13 +1,36 @@
 //! Signals. Requests to stop during long work, by Ctrl-C, SIGTERM or SIGHUP: the first one stops the work at a point where
 //! all files are complete, a second one ends the program. A write beyond the limit of file sizes is an error of the write.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::io;
+use std::sync::atomic::{AtomicI32, Ordering};
 
-static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
+use haze::Error;
+
+/// Number of the signal that came; 0 for none.
+static SIGNAL: AtomicI32 = AtomicI32::new(0);
+
+const SIGHUP: i32 = 1;
+const SIGINT: i32 = 2;
+const SIGTERM: i32 = 15;
 
 /// Returns true if a stop was requested since [`catch`].
 pub fn is_requested() -> bool {
-    IS_REQUESTED.load(Ordering::Relaxed)
+    SIGNAL.load(Ordering::Relaxed) != 0
+}
+
+/// Stops work if that was requested. `work` and `outcome` are named in the error.
+///
+/// # Errors
+/// [`Error::Io`] with the name of the signal.
+pub fn check(work: &str, outcome: &str) -> Result<(), Error> {
+    let signal = match SIGNAL.load(Ordering::Relaxed) {
+        0 => return Ok(()),
+        SIGHUP => "SIGHUP",
+        SIGTERM => "SIGTERM",
+        _ => "Ctrl-C",
+    };
+    let reason = format!("stopped by {signal}; {outcome}");
+    Err(Error::Io { path: work.into(), error: io::Error::new(io::ErrorKind::Interrupted, reason) })
 }
 
 #[cfg(unix)]
@@ -35,12 +58,9 @@ pub fn ignore_file_size_signal() {}
 #[cfg(unix)]
 #[allow(unsafe_code, reason = "the standard library has no signal handlers")]
 pub fn catch() {
-    const SIGHUP: i32 = 1;
-    const SIGINT: i32 = 2;
-    const SIGTERM: i32 = 15;
     const DEFAULT: usize = 0;
     extern "C" fn note(number: i32) {
-        IS_REQUESTED.store(true, Ordering::Relaxed);
+        SIGNAL.store(number, Ordering::Relaxed);
         // SAFETY: `signal` is async-signal-safe.
         unsafe { signal(number, DEFAULT) };
     }
