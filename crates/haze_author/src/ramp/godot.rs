@@ -3,9 +3,9 @@
 use glam::Vec4;
 use haze_core::error::one_line;
 
-use super::gradient_text::{GradientParseError, parse_numbers};
+use super::gradient_text::{ChosenGradient, GradientName, GradientParseError, choose_gradient, parse_numbers};
 use super::ramp_recipe::Blend;
-use super::source_gradient::{Interpolation, SourceGradient, SourcePoint};
+use super::source_gradient::{Interpolation, NotedGradient, SourceGradient, SourcePoint};
 
 /// A section that holds a gradient.
 struct Section<'a> {
@@ -17,32 +17,16 @@ struct Section<'a> {
     fields: Vec<(usize, &'a str, &'a str)>,
 }
 
-/// A gradient, and a note with its line on others in its file.
-pub struct GodotGradient {
-    pub gradient: SourceGradient,
-    pub note: Option<String>,
-}
-
 /// Reads the gradient of a name; without a name, the first. A name is the id of a sub-resource, or `resource`.
-pub fn read(text: &str, name: Option<&str>) -> Result<GodotGradient, GradientParseError> {
+pub fn read(text: &str, name: Option<&str>) -> Result<NotedGradient, GradientParseError> {
     let sections = sections(text);
-    let names: Vec<_> = sections.iter().map(|section| section.name).collect();
-    let Some(chosen) = sections.iter().find(|section| name.is_none_or(|name| name == section.name)) else {
-        return Err(match name {
-            Some(name) if !sections.is_empty() => {
-                let names = one_line(names.join(", "));
-                error(0, &format!("no gradient {:?}; expected one of {names}", one_line(name)))
-            }
-            _ => error(0, "no gradient; expected a Gradient saved by Godot as text"),
-        });
-    };
-    let gradient = chosen.gradient()?;
-    let others: Vec<_> = names.into_iter().filter(|name| *name != chosen.name).collect();
-    let note = (name.is_none() && !others.is_empty()).then(|| {
-        let [name, others] = [chosen.name, &others.join(", ")].map(one_line);
-        format!("{}: read gradient {name}, not {others}; --gradient chooses one", chosen.line + 1)
-    });
-    Ok(GodotGradient { gradient, note })
+    if sections.is_empty() {
+        return Err(error(0, "no gradient; expected a Gradient saved by Godot as text"));
+    }
+    let names: Vec<_> =
+        sections.iter().map(|section| GradientName { name: section.name, line: section.line + 1 }).collect();
+    let ChosenGradient { index, note } = choose_gradient(&names, name)?;
+    Ok(NotedGradient { gradient: sections[index].gradient()?, note })
 }
 
 fn error(line: usize, reason: &str) -> GradientParseError {

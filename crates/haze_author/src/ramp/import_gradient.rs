@@ -1,4 +1,4 @@
-//! Imports gradients of other programs: GIMP, Godot, and Blender as text. `docs/ramps.md` lists what is supported.
+//! Imports gradients of other programs. `docs/ramps.md` lists what is supported.
 
 use std::path::Path;
 
@@ -11,8 +11,14 @@ use super::blend_space::srgb_from_linear;
 use super::fit_stops::{RampFit, fit_image, validate_max_error};
 use super::gradient_text::{GradientParseError, parse_numbers};
 use super::ramp_recipe::Blend;
-use super::source_gradient::{Interpolation, SourceGradient, SourcePoint};
-use super::{gimp, godot};
+use super::source_gradient::{Interpolation, NotedGradient, SourceGradient, SourcePoint};
+use super::{color_tables, css, gimp, godot, svg};
+
+/// Extensions of gradients of other programs.
+pub const GRADIENT_ENDINGS: [&str; 8] = ["ggr", "tres", "txt", "svg", "css", "cpt", "gpl", "pal"];
+
+/// Extensions of files that may have several gradients.
+const ENDINGS_OF_SEVERAL: [&str; 2] = ["tres", "svg"];
 
 /// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
@@ -26,9 +32,9 @@ pub struct ImportedGradient {
     pub note: Option<String>,
 }
 
-/// Converts a file to a recipe. The format follows from the extension: `.png`, `.ggr` (GIMP), `.tres` (Godot) or `.txt`
-/// (Blender). `max_error` is the maximum error of a channel, 1 to 64 steps of 255. `name` chooses one of several
-/// gradients in a file of Godot. Transparent colors are darkened by their alpha, in linear light.
+/// Converts a file to a recipe. The format follows from the extension: `.png`, or one of [`GRADIENT_ENDINGS`]. `max_error`
+/// is the maximum error of a channel, 1 to 64 steps of 255. `name` chooses one of several gradients in a file of Godot or
+/// SVG. Transparent colors are darkened by their alpha, in linear light.
 ///
 /// # Errors
 /// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
@@ -36,18 +42,17 @@ pub struct ImportedGradient {
 pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Result<ImportedGradient, Error> {
     validate_max_error(max_error)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    if let Some(name) = name.filter(|_| ending != "tres") {
-        return Err(
-            FieldError::new("gradient", format!("{name:?}"), "no name: only a .tres has several gradients").into()
-        );
+    if let Some(name) = name.filter(|_| !ENDINGS_OF_SEVERAL.contains(&ending.as_str())) {
+        let expected = "no name: only a .tres or .svg has several gradients";
+        return Err(FieldError::new("gradient", format!("{name:?}"), expected).into());
     }
     if ending == "png" {
         let refuse = |error: FieldError| Error::Image { path: path.into(), reason: error.to_string() };
         let fit = fit_image(&read_color_png(path)?, max_error).map_err(refuse)?;
         return Ok(ImportedGradient { fit, note: None });
     }
-    if !["ggr", "tres", "txt"].contains(&ending.as_str()) {
-        let expected = "a name that ends in .png, .ggr, .tres or .txt";
+    if !GRADIENT_ENDINGS.contains(&ending.as_str()) {
+        let expected = format!("a name that ends in .png or .{}", GRADIENT_ENDINGS.join(", ."));
         return Err(FieldError::new("file", path.display(), expected).into());
     }
     let refuse = |GradientParseError { line, reason }: GradientParseError| Error::Json {
@@ -61,15 +66,25 @@ pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Resul
         refuse(GradientParseError { line: 1, reason: "not UTF-8; expected a gradient as UTF-8 text".into() })
     })?;
     let mut note = None;
-    let fit = match ending.as_str() {
-        "ggr" => gimp::read(text, max_error).map_err(refuse)?,
-        "txt" => blender(text).map_err(refuse)?.fit(max_error),
-        _ => {
-            let read = godot::read(text, name).map_err(refuse)?;
-            note = read.note.map(|note| format!("{}:{note}", display_path(path)));
-            read.gradient.fit(max_error)
-        }
+    let mut noted = |read: NotedGradient| {
+        note = read.note.map(|note| format!("{}:{note}", display_path(path)));
+        read.gradient
     };
+    let gradient = match ending.as_str() {
+        // Its segments have forms of their own.
+        "ggr" => {
+            let fit = gimp::read(text, max_error).map_err(refuse)?;
+            fit.recipe.validate()?;
+            return Ok(ImportedGradient { fit, note: None });
+        }
+        "txt" => blender(text),
+        "css" => css::read(text),
+        "cpt" => color_tables::read_cpt(text),
+        "gpl" | "pal" => color_tables::read_palette(text),
+        "svg" => svg::read(text, name).map(&mut noted),
+        _ => godot::read(text, name).map(&mut noted),
+    };
+    let fit = gradient.map_err(refuse)?.fit(max_error);
     fit.recipe.validate()?;
     Ok(ImportedGradient { fit, note })
 }
@@ -202,7 +217,7 @@ mod tests {
         let refused = import(Some("Gradient_c")).unwrap_err().to_string();
         assert!(refused.ends_with("no gradient \"Gradient_c\"; expected one of Gradient_a, Gradient_b"), "{refused}");
         let refused = import_gradient(Path::new("a.ggr"), 1.5, Some("b")).unwrap_err().to_string();
-        assert!(refused.contains("expected no name: only a .tres has several gradients"), "{refused}");
+        assert!(refused.contains("expected no name: only a .tres or .svg has several gradients"), "{refused}");
     }
 
     #[test]
@@ -257,7 +272,9 @@ mod tests {
         assert!(
             import_text("a.txt", "color_mode HSV").unwrap_err().contains("the color mode is not RGB; expected RGB")
         );
-        assert!(import_text("a.gradient", "").unwrap_err().contains("expected a name that ends in .png, .ggr"));
+        assert!(
+            import_text("a.gradient", "").unwrap_err().contains("expected a name that ends in .png or .ggr, .tres")
+        );
     }
 
     #[test]

@@ -10,8 +10,16 @@ use super::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
 pub struct SourceGradient {
     blend: Blend,
     interpolation: Interpolation,
+    /// Colors are multiplied by their alpha before they are mixed, and divided by the mixed alpha.
+    is_premultiplied: bool,
     /// Sorted by position.
     points: Vec<SourcePoint>,
+}
+
+/// A gradient, and a note with its line on others in its file.
+pub struct NotedGradient {
+    pub gradient: SourceGradient,
+    pub note: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +45,12 @@ pub enum Interpolation {
 impl SourceGradient {
     pub fn new(blend: Blend, interpolation: Interpolation, mut points: Vec<SourcePoint>) -> Self {
         points.sort_by(|a, b| a.at.total_cmp(&b.at));
-        Self { blend, interpolation, points }
+        Self { blend, interpolation, is_premultiplied: false, points }
+    }
+
+    /// Returns the same points with linear interpolation of colors that are multiplied by their alpha.
+    pub fn premultiplied(blend: Blend, points: Vec<SourcePoint>) -> Self {
+        Self { is_premultiplied: true, ..Self::new(blend, Interpolation::Linear, points) }
     }
 
     /// Repeats the first point at 0 and the last at 1.
@@ -96,7 +109,7 @@ impl SourceGradient {
     }
 
     /// Returns the sRGB code over black at a position.
-    fn code(&self, at: f32) -> Vec3 {
+    pub fn code(&self, at: f32) -> Vec3 {
         let next = self.points.partition_point(|point| point.at <= at);
         if next > 0 && next < self.points.len() {
             return self.code_before(next, at);
@@ -133,9 +146,11 @@ impl SourceGradient {
         };
         let mut mixed = Vec4::ZERO;
         for (point, weight) in near.iter().zip(weights.to_array()) {
-            mixed += self.blend.of_code(point.code.truncate()).extend(point.code.w) * weight;
+            let factor = if self.is_premultiplied { point.code.w } else { 1.0 };
+            mixed += (self.blend.of_code(point.code.truncate()) * factor).extend(point.code.w) * weight;
         }
-        let light = self.blend.linear(mixed.truncate()).min(Vec3::ONE);
+        let alpha = if self.is_premultiplied { mixed.w.max(f32::MIN_POSITIVE) } else { 1.0 };
+        let light = self.blend.linear(mixed.truncate() / alpha).min(Vec3::ONE);
         (light * mixed.w.clamp(0.0, 1.0)).map(srgb_from_linear)
     }
 }

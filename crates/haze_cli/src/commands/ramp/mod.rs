@@ -2,6 +2,7 @@
 
 mod bake;
 mod check;
+mod export;
 mod fit;
 mod fit_shadow;
 mod import;
@@ -32,6 +33,8 @@ enum RampCommand {
     New(new::Arguments),
     /// Convert a PNG, or another program's gradient, to a recipe.
     Import(import::Arguments),
+    /// Write the gradient of a recipe for other programs: SVG, CSS or GIMP.
+    Export(export::Arguments),
     /// Path-trace a puff of steam, ash, … under a ring of lights, and write ramps that are fitted to its brightness.
     Fit(fit::Arguments),
     /// Path-trace clouds of many puffs under a ring of lights, and write a shadow ramp that is fitted to the light that
@@ -55,6 +58,7 @@ pub fn run(arguments: &RampArguments) -> Result<(), Failures> {
         RampCommand::Fit(arguments) => fit::run(arguments).map_err(Failures::from),
         RampCommand::FitShadow(arguments) => fit_shadow::run(arguments).map_err(Failures::from),
         RampCommand::Import(arguments) => import::run(arguments).map_err(Failures::from),
+        RampCommand::Export(arguments) => export::run(arguments).map_err(Failures::from),
         RampCommand::Sheet(arguments) => sheet::run(arguments),
         RampCommand::Show(arguments) => show::run(arguments).map_err(Failures::from),
         RampCommand::Check(arguments) => check::run(arguments),

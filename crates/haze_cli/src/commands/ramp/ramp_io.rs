@@ -4,6 +4,7 @@ use std::path::Path;
 
 use haze::{Error, FieldError};
 use haze_author::ramp::RampRecipe;
+use haze_author::ramp::import_gradient::GRADIENT_ENDINGS;
 use haze_core::assets::image::read_color_png;
 use haze_preset::write_file;
 use image::DynamicImage;
@@ -23,7 +24,7 @@ pub fn load_ramp_image(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>)
 
 /// Refuses another program's gradient, and names the command that converts it.
 pub fn refuse_gradient(path: &Path) -> Result<(), FieldError> {
-    if ["ggr", "tres", "txt"].iter().any(|ending| has_extension(path, ending)) {
+    if GRADIENT_ENDINGS.iter().any(|ending| has_extension(path, ending)) {
         let problem = format!("{} is a gradient of another program", path.display());
         let expected = "a PNG or a *.ramp.json file; `haze ramp import` converts the gradient";
         return Err(FieldError::from_problem("ramp", problem, expected));

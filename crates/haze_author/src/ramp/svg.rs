@@ -1,0 +1,158 @@
+//! Reads gradients of SVG, as Inkscape, Krita and Illustrator write them. (W3C, SVG 2, "Paint Servers")
+
+use glam::Vec4;
+use haze_core::error::one_line;
+use roxmltree::{Document, Node};
+
+use super::gradient_text::{ChosenGradient, GradientName, GradientParseError, choose_gradient};
+use super::ramp_recipe::Blend;
+use super::source_gradient::{Interpolation, NotedGradient, SourceGradient, SourcePoint};
+
+/// Most links from a gradient to the one that has its stops.
+const MAX_LINKS: usize = 16;
+
+/// Reads the gradient of an id; without one, the first that has stops.
+pub fn read(text: &str, name: Option<&str>) -> Result<NotedGradient, GradientParseError> {
+    let document = Document::parse(text).map_err(|error| GradientParseError {
+        line: error.pos().row as usize,
+        reason: format!("{}; expected an SVG file", one_line(error.to_string())),
+    })?;
+    let line_of = |node: &Node| document.text_pos_at(node.range().start).row as usize;
+    let is_gradient = |node: &Node| ["linearGradient", "radialGradient"].contains(&node.tag_name().name());
+    // A gradient that is used has its own place and the stops of another one.
+    let gradients: Vec<_> = document.descendants().filter(|node| is_gradient(node) && has_stops(node)).collect();
+    if gradients.is_empty() {
+        let reason = "no gradient; expected a linearGradient or radialGradient with stops";
+        return Err(GradientParseError { line: 1, reason: reason.into() });
+    }
+    let name_of = |node: &Node<'_, '_>| node.attribute("id").unwrap_or_default().to_owned();
+    let ids: Vec<_> = gradients.iter().map(name_of).collect();
+    let names: Vec<_> =
+        ids.iter().zip(&gradients).map(|(name, node)| GradientName { name, line: line_of(node) }).collect();
+    // An id may be that of a gradient without stops of its own.
+    let linked = name.and_then(|name| with_stops(&document, name));
+    let linked = linked.and_then(|linked| gradients.iter().position(|gradient| *gradient == linked));
+    let ChosenGradient { index, note } = match linked {
+        Some(index) => ChosenGradient { index, note: None },
+        None => choose_gradient(&names, name)?,
+    };
+    let gradient = gradients[index];
+    let is_linear = property(&gradient, "color-interpolation") == Some("linearRGB");
+    let mut points = Vec::new();
+    let mut most = 0.0_f32;
+    for stop in gradient.children().filter(is_stop) {
+        let mut point = point(&stop).map_err(|reason| GradientParseError { line: line_of(&stop), reason })?;
+        // A stop in front of an earlier one becomes that one.
+        most = most.max(point.at);
+        point.at = most;
+        points.push(point);
+    }
+    let blend = if is_linear { Blend::Linear } else { Blend::Srgb };
+    Ok(NotedGradient { gradient: SourceGradient::new(blend, Interpolation::Linear, points), note })
+}
+
+fn is_stop(node: &Node) -> bool {
+    node.tag_name().name() == "stop"
+}
+
+fn has_stops(node: &Node) -> bool {
+    node.children().any(|child| is_stop(&child))
+}
+
+/// Returns the gradient of an id, or the one with stops that it links to.
+fn with_stops<'a>(document: &'a Document<'a>, id: &str) -> Option<Node<'a, 'a>> {
+    let find = |id: &str| document.descendants().find(|node| node.attribute("id") == Some(id));
+    let mut node = find(id)?;
+    for _ in 0..MAX_LINKS {
+        if has_stops(&node) {
+            return Some(node);
+        }
+        let link = node.attributes().find(|attribute| attribute.name() == "href")?;
+        node = find(link.value().strip_prefix('#')?)?;
+    }
+    None
+}
+
+/// Returns a property: of the style, or the attribute of its name.
+fn property<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
+    let style = node.attribute("style").unwrap_or_default();
+    let of_style = style.split(';').filter_map(|part| part.split_once(':')).find(|(key, _)| key.trim() == name);
+    of_style.map(|(_, value)| value.trim()).or(node.attribute(name).map(str::trim))
+}
+
+fn point(stop: &Node) -> Result<SourcePoint, String> {
+    let at = share(stop.attribute("offset").unwrap_or("0"))
+        .ok_or("a stop without a valid offset; expected 0 to 1, or percent")?;
+    if property(stop, "stop-color").is_none() && stop.attribute("class").is_some() {
+        let expected = "stop-color in an attribute or in style: export with presentation attributes";
+        return Err(format!("the color of a stop is in a style sheet, which is not read; expected {expected}"));
+    }
+    let color = property(stop, "stop-color").unwrap_or("black");
+    let parsed = csscolorparser::parse(color)
+        .map_err(|_| format!("stop-color {} is no color; expected one of CSS, as #402010", one_line(color)))?;
+    let opacity = share(property(stop, "stop-opacity").unwrap_or("1"))
+        .ok_or("a stop without a valid stop-opacity; expected 0 to 1, or percent")?;
+    Ok(SourcePoint { at, code: Vec4::new(parsed.r, parsed.g, parsed.b, parsed.a * opacity) })
+}
+
+/// Reads 0 to 1, or percent; clamped.
+fn share(text: &str) -> Option<f32> {
+    let text = text.trim();
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(percent) => (percent, 100.0),
+        None => (text, 1.0),
+    };
+    let number: f32 = number.trim().parse().ok()?;
+    number.is_finite().then(|| (number / unit).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    const INKSCAPE: &str = r##"<?xml version="1.0" encoding="UTF-8"?>
+<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">
+  <defs>
+    <linearGradient id="stops">
+      <stop style="stop-color:#ff0000;stop-opacity:1;" offset="0.2" />
+      <stop style="stop-color:#0000ff;stop-opacity:0.5;" offset="100%" />
+    </linearGradient>
+    <linearGradient id="used" xlink:href="#stops" x1="3" x2="8" gradientUnits="userSpaceOnUse" />
+    <radialGradient id="other" color-interpolation="linearRGB">
+      <stop stop-color="black"/><stop offset="1" stop-color="white"/>
+    </radialGradient>
+  </defs>
+</svg>"##;
+
+    fn refused(text: &str) -> String {
+        read(text, None).err().map(|error| format!("{}: {}", error.line, error.reason)).unwrap_or_default()
+    }
+
+    #[test]
+    fn gradients_are_chosen_by_their_id_or_by_one_that_links_to_them() {
+        let Ok(first) = read(INKSCAPE, None) else { panic!("refused") };
+        assert_eq!(first.note.as_deref(), Some("4: read gradient stops, not other; --gradient chooses one"));
+        assert!(first.gradient.code(0.1).distance(Vec3::X) < 1.0e-4);
+        // sRGB 1 at half alpha is 188 of 255.
+        assert!(first.gradient.code(1.0).distance(Vec3::new(0.0, 0.0, 0.735_36)) < 1.0e-3);
+        for (name, at, expected) in [("used", 0.0, [1.0, 0.0, 0.0]), ("other", 0.5, [0.735_36; 3])] {
+            let Ok(found) = read(INKSCAPE, Some(name)) else { panic!("{name} is refused") };
+            let code = found.gradient.code(at);
+            assert!(found.note.is_none() && code.distance(Vec3::from(expected)) < 1.0e-3, "{name}: {code}");
+        }
+        let unknown = read(INKSCAPE, Some("gone")).err().map(|error| error.reason);
+        assert_eq!(unknown.as_deref(), Some("no gradient \"gone\"; expected one of stops, other"));
+    }
+
+    #[test]
+    fn what_is_not_read_is_refused_by_name() {
+        let of_stop = |stop: &str| refused(&format!("<svg>\n<linearGradient>\n<stop {stop}/></linearGradient></svg>"));
+        assert!(of_stop("class=\"a\"").starts_with("3: the color of a stop is in a style sheet"));
+        assert!(of_stop("stop-color=\"rde\"").starts_with("3: stop-color rde is no color"));
+        assert!(of_stop("offset=\"x\"").starts_with("3: a stop without a valid offset"));
+        assert!(refused("<svg/>").starts_with("1: no gradient; expected a linearGradient"));
+        assert!(refused("<svg>").ends_with("; expected an SVG file"));
+    }
+}
