@@ -31,7 +31,10 @@ fn glow_of_light(light: Light) -> Glow {
     let fade = specular_scatter_fade(depth, system.smoke_near, system.smoke_far);
     // The light that the smoke scatters on was on its way to the viewer.
     let cone = cone_attenuation(light, direction_to_viewer(light.position, view.orthographic));
-    let strength = light.specular_scatter * system.specular_scatter_intensity * fade * cone;
+    let to_smoke = system.center - light.position;
+    let falloff = select(system.specular_scatter_falloff, 0.0, light.directional > 0.5);
+    let arriving = glow_falloff(dot(to_smoke, to_smoke), light.radius, falloff);
+    let strength = light.specular_scatter * system.specular_scatter_intensity * fade * cone * arriving;
     if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
         return Glow(vec2f(0.0), vec3f(0.0));
     }

@@ -108,6 +108,11 @@ fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f
     return saturate((light_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4));
 }
 
+// Factor of a glow for a light at a distance from the smoke: 1 / distance² to the power of `falloff`, 0 to 1.
+fn glow_falloff(distance_squared: f32, radius: f32, falloff: f32) -> f32 {
+    return pow(max(distance_squared + radius * radius, 1.0e-4), -falloff);
+}
+
 const VISIBILITY_TAPS: u32 = 9u;
 
 // Offset of a visibility tap from the center of a light, pixels: 8 taps on a ring of `radius`, and the center as the

@@ -61,6 +61,7 @@ struct System {
     peak_alpha: f32,
     // Share of the sprite's alpha that remains at an erosion of 1.
     eroded_share: f32,
+    specular_scatter_falloff: f32,
     // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
     // Metres behind the scene at which sprites still show, under the curve `always`.

@@ -217,7 +217,7 @@ const SAME: [&str; 9] = [
 
 /// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
-const NOT_ALWAYS: [&str; 29] = [
+const NOT_ALWAYS: [&str; 30] = [
     "lights[0].role",
     // Particles may be white, and those of files may rest.
     "systems[0].settings.sprite.tint",
@@ -235,6 +235,7 @@ const NOT_ALWAYS: [&str; 29] = [
     "lights[0].radius",
     "lights[0].specular_scatter",
     "systems[0].material.specular_ramp",
+    "systems[0].settings.specular_scatter.falloff",
     "systems[0].settings.specular_scatter.intensity",
     "systems[0].settings.specular_scatter.size",
     // Without diffuse light nothing reads normals or six-way maps; an artist may change these settings all the same.

@@ -1,7 +1,7 @@
 //! Dependence of lighting on other particles, light range and intensity, the world's origin and the up vector.
 
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
-use haze::{Light, LightKind, Particle};
+use haze::{Light, LightKind, Particle, SpriteExtent, particle_bounds};
 use haze_core::assets::image::Image;
 use haze_core::formula::lighting::cone_attenuation;
 use haze_core::settings::{DebugView, DiffuseMode, RenderPath, Technique};
@@ -116,6 +116,33 @@ fn the_glow_of_a_spot_is_what_it_sends_to_the_viewer() {
         assert!(apart < 1.0e-3, "towards the viewer, a spot glows like a lamp, not {apart} apart");
         let rest = brightest(&away[renderer]);
         assert!(rest < 1.0e-3, "a spot that shines away glows by {rest}");
+    }
+}
+
+#[test]
+fn with_falloff_equal_light_on_the_smoke_glows_equally() {
+    let mut scene = TestScene::new(SIZE);
+    scene.debug_view = DebugView::SpecularScatter;
+    scene.lights.remove(0);
+    let lamp = Light { radius: 0.0, range: f32::INFINITY, ..scene.lights[0] };
+    let center = particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings)).center();
+    let brightest = |scene: &TestScene| {
+        [scene.on_cpu(), scene.on_gpu(gpu()).picture].map(|image| {
+            image.texels.iter().map(|texel| (*texel - BACKDROP).truncate().max_element()).fold(0.0, f32::max)
+        })
+    };
+    // The lamp moves away from the smoke and is as much stronger as its light on the smoke needs.
+    let mut glows = |distance: f32, falloff: f32| {
+        let position = center + (lamp.position - center) * distance;
+        scene.lights = vec![Light { position, intensity: lamp.intensity * distance * distance, ..lamp }];
+        scene.settings.specular_scatter.falloff = falloff;
+        brightest(&scene)
+    };
+    for renderer in 0..2 {
+        let [near, far] = [1.0, 2.0].map(|distance| glows(distance, 1.0)[renderer]);
+        assert!((far / near - 1.0).abs() < 0.2, "{near} and {far}");
+        let [near, far] = [1.0, 2.0].map(|distance| glows(distance, 0.0)[renderer]);
+        assert!(far / near > 3.0, "{near} and {far}");
     }
 }
 

@@ -191,6 +191,15 @@ fn coverages() -> Vec<Formula> {
 fn specular_scatter() -> Vec<Formula> {
     vec![
         Formula {
+            name: "glow_falloff",
+            file: "lib/lighting.wgsl",
+            wgsl: "y(0, glow_falloff(x(0), x(1), x(2)));",
+            reference: |x| vec![lighting::glow_falloff(x[0], x[1], x[2])],
+            cases: random(100, &[(0.0, 30.0), (0.05, 1.0), (0.0, 1.0)]),
+            tolerance: TRANSCENDENTAL * 10.0,
+            mutants: &[("-falloff", "falloff"), ("distance_squared + radius * radius", "distance_squared")],
+        },
+        Formula {
             name: "specular_scatter_fade",
             file: "lib/lighting.wgsl",
             wgsl: "y(0, specular_scatter_fade(x(0), x(1), x(1) + x(2)));",

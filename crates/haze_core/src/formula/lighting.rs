@@ -91,6 +91,11 @@ pub fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) 
     saturate((light_depth - smoke_near) / (smoke_far - smoke_near).max(1.0e-4))
 }
 
+/// Factor of a glow for a light at a distance from the smoke: 1 / distance² to the power of `falloff`, 0 to 1.
+pub fn glow_falloff(distance_squared: f32, radius: f32, falloff: f32) -> f32 {
+    (distance_squared + radius * radius).max(1.0e-4).powf(-falloff)
+}
+
 /// Number of taps of [`visibility_tap`].
 pub const VISIBILITY_TAPS: u32 = 9;
 

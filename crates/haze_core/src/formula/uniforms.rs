@@ -105,7 +105,7 @@ uniform! {
         mean_alpha: f32,
         peak_alpha: f32,
         eroded_share: f32,
-        padding: f32,
+        specular_scatter_falloff: f32,
         noise_offset: Vec3,
         show_through_distance: f32,
         six_way_color: Vec3,

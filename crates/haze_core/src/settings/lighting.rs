@@ -164,6 +164,9 @@ settings! {
         size: f32 = 160.0, number(1.0..=8192.0, "pixels");
         /// Multiplies the glow. Higher: brighter. 0 draws no quads.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
+        /// Share of the light's falloff with its distance from the smoke that dims the glow. 0: a point or spot light glows by
+        /// its intensity at one metre, however far it is. 1: by the light that arrives in the middle of the smoke.
+        falloff: f32 = 0.0, number(0.0..=1.0, "");
     }
 }
 

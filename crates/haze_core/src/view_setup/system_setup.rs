@@ -139,6 +139,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         soft_scatter_intensity: settings.soft_scatter.intensity,
         specular_scatter_size: settings.specular_scatter.size_in_pixels(view.size.y),
         specular_scatter_intensity: settings.specular_scatter.intensity,
+        specular_scatter_falloff: settings.specular_scatter.falloff,
         light_count: lights.len() as u32,
         motion: settings.sprite.motion,
         age_color: settings.sprite.age_color,

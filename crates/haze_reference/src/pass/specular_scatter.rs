@@ -5,7 +5,8 @@ use haze_core::assets::image::Image;
 use haze_core::formula::color::bounded_light;
 use haze_core::formula::depth::SKY_VIEW_DEPTH;
 use haze_core::formula::lighting::{
-    VISIBILITY_TAPS, cone_attenuation, direction_to_viewer, range_window, specular_scatter_fade, visibility_tap,
+    VISIBILITY_TAPS, cone_attenuation, direction_to_viewer, glow_falloff, range_window, specular_scatter_fade,
+    visibility_tap,
 };
 use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::formula::uniforms::LightUniform;
@@ -44,7 +45,10 @@ impl AccumulatedTarget<'_> {
         let depth = if directional { SKY_VIEW_DEPTH } else { -light.position.z };
         let fade = specular_scatter_fade(depth, visible.system.smoke_near, visible.system.smoke_far);
         let cone = cone_attenuation(light, direction_to_viewer(light.position, view.orthographic));
-        let strength = light.specular_scatter * visible.system.specular_scatter_intensity * fade * cone;
+        let to_smoke = visible.system.center - light.position;
+        let falloff = if directional { 0.0 } else { visible.system.specular_scatter_falloff };
+        let arriving = glow_falloff(to_smoke.length_squared(), light.radius, falloff);
+        let strength = light.specular_scatter * visible.system.specular_scatter_intensity * fade * cone * arriving;
         if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
             return None;
         }

@@ -355,7 +355,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "only at an intensity of specular scatter above 0",
         |s, _| s.settings.specular_scatter.intensity <= 0.0,
-        &["settings.specular_scatter.size", "material.specular_ramp"],
+        &["settings.specular_scatter.size", "settings.specular_scatter.falloff", "material.specular_ramp"],
     ),
     rule(
         "only at a turbulence above 0",
