@@ -94,7 +94,8 @@ fn gpu_and_cpu_agree_on_alpha_of_corners() {
         let behind = without_smoke(shot);
         [render_on_gpu(&behind, true), behind.render_on_cpu().unwrap()]
     };
-    (shot.preset.camera.position, shot.preset.camera.target) = (Vec3::new(0.0, 6.0, 6.0), Vec3::ZERO);
+    shot.preset.camera.position = Vec3::new(0.0, 6.0, 6.0);
+    shot.preset.camera.target = Vec3::ZERO;
     let black = Image::new(shot.size, Vec4::ZERO);
     let solid = picture(1.0, &mut shot);
     let faded = picture(0.0, &mut shot);

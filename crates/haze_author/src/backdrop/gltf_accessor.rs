@@ -3,34 +3,23 @@
 use glam::{Vec3, Vec4};
 use gltf::accessor::{DataType, Dimensions, Item, Iter};
 
-/// Vectors of an accessor as floats: integers are whole numbers, or parts of 1 if the file says so.
-///
-/// # Errors
-/// The reason, for vectors of another length and for data outside its buffer.
-pub fn vectors<const N: usize>(accessor: &gltf::Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f32; N]>, String>
-where
-    [f32; N]: Item,
-    [i8; N]: Item,
-    [u8; N]: Item,
-    [i16; N]: Item,
-    [u16; N]: Item,
-{
-    read(accessor, buffers, accessor.normalized())
-}
-
 /// Colors of an accessor, with alpha. Integers are parts of 1, also in files that do not say so.
 ///
 /// # Errors
 /// As [`vectors`].
 pub fn colors(accessor: &gltf::Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<Vec4>, String> {
     if accessor.dimensions() == Dimensions::Vec3 {
-        let colors = read::<3>(accessor, buffers, true)?;
+        let colors = vectors::<3>(accessor, buffers, true)?;
         return Ok(colors.into_iter().map(|color| Vec3::from(color).extend(1.0)).collect());
     }
-    Ok(read::<4>(accessor, buffers, true)?.into_iter().map(Vec4::from).collect())
+    Ok(vectors::<4>(accessor, buffers, true)?.into_iter().map(Vec4::from).collect())
 }
 
-fn read<const N: usize>(
+/// Vectors of an accessor as floats. `is_normalized`: integers are parts of 1, not whole numbers.
+///
+/// # Errors
+/// The reason, for vectors of another length and for data outside its buffer.
+pub fn vectors<const N: usize>(
     accessor: &gltf::Accessor<'_>,
     buffers: &[Vec<u8>],
     is_normalized: bool,

@@ -192,11 +192,15 @@ impl Import {
         };
         let damaged = |reason| format!("the instances of {node}: {reason}");
         let read = |accessor: Option<gltf::Accessor<'_>>| {
-            accessor.map(|accessor| vectors::<3>(&accessor, &self.buffers)).transpose().map_err(damaged)
+            accessor
+                .map(|accessor| vectors::<3>(&accessor, &self.buffers, accessor.normalized()))
+                .transpose()
+                .map_err(damaged)
         };
         let translations = read(accessor(instances.translation)?)?;
         let scales = read(accessor(instances.scale)?)?;
-        let rotations = accessor(instances.rotation)?.map(|accessor| vectors::<4>(&accessor, &self.buffers));
+        let rotations =
+            accessor(instances.rotation)?.map(|accessor| vectors::<4>(&accessor, &self.buffers, accessor.normalized()));
         let rotations = rotations.transpose().map_err(damaged)?;
         let counts =
             [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
@@ -432,7 +436,7 @@ impl Shape {
         let Some(positions) = primitive.get(&Semantic::Positions) else {
             return Err(format!("{node} has no positions; expected a whole file"));
         };
-        let positions = vectors::<3>(&positions, buffers).map_err(named)?;
+        let positions = vectors::<3>(&positions, buffers, positions.normalized()).map_err(named)?;
         let mut shape = Self {
             positions: positions.into_iter().map(Vec3::from).collect(),
             normals: Vec::new(),
@@ -442,7 +446,11 @@ impl Shape {
             indices: Vec::new(),
         };
         if let Some(normals) = primitive.get(&Semantic::Normals) {
-            shape.normals = vectors::<3>(&normals, buffers).map_err(named)?.into_iter().map(Vec3::from).collect();
+            shape.normals = vectors::<3>(&normals, buffers, normals.normalized())
+                .map_err(named)?
+                .into_iter()
+                .map(Vec3::from)
+                .collect();
         }
         if let Some(uvs) = primitive.get(&Semantic::TexCoords(set)) {
             let moved = |uv: [f32; 2]| {
@@ -450,7 +458,7 @@ impl Shape {
                 let moved = transform.as_ref().map_or(uv, |transform| transformed(uv, transform));
                 if moved.is_finite() { moved } else { Vec2::ZERO }
             };
-            shape.uvs = vectors::<2>(&uvs, buffers).map_err(named)?.into_iter().map(moved).collect();
+            shape.uvs = vectors::<2>(&uvs, buffers, uvs.normalized()).map_err(named)?.into_iter().map(moved).collect();
         }
         if let Some(of_corners) = primitive.get(&Semantic::Colors(0)) {
             let painted = |of_corner: Vec4| match of_corner.is_finite() {

@@ -11,6 +11,10 @@ fn error(line: usize, reason: impl Into<String>) -> GradientParseError {
     GradientParseError { line, reason: reason.into() }
 }
 
+fn is_code(color: Vec3) -> bool {
+    color == color.clamp(Vec3::ZERO, Vec3::splat(255.0))
+}
+
 /// Reads a color palette table of GMT: pieces from a value and a color to another. The lowest value becomes 0, the
 /// highest 1. (GMT, "Color palette tables")
 pub fn read_cpt(text: &str) -> Result<SourceGradient, GradientParseError> {
@@ -59,16 +63,16 @@ fn piece(words: &[&str]) -> Option<[SourcePoint; 2]> {
 fn end<'a, 'b>(words: &'a [&'b str]) -> Option<(SourcePoint, &'a [&'b str])> {
     let (value, rest) = words.split_first()?;
     let at: f32 = value.parse().ok().filter(|at: &f32| at.is_finite())?;
-    let point = |color: Vec3| SourcePoint { at, code: (color / 255.0).extend(1.0) };
+    let point = |color: Vec3| is_code(color).then(|| SourcePoint { at, code: (color / 255.0).extend(1.0) });
     if let Some(&[r, g, b]) = rest.get(..3).and_then(|words| parse_numbers(&words.join(" "))).as_deref() {
-        return Some((point(Vec3::new(r, g, b)), &rest[3..]));
+        return Some((point(Vec3::new(r, g, b))?, &rest[3..]));
     }
     let (color, rest) = rest.split_first()?;
     if let Some([r, g, b]) = parse_numbers(&color.replace('/', " ")).as_deref() {
-        return Some((point(Vec3::new(*r, *g, *b)), rest));
+        return Some((point(Vec3::new(*r, *g, *b))?, rest));
     }
     let named = csscolorparser::parse(color).ok()?;
-    Some((point(Vec3::new(named.r, named.g, named.b) * 255.0), rest))
+    Some((point(Vec3::new(named.r, named.g, named.b) * 255.0)?, rest))
 }
 
 /// Reads a palette of GIMP or Paint Shop Pro.
@@ -79,8 +83,13 @@ pub fn read_palette(text: &str) -> Result<SourceGradient, GradientParseError> {
     if !is_gimp && first != "JASC-PAL" {
         return Err(error(1, "not a palette; expected \"GIMP Palette\" or \"JASC-PAL\" in the first line"));
     }
-    // Version and number of colors.
-    let lines = lines.skip(if is_gimp { 0 } else { 2 });
+    let mut expected_count = None;
+    if !is_gimp {
+        // The version.
+        lines.next();
+        let count = lines.next().and_then(|(_, line)| line.parse::<usize>().ok());
+        expected_count = Some(count.ok_or_else(|| error(3, "no number of colors; expected a whole number"))?);
+    }
     let mut colors = Vec::new();
     for (line, text) in lines {
         let is_header = ["Name:", "Columns:"].iter().any(|name| text.starts_with(name));
@@ -89,9 +98,12 @@ pub fn read_palette(text: &str) -> Result<SourceGradient, GradientParseError> {
         }
         let words: Vec<_> = text.split_whitespace().take(3).collect();
         match parse_numbers(&words.join(" ")).as_deref() {
-            Some(&[r, g, b]) => colors.push(Vec3::new(r, g, b) / 255.0),
+            Some(&[r, g, b]) if is_code(Vec3::new(r, g, b)) => colors.push(Vec3::new(r, g, b) / 255.0),
             _ => return Err(error(line, "not a color; expected red, green and blue of 0 to 255")),
         }
+    }
+    if let Some(count) = expected_count.filter(|count| *count != colors.len()) {
+        return Err(error(3, format!("{} colors follow; expected {count}", colors.len())));
     }
     if colors.is_empty() {
         return Err(error(1, "no colors; expected lines of red, green and blue"));
@@ -142,6 +154,9 @@ mod tests {
         );
         let jasc = "JASC-PAL\n0100\n2\n0 0 0\n255 0 0\n";
         assert_eq!(codes(read_palette, jasc, &[0.0, 1.0]), [[0, 0, 0], [255, 0, 0]]);
+        assert_eq!(refused(read_palette, "JASC-PAL\n0100\n3\n0 0 0\n"), "3: 1 colors follow; expected 3");
+        assert!(refused(read_palette, "GIMP Palette\n0 256 0").starts_with("2: not a color"));
+        assert!(refused(read_cpt, "0 0 0 0 1 300 0 0").starts_with("1: not a piece"));
         assert!(refused(read_palette, "RIFF").starts_with("1: not a palette"));
         assert_eq!(
             refused(read_palette, "GIMP Palette\n1 2"),

@@ -5,18 +5,21 @@ use haze_core::error::one_line;
 
 use super::gradient_text::GradientParseError;
 use super::ramp_recipe::Blend;
-use super::source_gradient::{SourceGradient, SourcePoint};
+use super::source_gradient::{NotedGradient, SourceGradient, SourcePoint};
 
 const FUNCTION: &str = "linear-gradient(";
 
 /// Reads the first linear gradient of a text. Colors are mixed as CSS does: multiplied by their alpha.
-pub fn read(text: &str) -> Result<SourceGradient, GradientParseError> {
+pub fn read(text: &str) -> Result<NotedGradient, GradientParseError> {
     let start = text.find(FUNCTION).ok_or_else(|| GradientParseError {
         line: 1,
         reason: "no gradient; expected linear-gradient(#402010, white 80%)".into(),
     })?;
     let line = 1 + text[..start].matches('\n').count();
     let refuse = |reason: String| GradientParseError { line, reason };
+    if text[..start].ends_with("repeating-") {
+        return Err(refuse("a repeating gradient is not read; expected linear-gradient(…)".into()));
+    }
     let arguments = arguments(&text[start + FUNCTION.len()..])
         .ok_or_else(|| refuse("the gradient has no end; expected a closing bracket".into()))?;
     let mut blend = Blend::Srgb;
@@ -32,7 +35,9 @@ pub fn read(text: &str) -> Result<SourceGradient, GradientParseError> {
     if stops.is_empty() {
         return Err(refuse("the gradient has no colors; expected one or more".into()));
     }
-    Ok(SourceGradient::premultiplied(blend, placed(&stops)))
+    let count = text.matches(FUNCTION).count();
+    let note = (count > 1).then(|| format!("{line}: read the first of {count} linear gradients"));
+    Ok(NotedGradient { gradient: SourceGradient::premultiplied(blend, placed(&stops)), note })
 }
 
 /// Splits the arguments of a function at the commas that are in no other brackets; `None` without the closing bracket.
@@ -158,8 +163,8 @@ mod tests {
     use super::*;
 
     fn code(text: &str, at: f32) -> Vec3 {
-        let Ok(gradient) = read(text) else { panic!("{text} is refused") };
-        gradient.code(at)
+        let Ok(read) = read(text) else { panic!("{text} is refused") };
+        read.gradient.code(at)
     }
 
     fn refused(text: &str) -> String {
@@ -189,6 +194,10 @@ mod tests {
     fn what_is_not_read_is_refused_by_name() {
         for (text, expected) in [
             ("\n\nconic-gradient(red, blue)", "1: no gradient; expected linear-gradient(#402010, white 80%)"),
+            (
+                "repeating-linear-gradient(red, blue 9%)",
+                "1: a repeating gradient is not read; expected linear-gradient(…)",
+            ),
             ("\nlinear-gradient(red, blue", "2: the gradient has no end; expected a closing bracket"),
             (
                 "linear-gradient(red, 30%, blue)",
@@ -206,5 +215,7 @@ mod tests {
         ] {
             assert_eq!(refused(text), expected);
         }
+        let note = read("a {}\nlinear-gradient(red, blue) linear-gradient(red, white)").ok().and_then(|read| read.note);
+        assert_eq!(note.as_deref(), Some("2: read the first of 2 linear gradients"));
     }
 }

@@ -72,7 +72,9 @@ fn svg(name: &str, stops: &[RampStop]) -> String {
 }
 
 fn css(stops: &[RampStop]) -> String {
-    let stop = |stop: &RampStop| format!("{} {}%", String::from(stop.color), 100.0 * stop.at);
+    // Four decimals are finer than the texels of any ramp.
+    let percent = |at: f32| (f64::from(at) * 1.0e6).round() / 1.0e4;
+    let stop = |stop: &RampStop| format!("{} {}%", String::from(stop.color), percent(stop.at));
     let stops: Vec<_> = stops.iter().map(stop).collect();
     format!("linear-gradient(to right, {})\n", stops.join(", "))
 }

@@ -78,7 +78,7 @@ pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Resul
             return Ok(ImportedGradient { fit, note: None });
         }
         "txt" => blender(text),
-        "css" => css::read(text),
+        "css" => css::read(text).map(&mut noted),
         "cpt" => color_tables::read_cpt(text),
         "gpl" | "pal" => color_tables::read_palette(text),
         "svg" => svg::read(text, name).map(&mut noted),

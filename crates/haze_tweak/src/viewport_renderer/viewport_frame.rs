@@ -298,13 +298,14 @@ impl RendererState {
         let mut is_new = false;
         match drawn {
             Some(shot) => {
+                let is_wall_timed = self.is_wall_timed();
                 if self.other.is_none() {
                     // Like the other renders, which could be created.
                     self.other = CachedRender::new(&self.context).ok();
                     self.timing_of_second = self.timing.as_ref().and_then(|_| self.context.timing());
                     let timing = self.timing_of_second.as_ref();
                     if let Some(cached) = &mut self.other {
-                        cached.is_wall_timed = self.time_source == Some(TimeSource::WallTime);
+                        cached.is_wall_timed = is_wall_timed;
                         // Cannot fail: both are of the same device.
                         let _ = cached.offscreen.set_timing(timing);
                     }
