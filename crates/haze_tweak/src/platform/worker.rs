@@ -46,6 +46,13 @@ struct State<T> {
     is_over: bool,
 }
 
+impl<T> State<T> {
+    fn cancel_all(&mut self) {
+        self.running.iter().chain(self.queue.iter().map(|(ticket, _)| ticket)).for_each(Ticket::cancel);
+        self.queue.clear();
+    }
+}
+
 impl<T> Shared<T> {
     fn lock(&self) -> MutexGuard<'_, State<T>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
@@ -103,6 +110,13 @@ impl<T: Send + 'static> Worker<T> {
         None
     }
 
+    /// Cancels all jobs and drops results that have not been taken.
+    pub fn cancel_all(&self) {
+        let mut state = self.shared.lock();
+        state.cancel_all();
+        state.done.clear();
+    }
+
     /// Returns true while a job runs or waits.
     pub fn is_busy(&self) -> bool {
         let state = self.shared.lock();
@@ -141,8 +155,7 @@ impl<T> Drop for Worker<T> {
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         state.is_over = true;
-        state.running.iter().chain(state.queue.iter().map(|(ticket, _)| ticket)).for_each(Ticket::cancel);
-        state.queue.clear();
+        state.cancel_all();
         self.shared.has_changed.notify_all();
     }
 }
@@ -194,6 +207,27 @@ mod tests {
         running.cancel();
         (0..2).for_each(|_| woken.recv_timeout(LONG).unwrap());
         assert_eq!((worker.poll(), worker.poll()), (Some(Some("done")), None));
+    }
+
+    #[test]
+    fn nothing_comes_of_jobs_before_all_were_cancelled() {
+        let (worker, woken) = worker();
+        let (begin, begun) = mpsc::channel();
+        worker.submit(|_| "not taken");
+        woken.recv_timeout(LONG).unwrap();
+        worker.submit(move |ticket| {
+            begin.send(()).unwrap();
+            while !ticket.is_cancelled() {
+                thread::yield_now();
+            }
+            "running"
+        });
+        worker.submit(|_| "waiting");
+        begun.recv_timeout(LONG).unwrap();
+        worker.cancel_all();
+        worker.submit(|_| "after");
+        (0..2).for_each(|_| woken.recv_timeout(LONG).unwrap());
+        assert_eq!((worker.poll(), worker.poll()), (Some(Some("after")), None));
     }
 
     #[test]

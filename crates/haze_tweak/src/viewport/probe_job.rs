@@ -57,6 +57,9 @@ impl ProbeJob {
         if !session.inspect.is_on && !has_ramps {
             renderer.want_capture(None);
             renderer.forget_capture();
+            // An answer from before would be shown for the pixel that is inspected next.
+            self.worker.cancel_all();
+            self.is_pending = false;
             (self.captured, self.requested) = (None, None);
             (session.inspect.pixel_values, session.inspect.survey) = (None, None);
             return;
@@ -133,6 +136,7 @@ impl ProbeJob {
                 side: captured.side,
                 names,
                 probe,
+                front_share: captured.inputs.front_share(pixel),
                 exposure: preset.camera.exposure.exp2(),
             }))
         });

@@ -139,6 +139,12 @@ impl<T: 'static> Worker<T> {
         }
     }
 
+    /// Cancels all jobs.
+    pub fn cancel_all(&self) {
+        self.queue.borrow_mut().clear();
+        self.running.borrow().iter().for_each(|running| running.ticket.cancel());
+    }
+
     /// Returns true while a job runs or waits.
     pub fn is_busy(&self) -> bool {
         let is_wanted = |running: &Running<T>| !running.ticket.is_cancelled();
@@ -149,8 +155,6 @@ impl<T: 'static> Worker<T> {
 
 impl<T> Drop for Worker<T> {
     fn drop(&mut self) {
-        if let Some(running) = self.running.get_mut() {
-            running.ticket.cancel();
-        }
+        self.cancel_all();
     }
 }

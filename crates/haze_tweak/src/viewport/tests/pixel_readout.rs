@@ -62,6 +62,29 @@ fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
 }
 
 #[test]
+fn values_from_before_the_inspector_was_off_are_not_shown() {
+    let mut harness = window("column", SIZE, Theme::Dark);
+    let pixel = |harness: &Harness<'_, Window>| {
+        harness.state().session.inspect.pixel_values.as_ref().map(|values| values.pixel)
+    };
+    let place = smoke(&harness);
+    harness.hover_at(place);
+    harness.key_press(Key::I);
+    wait_for(&mut harness, |harness| pixel(harness).is_some());
+    let inspected = pixel(&harness);
+    // Values of another pixel are requested, and come while the inspector is off.
+    harness.hover_at(place - Vec2::new(0.0, 60.0));
+    harness.step();
+    harness.key_press(Key::I);
+    harness.step();
+    std::thread::sleep(Duration::from_millis(300));
+    harness.hover_at(place);
+    harness.key_press(Key::I);
+    wait_for(&mut harness, |harness| pixel(harness).is_some());
+    assert_eq!(pixel(&harness), inspected);
+}
+
+#[test]
 fn the_inspector_reads_the_compared_image_under_the_pointer() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
