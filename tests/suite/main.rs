@@ -23,6 +23,7 @@ mod import_graph;
 mod lighting;
 mod moving_sprites;
 mod mutants;
+mod outlines;
 mod overdraw;
 mod particles;
 mod presets;

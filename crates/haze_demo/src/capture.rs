@@ -36,8 +36,10 @@ struct CapturedTarget {
 pub struct CapturedFrame {
     /// Depth buffer of the scene, 0..1.
     pub scene_depth: Image<f32>,
-    /// Scene color without smoke, linear HDR.
+    /// Scene color without smoke, linear HDR; at the outline of an object, that of the surfaces behind it.
     pub behind: Image<Vec4>,
+    /// Color of objects at their outlines, with their share of the pixel in alpha; 0 elsewhere.
+    pub front: Image<Vec4>,
     /// Targets of the systems; `None` for systems that are out of view or use the forward path.
     pub systems: Vec<Option<ProbeTextures>>,
 }
@@ -47,7 +49,7 @@ impl Capture {
     pub(super) fn record(
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        scene: [&wgpu::Texture; 2],
+        scene: [&wgpu::Texture; 3],
         systems: &[Option<TargetViews<'_>>],
     ) -> Self {
         let mut textures = scene.to_vec();
@@ -77,9 +79,11 @@ impl Capture {
     pub fn read(&self) -> Option<CapturedFrame> {
         let bytes = self.readback.take()?;
         let mut regions = self.readback.regions.iter();
-        let (depth, behind) = (regions.next()?, regions.next()?);
+        let depth = regions.next()?;
         let scene_depth = depth.depths(&bytes, depth.size());
-        let behind = behind.colors(&bytes, 0, behind.size());
+        let mut color = || regions.next().map(|region| region.colors(&bytes, 0, region.size()));
+        let behind = color()?;
+        let front = color()?;
         let mut system = |target: &CapturedTarget| {
             let mut accumulation = AccumulatedTextures::default();
             for role in target.roles.iter() {
@@ -100,7 +104,7 @@ impl Capture {
             Some(ProbeTextures { accumulation, reduced_depth, baked })
         };
         let systems = self.systems.iter().map(|target| target.as_ref().and_then(&mut system)).collect();
-        Some(CapturedFrame { scene_depth, behind, systems })
+        Some(CapturedFrame { scene_depth, behind, front, systems })
     }
 }
 
@@ -130,12 +134,17 @@ impl ProbeInputs {
         &self.shot
     }
 
-    /// Explains how some pixels were shaded.
+    /// Returns the share of a pixel that an object in front covers at its outline, 0 to 1. A probe explains the rest.
+    pub fn front_share(&self, pixel: UVec2) -> f32 {
+        self.captured.front.load(pixel.as_ivec2()).w
+    }
+
+    /// Explains how some pixels were shaded; at the outline of an object, the surfaces behind it.
     ///
     /// # Errors
     /// As [`probe`], if the targets belong to another shot.
     pub fn probe(&self, pixels: &[UVec2]) -> Result<Vec<Probe>, Error> {
-        let CapturedFrame { scene_depth, behind, systems: texels } = &self.captured;
+        let CapturedFrame { scene_depth, behind, systems: texels, .. } = &self.captured;
         let systems = self.shot.reference_systems(&self.systems);
         let maps = ShadowLayers::of_shot(&self.shot);
         let shadow_maps = maps.maps();

@@ -11,8 +11,9 @@ use haze_core::frame::{Light, Particle};
 use haze_core::settings::Settings;
 use haze_preset::Environment;
 
-use super::ray_caster;
-use super::scene::Scene;
+use super::outline::Outlines;
+use super::ray_caster::{self, SceneColor};
+use super::scene::{Scene, coefficients};
 use super::shadow_views::ShadowView;
 use super::shot::Shot;
 use haze_author::backdrop::Backdrop;
@@ -30,7 +31,8 @@ impl Shot {
     fn render_still(&self) -> Result<Image<Vec4>, Error> {
         let view = self.preset.camera.view(self.size);
         let scene = self.scene();
-        let depth = ray_caster::render_depth(&scene, &view);
+        let groups = ray_caster::render_depth(&scene, &view);
+        let depth = Image { size: groups.size, texels: groups.texels.iter().map(|groups| groups.back).collect() };
         let particles = self.systems();
         let systems = self.reference_systems(&particles);
         let maps = ShadowLayers::of_shot(self);
@@ -43,12 +45,23 @@ impl Shot {
             Some(shadow) if apart(shadow, light as usize) => shadow.haze_transmittance(world, light as usize),
             _ => Vec3::ONE,
         };
-        let mut color = match self.shows_scene() {
-            true => ray_caster::render_color(&scene, &view, &depth, through),
-            false => Image::new(self.size, Vec4::W),
+        if !self.shows_scene() {
+            let mut color = Image::new(self.size, Vec4::W);
+            frame.render(&mut color);
+            return Ok(color);
+        }
+        let SceneColor { behind, front } = ray_caster::render_color(&scene, &view, &groups, through);
+        let mut smoked = behind.clone();
+        frame.render(&mut smoked);
+        let outlines = Outlines {
+            groups: &groups,
+            coefficients: coefficients(&view),
+            behind: &behind,
+            smoked: &smoked,
+            front: &front,
+            smoke_depths: frame.smoke_depths(),
         };
-        frame.render(&mut color);
-        Ok(color)
+        Ok(outlines.completed())
     }
 
     pub(super) fn reference_systems<'a>(

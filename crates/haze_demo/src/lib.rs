@@ -16,6 +16,8 @@ mod mesh_renderer;
 mod occluders;
 mod offscreen_context;
 pub mod offscreen_renderer;
+mod outline;
+mod outline_pass;
 pub mod particle_scalar;
 pub mod puff_cloud;
 mod ray_caster;

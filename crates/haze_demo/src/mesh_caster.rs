@@ -7,6 +7,7 @@ use haze_core::frame::View;
 
 use super::boxes::LIGHT_GAP;
 use super::camera_rays::CameraRays;
+use super::outline::SAMPLES;
 use super::scene::Scene;
 use super::shading::Lit;
 use haze_author::backdrop::{RayHit, SceneMesh};
@@ -64,9 +65,9 @@ impl<'a> MeshCaster<'a> {
         })
     }
 
-    /// Depth 0..1 at a pixel's center.
-    pub fn depth(&self, at: UVec2) -> f32 {
-        let ray = self.ray(at.as_vec2() + 0.5);
+    /// Depth 0..1 at a position in the image, pixels.
+    pub fn depth(&self, pixel: Vec2) -> f32 {
+        let ray = self.ray(pixel);
         let Some(hit) = self.hit(ray) else { return 1.0 };
         let clip = self.clip_from_world * (self.rays.eye + ray * hit.distance).extend(1.0);
         (clip.z / clip.w).clamp(0.0, 1.0)
@@ -102,16 +103,17 @@ impl<'a> MeshCaster<'a> {
         }
     }
 
-    /// Averages four samples, as [`RayCaster`](super::ray_caster) does. `through` as in [`Scene::irradiance`].
-    pub fn color(&self, at: UVec2, through: &impl Fn(u32) -> Vec3) -> Vec3 {
-        const OFFSETS: [Vec2; 4] =
-            [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
-        let mut samples = OFFSETS.map(|offset| self.sample(at.as_vec2() + offset));
+    /// Averages samples of a group, as [`RayCaster`](super::ray_caster) does. `through` as in [`Scene::irradiance`].
+    pub fn color(&self, at: UVec2, is_in_group: [bool; 4], through: &impl Fn(u32) -> Vec3) -> Vec3 {
+        let mut samples = SAMPLES.map(|sample| self.sample(at.as_vec2() + sample));
         if samples.iter().any(|sample| sample.surface.is_some()) {
-            self.add_lights(&mut samples, through);
+            self.add_lights(&mut samples, is_in_group, through);
         }
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-        for Sample { paint, lit, .. } in samples {
+        for (Sample { paint, lit, .. }, is_in_group) in samples.into_iter().zip(is_in_group) {
+            if !is_in_group {
+                continue;
+            }
             let weight = 1.0 / (1.0 + (paint * lit.full).max_element());
             sum += paint * lit.shaded * weight;
             weights += weight;
@@ -119,13 +121,16 @@ impl<'a> MeshCaster<'a> {
         sum / weights
     }
 
-    fn add_lights(&self, samples: &mut [Sample; 4], through: &impl Fn(u32) -> Vec3) {
+    fn add_lights(&self, samples: &mut [Sample; 4], is_in_group: [bool; 4], through: &impl Fn(u32) -> Vec3) {
         // On one even surface, two samples that agree tell of the other two.
         let is_even = is_even(samples);
         for (index, light) in (0..).zip(&self.scene.lights) {
             let mut visible = [true; 4];
             for (turn, i) in [0, 3, 1, 2].into_iter().enumerate() {
                 let Sample { lit, surface: Some(surface), .. } = &mut samples[i] else { continue };
+                if !is_in_group[i] {
+                    continue;
+                }
                 let sample = sample_light(light, surface.world);
                 let facing = surface.normal.dot(sample.direction);
                 visible[i] = if turn > 1 && is_even && visible[0] == visible[3] {

@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2};
 use haze_core::assets::image::Image;
 use wgpu::util::DeviceExt as _;
 
-use super::scene_pipeline::{COLOR_FORMAT, LINEAR_FORMAT, ScenePipeline, default_view};
+use super::scene_pipeline::{COLOR_FORMAT, LIGHT, LIGHT_PARTS, ScenePipeline, default_view, texture_entries};
 use haze::shader;
 use haze_author::backdrop::{ColorTexture, MASK_SIDE, SceneMaterial, SceneMesh, SceneVertex, Wrap};
 
@@ -21,12 +21,10 @@ pub(crate) struct MeshPipelines {
     hierarchy_layout: wgpu::BindGroupLayout,
     /// Writes reflectance and normals at 2x2 samples per pixel.
     pub paint: wgpu::RenderPipeline,
-    /// Writes the depth buffer, and linear depth if `R32Float` is renderable.
-    pub depth: wgpu::RenderPipeline,
-    /// Lights the paint.
-    pub light: wgpu::RenderPipeline,
-    /// Lights the paint, with up to three lights apart.
-    pub light_parts: wgpu::RenderPipeline,
+    /// Lights the paint of each layer: surfaces behind outlines, objects in front.
+    pub light: [wgpu::RenderPipeline; 2],
+    /// Lights the paint of each layer, with up to three lights apart.
+    pub light_parts: [wgpu::RenderPipeline; 2],
     /// Writes depth alone, as a light sees it.
     pub shadow: wgpu::RenderPipeline,
 }
@@ -77,8 +75,13 @@ impl UploadedMesh {
 
 impl MeshPipelines {
     /// Compiles the pipelines. `scene_layout`: that of group 0.
-    pub fn new(device: &wgpu::Device, scene_layout: &wgpu::BindGroupLayout, draws_linear: bool) -> Self {
-        let source = shader::compose(concat!(include_str!("scene.wgsl"), include_str!("scene_mesh.wgsl")));
+    pub fn new(device: &wgpu::Device, scene_layout: &wgpu::BindGroupLayout) -> Self {
+        let source = shader::compose(concat!(
+            include_str!("scene.wgsl"),
+            include_str!("scene_samples.wgsl"),
+            include_str!("scene_light.wgsl"),
+            include_str!("scene_mesh.wgsl")
+        ));
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("demo scene mesh"),
             source: wgpu::ShaderSource::Wgsl(source.unwrap_or_default().into()),
@@ -129,20 +132,18 @@ impl MeshPipelines {
             ScenePipeline { groups: &drawn, vertex: "mesh_vertex", buffers: &vertices, fragment, depth: true }
                 .create(device, &module)
         };
-        let lights = |fragment, formats: &[_]| {
-            let fragment = Some((fragment, formats));
-            ScenePipeline { groups: &lit, vertex: "fullscreen_vertex", buffers: &[], fragment, depth: false }
-                .create(device, &module)
+        let lights = |fragments: [_; 2], formats: &[_]| {
+            fragments.map(|fragment| {
+                let fragment = Some((fragment, formats));
+                ScenePipeline { groups: &lit, vertex: "fullscreen_vertex", buffers: &[], fragment, depth: false }
+                    .create(device, &module)
+            })
         };
         Self {
             paint: draws("mesh_paint_fragment", &[COLOR_FORMAT; 2]),
-            depth: match draws_linear {
-                true => draws("mesh_linear_fragment", &[LINEAR_FORMAT]),
-                false => draws("mesh_depth_fragment", &[]),
-            },
             shadow: draws("mesh_depth_fragment", &[]),
-            light: lights("light_fragment", &[COLOR_FORMAT]),
-            light_parts: lights("light_parts_fragment", &[COLOR_FORMAT; 4]),
+            light: lights(LIGHT, &[COLOR_FORMAT]),
+            light_parts: lights(LIGHT_PARTS, &[COLOR_FORMAT; 4]),
             material_layout,
             sample_layout,
             hierarchy_layout,
@@ -151,12 +152,10 @@ impl MeshPipelines {
 
     /// Group of paint, normals and depth at 2x2 samples per pixel, for the light passes.
     pub fn samples(&self, device: &wgpu::Device, [paint, normals, depth]: [&wgpu::TextureView; 3]) -> wgpu::BindGroup {
-        let entry =
-            |(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("demo scene mesh samples"),
             layout: &self.sample_layout,
-            entries: &[(0, paint), (6, normals), (7, depth)].map(entry),
+            entries: &texture_entries([(0, paint), (6, normals), (7, depth)]),
         })
     }
 
@@ -215,12 +214,10 @@ impl MeshPipelines {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        let entry =
-            |(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         let hierarchy = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("demo scene mesh hierarchy"),
             layout: &self.hierarchy_layout,
-            entries: &[(0, &nodes), (1, &triangles), (2, &masks)].map(entry),
+            entries: &texture_entries([(0, &nodes), (1, &triangles), (2, &masks)]),
         });
         UploadedMesh { vertices, parts, hierarchy, bytes }
     }

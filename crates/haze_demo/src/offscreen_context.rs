@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::error::Error;
 
+use super::outline_pass::OutlinePass;
 use super::scene_pipeline::LINEAR_FORMAT;
 use super::scene_renderer::SceneRenderer;
 use haze::shader::Sources;
@@ -17,6 +18,7 @@ pub struct OffscreenContext {
     pub(super) device: wgpu::Device,
     pub(super) haze: Context,
     pub(super) scene: Arc<SceneRenderer>,
+    pub(super) outlines: Arc<OutlinePass>,
     /// Materials that existing renderers have uploaded. Shared images are uploaded once.
     materials: Arc<Mutex<Vec<Weak<UploadedMaterial>>>>,
     /// True to attach the scene's depth buffer to the smoke pass: it is not sampled there, or the device supports
@@ -33,10 +35,12 @@ impl OffscreenContext {
         let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
         let flags = adapter.get_downlevel_capabilities().flags;
         let haze = Context::new(device, queue);
+        let scene = SceneRenderer::new(device, queue, draws_linear, haze.scene_shadow_layout());
         Self {
             copies_depth: flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES),
             device: device.clone(),
-            scene: Arc::new(SceneRenderer::new(device, queue, draws_linear, haze.scene_shadow_layout())),
+            outlines: Arc::new(OutlinePass::new(device, queue, &scene.scene_layout)),
+            scene: Arc::new(scene),
             haze,
             materials: Arc::default(),
             attaches_depth: draws_linear || read_only_depth_is_supported(device),

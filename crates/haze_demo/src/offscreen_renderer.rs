@@ -7,6 +7,7 @@ use glam::{UVec2, Vec3, Vec4};
 use haze_core::assets::image::Image;
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::error::Error;
+use haze_core::formula::depth::SKY_VIEW_DEPTH;
 use haze_core::formula::shadow::LIGHTS_PER_BLOCK;
 use haze_core::settings::DebugView;
 use haze_preset::Environment;
@@ -14,6 +15,7 @@ use haze_preset::Environment;
 use super::capture::Capture;
 pub use super::offscreen_context::OffscreenContext;
 use super::offscreen_context::UploadedMaterial;
+use super::outline_pass::OutlineInputs;
 use super::scene_pipeline::{COLOR_FORMAT, DEPTH_FORMAT, default_view, texture};
 use super::scene_renderer::SceneTargets;
 use super::shadow_views::ShadowView;
@@ -70,6 +72,8 @@ struct SizedTargets {
     /// Inputs of the scene that the targets currently show.
     scene_inputs: Option<SceneInputs>,
     pictures: [Option<wgpu::Texture>; DebugView::ALL.len()],
+    /// The final image before its outlines are completed.
+    smoked: Option<(wgpu::Texture, OutlineInputs)>,
 }
 
 /// Part of a frame that is measured by itself.
@@ -212,7 +216,7 @@ impl OffscreenRenderer {
         let shot = &*shot.at_its_time();
         shot.preset.validate()?;
         self.upload(&shot.materials)?;
-        let OffscreenContext { device, scene, attaches_depth, .. } = &self.context;
+        let OffscreenContext { device, scene, outlines, attaches_depth, .. } = &self.context;
         let size = shot.size.max(UVec2::ONE);
         let sized = match &mut self.sized {
             Some(sized) if sized.size() == size => sized,
@@ -220,6 +224,7 @@ impl OffscreenRenderer {
                 targets: scene.targets(size),
                 scene_inputs: None,
                 pictures: Default::default(),
+                smoked: None,
             }),
         };
         let backdrop = match self.backdrop.take() {
@@ -288,11 +293,16 @@ impl OffscreenRenderer {
         }
         scene.shade(encoder, &sized.targets, self.renderer.scene_shadow_bind_group());
         for &stage in stages {
-            let picture = sized.pictures[stage as usize]
-                .get_or_insert_with(|| texture(device, "demo picture", size, COLOR_FORMAT));
+            sized.pictures[stage as usize].get_or_insert_with(|| texture(device, "demo picture", size, COLOR_FORMAT));
             if stage == DebugView::Final {
-                let color = &sized.targets.color;
-                encoder.copy_texture_to_texture(color.as_image_copy(), picture.as_image_copy(), color.size());
+                let SizedTargets { targets, smoked, .. } = sized;
+                let (smoked, _) = smoked.get_or_insert_with(|| {
+                    let smoked = texture(device, "demo smoke", size, COLOR_FORMAT);
+                    let inputs = outlines.inputs(targets, &default_view(&targets.color), default_view(&smoked));
+                    (smoked, inputs)
+                });
+                let color = &targets.color;
+                encoder.copy_texture_to_texture(color.as_image_copy(), smoked.as_image_copy(), color.size());
             }
         }
         end_part(encoder, FramePart::Scene)?;
@@ -300,14 +310,14 @@ impl OffscreenRenderer {
         for &stage in stages {
             let Some(picture) = &sized.pictures[stage as usize] else { continue };
             // Debug views other than the final image are shown on black.
-            let load = match stage {
-                DebugView::Final => wgpu::LoadOp::Load,
-                _ => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            let (view, load) = match &sized.smoked {
+                Some((_, outline)) if stage == DebugView::Final => (outline.smoked.clone(), wgpu::LoadOp::Load),
+                _ => (default_view(picture), wgpu::LoadOp::Clear(wgpu::Color::BLACK)),
             };
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("smoke"),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &default_view(picture),
+                    view: &view,
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
@@ -321,7 +331,17 @@ impl OffscreenRenderer {
             });
             self.renderer.render_debug_view(&mut pass, stage);
         }
-        end_part(encoder, FramePart::Smoke)
+        end_part(encoder, FramePart::Smoke)?;
+        let picture = sized.pictures[DebugView::Final as usize].as_ref();
+        if let Some(((_, inputs), picture)) =
+            sized.smoked.as_ref().zip(picture).filter(|_| stages.contains(&DebugView::Final))
+        {
+            let visible = (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.targets(key)?.smoke_depths);
+            let depths = visible
+                .fold([SKY_VIEW_DEPTH, 0.0], |[nearest, farthest], [near, far]| [nearest.min(near), farthest.max(far)]);
+            outlines.record(encoder, &sized.targets, inputs, depths, &default_view(picture));
+        }
+        end_part(encoder, FramePart::Scene)
     }
 
     /// Forces the scene to be redrawn in the next frame. Call it if the last recorded encoder was dropped without being
@@ -360,7 +380,7 @@ impl OffscreenRenderer {
     pub fn capture(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Capture> {
         let targets = &self.sized.as_ref().filter(|_| self.context.copies_depth)?.targets;
         let systems: Vec<_> = (0..).zip(&self.materials).map(|(key, _)| self.renderer.targets(key)).collect();
-        let scene = [targets.depth.texture(), &targets.color];
+        let scene = [targets.depth.texture(), &targets.color, targets.front.texture()];
         Some(Capture::record(&self.context.device, encoder, scene, &systems))
     }
 
@@ -420,6 +440,7 @@ impl SizedTargets {
             let texel = texture.format().block_copy_size(None).unwrap_or_default();
             u64::from(texel) * u64::from(texture.width()) * u64::from(texture.height())
         };
-        self.targets.textures().chain(self.pictures.iter().flatten()).map(bytes).sum()
+        let smoked = self.smoked.iter().map(|(smoked, _)| smoked);
+        self.targets.textures().chain(self.pictures.iter().flatten()).chain(smoked).map(bytes).sum()
     }
 }

@@ -11,45 +11,70 @@ use super::boxes::{SceneBox, Surface, box_interval};
 use super::camera_rays::CameraRays;
 use super::mesh_caster::MeshCaster;
 use super::occluders::{BoxMask, indices};
+use super::outline::{SAMPLES, SampleGroups};
 use super::scene::{Scene, coefficients};
 use super::shading::{Lit, albedo};
 
-/// Renders depth 0..1 at pixel centers.
-pub(crate) fn render_depth(scene: &Scene, view: &View) -> Image<f32> {
-    let mut depth = Image::new(view.size, 1.0);
+/// Renders the depths of four samples per pixel.
+pub(crate) fn render_depth(scene: &Scene, view: &View) -> Image<SampleGroups> {
+    let coefficients = coefficients(view);
+    let mut groups = Image::new(view.size, SampleGroups::new([1.0; 4], coefficients));
     if let Some(caster) = MeshCaster::new(scene, view) {
-        depth.for_each(|at, texel| *texel = caster.depth(at));
-        return depth;
+        groups.for_each(|at, texel| {
+            *texel = SampleGroups::new(SAMPLES.map(|sample| caster.depth(at.as_vec2() + sample)), coefficients);
+        });
+        return groups;
     }
     let caster = RayCaster::new(scene, view);
-    depth.for_each(|at, texel| *texel = caster.depth(at));
-    depth
+    groups.for_each(|at, texel| {
+        *texel = SampleGroups::new(SAMPLES.map(|sample| caster.depth(at.as_vec2() + sample)), coefficients);
+    });
+    groups
 }
 
-/// Renders linear color with four samples per pixel. `depth`: that of [`render_depth`]. `through`: share of a light, by its
+/// Linear color of a scene without smoke.
+pub(crate) struct SceneColor {
+    /// Surfaces behind outlines. Alpha is 0: that of smoke is added to it.
+    pub behind: Image<Vec4>,
+    /// Objects in front at outlines, with their share of the pixel in alpha.
+    pub front: Image<Vec4>,
+}
+
+/// Renders linear color with four samples per pixel. `groups`: those of [`render_depth`]. `through`: share of a light, by its
 /// index, that reaches a point of the world through the smoke.
 pub(crate) fn render_color(
     scene: &Scene,
     view: &View,
-    depth: &Image<f32>,
+    groups: &Image<SampleGroups>,
     through: impl Fn(Vec3, u32) -> Vec3 + Sync,
-) -> Image<Vec4> {
+) -> SceneColor {
     let caster = RayCaster::new(scene, view);
     let mesh = MeshCaster::new(scene, view);
     let coefficients = coefficients(view);
-    let mut color = Image::new(view.size, Vec4::ZERO);
-    color.for_each(|at, texel| {
-        let view_depth = view_depth_from_ndc_depth(depth.load(at.as_ivec2()), coefficients);
+    let color = |at: UVec2, is_in_group: [bool; 4], view_depth: f32| {
         let world = caster.rays.eye + caster.rays.at_unit_depth((at.as_vec2() + 0.5) / caster.size) * view_depth;
         let is_sky = view_depth >= SKY_VIEW_DEPTH;
         let through = |light| if is_sky { Vec3::ONE } else { through(world, light) };
-        let color = match &mesh {
-            Some(mesh) => mesh.color(at, &through),
-            None => caster.color(at, &through),
-        };
-        *texel = color.extend(1.0);
+        match &mesh {
+            Some(mesh) => mesh.color(at, is_in_group, &through),
+            None => caster.color(at, is_in_group, &through),
+        }
+    };
+    let mut behind = Image::new(view.size, Vec4::ZERO);
+    behind.for_each(|at, texel| {
+        let groups = groups.load(at.as_ivec2());
+        let view_depth = view_depth_from_ndc_depth(groups.back, coefficients);
+        *texel = color(at, groups.is_back(), view_depth).extend(0.0);
     });
-    color
+    let mut front = Image::new(view.size, Vec4::ZERO);
+    front.for_each(|at, texel| {
+        let groups = groups.load(at.as_ivec2());
+        let share = groups.front_share();
+        if share > 0.0 {
+            *texel = color(at, groups.is_front, groups.front_depth).extend(share);
+        }
+    });
+    SceneColor { behind, front }
 }
 
 struct RayCaster<'a> {
@@ -163,13 +188,11 @@ impl<'a> RayCaster<'a> {
         Some(Hit { surface, world: self.rays.eye + direction * nearest, local, local_normal })
     }
 
-    /// Averages four samples, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
-    /// sample if they lie on different faces, otherwise once at the pixel's center. `through` as in [`Scene::irradiance`].
-    fn color(&self, at: UVec2, through: &impl Fn(u32) -> Vec3) -> Vec3 {
-        const OFFSETS: [Vec2; 4] =
-            [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
-        let directions = OFFSETS.map(|offset| self.direction(at.as_vec2() + offset));
-        let hits = OFFSETS.map(|offset| self.hit(at.as_vec2() + offset));
+    /// Averages samples of a group, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
+    /// sample if the pixel's lie on different faces, otherwise once at its center. `through` as in [`Scene::irradiance`].
+    fn color(&self, at: UVec2, is_in_group: [bool; 4], through: &impl Fn(u32) -> Vec3) -> Vec3 {
+        let directions = SAMPLES.map(|sample| self.direction(at.as_vec2() + sample));
+        let hits = SAMPLES.map(|sample| self.hit(at.as_vec2() + sample));
         let is_one_face = hits[1..].iter().all(|hit| match (hit, &hits[0]) {
             (Some(hit), Some(first)) => hit.is_on_same_face(first),
             (None, None) => true,
@@ -179,7 +202,10 @@ impl<'a> RayCaster<'a> {
         let pixel_angle = (self.direction(at.as_vec2() + Vec2::new(0.5, 1.5)) - center).length();
         let shared_light = is_one_face.then(|| self.light(&hits[0], center, pixel_angle, through));
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-        for (hit, direction) in hits.iter().zip(directions) {
+        for ((hit, direction), is_in_group) in hits.iter().zip(directions).zip(is_in_group) {
+            if !is_in_group {
+                continue;
+            }
             let reflectance =
                 hit.as_ref().map_or(Vec3::ONE, |hit| albedo(hit.surface, hit.local, hit.local_normal, hit.world));
             let lit = shared_light.unwrap_or_else(|| self.light(hit, direction, pixel_angle, through));
@@ -206,8 +232,9 @@ impl<'a> RayCaster<'a> {
         self.scene.irradiance(self.rays.eye + direction * distance, normal, pixel, through)
     }
 
-    fn depth(&self, at: UVec2) -> f32 {
-        let Some(hit) = self.hit(at.as_vec2() + 0.5) else { return 1.0 };
+    /// Depth 0..1 at a position in the image, pixels.
+    fn depth(&self, pixel: Vec2) -> f32 {
+        let Some(hit) = self.hit(pixel) else { return 1.0 };
         let clip = self.clip_from_world * hit.world.extend(1.0);
         (clip.z / clip.w).clamp(0.0, 1.0)
     }

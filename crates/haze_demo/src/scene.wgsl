@@ -1,12 +1,12 @@
 // demo scene
-// What    Draws a scene: paint (reflectance and surface, 2x2 samples per pixel), depth, then light. scene_boxes.wgsl or
-//         scene_mesh.wgsl is composed after this file: the surfaces.
+// What    Draws a scene: paint (reflectance and surface, 2x2 samples per pixel), depth, then light. Composed after this file:
+//         scene_samples.wgsl and scene_light.wgsl, then scene_boxes.wgsl or scene_mesh.wgsl, the surfaces.
 //         With shadow of smoke, the light of each light with shadow is kept apart, and a last pass adds what comes through
-//         the smoke: only this pass is drawn while only the smoke moves.
-// Reads   scene and lights (uniforms), the panorama; the light pass also reads paint.
+//         the smoke: only this pass is drawn while only the smoke moves. Objects in front at outlines are lit apart.
+// Reads   scene and lights (uniforms), the panorama; the passes after paint also read paint and depth at 2x2 samples per
+//         pixel.
 // Writes  paint, depth buffer and linear view depth, scene color (linear HDR).
 // Blend   none.
-// Source  Karis, "Tone mapping", 2013, for the weights of the samples.
 // Space   world space, metres, y up. shading.rs implements the same functions on the CPU.
 
 #import "lib/lighting.wgsl"
@@ -109,60 +109,7 @@ fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) ve
     return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-@group(1) @binding(0) var paint: texture_2d<f32>;
-
 // Returns the vector from the eye to view depth 1. `uv` is 0..1, from the image's upper left corner.
 fn ray_at_unit_depth(uv: vec2f) -> vec3f {
     return scene.ray_forward + scene.ray_right * (uv.x * 2.0 - 1.0) + scene.ray_up * (1.0 - uv.y * 2.0);
-}
-
-// Returns the direction of the ray through a position in the image, pixels.
-fn ray_direction(place: vec2f) -> vec3f {
-    return normalize(ray_at_unit_depth(place * 2.0 / vec2f(textureDimensions(paint))));
-}
-
-// Averages four samples per pixel, weighted so that a single bright sample does not dominate an edge (Karis, "Tone
-// mapping", 2013). Alpha of paint is below 0 without a surface.
-fn average(paints: array<vec4f, 4>, lit: array<Lit, 4>) -> Lit {
-    var sum: Lit;
-    var weights = 0.0;
-    for (var i = 0; i < 4; i++) {
-        let reflectance = select(paints[i].rgb, vec3f(1.0), paints[i].a < 0.0);
-        let light = lit[i];
-        let color = reflectance * total(light);
-        let weight = 1.0 / (1.0 + max(color.r, max(color.g, color.b)));
-        sum.rest += reflectance * light.rest * weight;
-        for (var slot = 0; slot < 3; slot++) {
-            sum.apart[slot] += reflectance * light.apart[slot] * weight;
-        }
-        weights += weight;
-    }
-    sum.rest /= weights;
-    for (var slot = 0; slot < 3; slot++) {
-        sum.apart[slot] /= weights;
-    }
-    return sum;
-}
-
-@fragment
-fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    return vec4f(total(light_at(position.xy)), 1.0);
-}
-
-struct LightParts {
-    @location(0) rest: vec4f,
-    @location(1) first: vec4f,
-    @location(2) second: vec4f,
-    @location(3) third: vec4f,
-}
-
-@fragment
-fn light_parts_fragment(@builtin(position) position: vec4f) -> LightParts {
-    let lit = light_at(position.xy);
-    return LightParts(
-        vec4f(lit.rest, 1.0),
-        vec4f(lit.apart[0], 1.0),
-        vec4f(lit.apart[1], 1.0),
-        vec4f(lit.apart[2], 1.0),
-    );
 }

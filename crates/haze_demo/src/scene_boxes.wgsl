@@ -175,12 +175,6 @@ fn paint_fragment(in: BoxVertex) -> @location(0) vec4f {
     return vec4f(paint, f32(in.face));
 }
 
-// Writes view depth, metres: w of a perspective projection.
-@fragment
-fn linear_fragment(in: BoxVertex) -> @location(0) vec4f {
-    return vec4f((scene.clip_from_world * vec4f(in.world, 1.0)).w, 0.0, 0.0, 1.0);
-}
-
 // Returns the point at which the ray meets the plane of a face.
 fn point_on_face(b: Box, normal: vec3f, direction: vec3f) -> vec3f {
     let origin = to_local(b, scene.eye - b.center);
@@ -188,8 +182,8 @@ fn point_on_face(b: Box, normal: vec3f, direction: vec3f) -> vec3f {
     return scene.eye + direction * distance;
 }
 
-// Light is evaluated per sample if they lie on different faces, otherwise once at the pixel's center.
-fn light_at(position: vec2f) -> Lit {
+// Light of a group of samples. It is evaluated per sample if the pixel's lie on different faces, otherwise once at its center.
+fn light_at(position: vec2f, is_in_group: vec4<bool>) -> Lit {
     let first = vec2i(position) * 2;
     var paints = array<vec4f, 4>();
     for (var i = 0; i < 4; i++) {
@@ -199,6 +193,9 @@ fn light_at(position: vec2f) -> Lit {
     let is_one_face = paints[0].a == paints[1].a && paints[0].a == paints[2].a && paints[0].a == paints[3].a;
     var lit = array<Lit, 4>();
     for (var i = 0; i < select(4, 1, is_one_face); i++) {
+        if !is_one_face && !is_in_group[i] {
+            continue;
+        }
         let offset = vec2f(vec2i(i & 1, i >> 1u)) * 0.5 - 0.25;
         let direction = ray_direction(position + select(offset, vec2f(0.0), is_one_face));
         let face = u32(max(paints[i].a, 0.0));
@@ -219,5 +216,5 @@ fn light_at(position: vec2f) -> Lit {
         lit[2] = lit[0];
         lit[3] = lit[0];
     }
-    return average(paints, lit);
+    return average(paints, lit, is_in_group);
 }

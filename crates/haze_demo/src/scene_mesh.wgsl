@@ -79,14 +79,6 @@ fn texture_level(texel_density: f32, view_depth: f32, facing: f32) -> f32 {
     return log2(max(texel_density * sample, 1.0e-6));
 }
 
-@fragment
-fn mesh_linear_fragment(in: MeshVertex) -> @location(0) vec4f {
-    if is_cut_out(in.uv, in.alpha) {
-        discard;
-    }
-    return vec4f((scene.clip_from_world * vec4f(in.world, 1.0)).w, 0.0, 0.0, 1.0);
-}
-
 // Writes depth alone.
 @fragment
 fn mesh_depth_fragment(in: MeshVertex) {
@@ -96,7 +88,6 @@ fn mesh_depth_fragment(in: MeshVertex) {
 }
 
 @group(1) @binding(6) var normals: texture_2d<f32>;
-@group(1) @binding(7) var sample_depth: texture_2d<f32>;
 
 @group(2) @binding(0) var nodes: texture_2d<f32>;
 @group(2) @binding(1) var triangles: texture_2d<f32>;
@@ -186,7 +177,8 @@ fn mesh_visibility(world: vec3f, normal: vec3f, view_depth: f32, light: Light, s
     return select(1.0, 0.0, is_dark);
 }
 
-fn light_at(position: vec2f) -> Lit {
+// Light of a group of samples.
+fn light_at(position: vec2f, is_in_group: vec4<bool>) -> Lit {
     let first = vec2i(position) * 2;
     var paints = array<vec4f, 4>();
     var lit = array<Lit, 4>();
@@ -197,7 +189,7 @@ fn light_at(position: vec2f) -> Lit {
         let at = first + vec2i(i & 1, i >> 1u);
         paints[i] = textureLoad(paint, at, 0);
         facings[i] = normalize(textureLoad(normals, at, 0).xyz + vec3f(0.0, 1.0e-8, 0.0));
-        depths[i] = view_depth_from_ndc_depth(textureLoad(sample_depth, at, 0).r, scene.depth_coefficients);
+        depths[i] = scene_view_depth(textureLoad(sample_depth, at, 0).r);
         let ray = ray_at_unit_depth((vec2f(at) + 0.5) / vec2f(textureDimensions(paint)));
         worlds[i] = scene.eye + ray * depths[i];
         if paints[i].a < 0.0 {
@@ -220,7 +212,7 @@ fn light_at(position: vec2f) -> Lit {
         var visible = array<f32, 4>(1.0, 1.0, 1.0, 1.0);
         for (var turn = 0; turn < 4; turn++) {
             let i = order[turn];
-            if paints[i].a < 0.0 {
+            if paints[i].a < 0.0 || !is_in_group[i] {
                 continue;
             }
             let sample = sample_light(lights[index], worlds[i]);
@@ -233,5 +225,5 @@ fn light_at(position: vec2f) -> Lit {
             lit[i] = add_light(lit[i], index, lights[index].color * (facing * sample.attenuation * visible[i]));
         }
     }
-    return average(paints, lit);
+    return average(paints, lit, is_in_group);
 }

@@ -6,6 +6,10 @@ pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
+/// Entry points that light the surfaces behind outlines, and objects in front; the same with up to three lights apart.
+pub(crate) const LIGHT: [&str; 2] = ["light_fragment", "front_light_fragment"];
+pub(crate) const LIGHT_PARTS: [&str; 2] = ["light_parts_fragment", "front_light_parts_fragment"];
+
 /// Pipeline of entry points of a scene's shader.
 pub(crate) struct ScenePipeline<'a> {
     pub groups: &'a [Option<&'a wgpu::BindGroupLayout>],
@@ -76,4 +80,11 @@ pub(crate) fn texture(device: &wgpu::Device, label: &str, size: UVec2, format: w
 
 pub(crate) fn default_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Returns entries of a bind group, each a binding with a texture.
+pub(crate) fn texture_entries<const COUNT: usize>(
+    textures: [(u32, &wgpu::TextureView); COUNT],
+) -> [wgpu::BindGroupEntry<'_>; COUNT] {
+    textures.map(|(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) })
 }

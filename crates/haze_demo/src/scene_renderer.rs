@@ -1,12 +1,12 @@
 //! GPU renderer of the demo scene, or of a scene from a file. Three passes: paint (reflectance at 2x2 samples per pixel), depth
-//! (depth buffer and linear view depth at pixel centers), and light. With shadow of smoke, light writes up to three lights to textures of
-//! their own, and a fourth pass, shade, adds them, dimmed by the smoke.
+//! (depth buffer and linear view depth), and light. With shadow of smoke, light writes up to three lights to textures of their own,
+//! and a fourth pass, shade, adds them, dimmed by the smoke. At outlines, all passes after paint show the surfaces behind;
+//! light and shade have a second turn for the objects in front, which `outline_pass.rs` adds when the smoke is drawn.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use bytemuck::Zeroable as _;
 use glam::UVec2;
-use haze_core::formula::depth::SKY_VIEW_DEPTH;
 use haze_core::formula::uniforms::LightUniform;
 use haze_core::frame::{MAX_LIGHTS, View};
 
@@ -14,7 +14,10 @@ use super::boxes::{MAX_BOXES, SceneBox};
 use super::mesh_renderer::MeshPipelines;
 use super::occluders::Occluders;
 use super::scene::{Scene, SceneUniform};
-use super::scene_pipeline::{COLOR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, ScenePipeline, default_view, texture};
+use super::scene_pipeline::{
+    COLOR_FORMAT, DEPTH_FORMAT, LIGHT, LIGHT_PARTS, LINEAR_FORMAT, ScenePipeline, default_view, texture,
+    texture_entries,
+};
 use super::shadow_views::{ShadowView, casters};
 use super::uploaded_backdrop::UploadedBackdrop;
 use haze::shader;
@@ -27,19 +30,20 @@ use wgpu::util::DeviceExt as _;
 pub(crate) struct SceneRenderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    scene_layout: wgpu::BindGroupLayout,
+    /// Layout of group 0.
+    pub scene_layout: wgpu::BindGroupLayout,
     paint_layout: wgpu::BindGroupLayout,
     /// Writes reflectance and face at 2x2 samples per pixel.
     paint: wgpu::RenderPipeline,
     /// Writes the depth buffer, and linear depth if `R32Float` is renderable.
     depth: wgpu::RenderPipeline,
     parts_layout: wgpu::BindGroupLayout,
-    /// Lights the paint.
-    light: wgpu::RenderPipeline,
-    /// Lights the paint, with up to three lights apart.
-    light_parts: wgpu::RenderPipeline,
-    /// Adds up the parts.
-    shade: wgpu::RenderPipeline,
+    /// Lights the paint of each layer.
+    light: [wgpu::RenderPipeline; 2],
+    /// Lights the paint of each layer, with up to three lights apart.
+    light_parts: [wgpu::RenderPipeline; 2],
+    /// Adds up the parts of each layer.
+    shade: [wgpu::RenderPipeline; 2],
     /// Writes depth alone, as a light sees it.
     shadow: wgpu::RenderPipeline,
     sky_sampler: wgpu::Sampler,
@@ -49,23 +53,26 @@ pub(crate) struct SceneRenderer {
     pub draws_linear: bool,
 }
 
-/// Targets and buffers of a scene at one size.
+/// Targets and buffers of a scene at one size. Layers are the surfaces behind outlines, and the objects in front.
 #[derive(Debug)]
 pub(crate) struct SceneTargets {
+    /// Surfaces behind outlines. Alpha is 0: that of smoke is added to it.
     pub color: wgpu::Texture,
+    /// Objects in front at outlines, with their share of the pixel in alpha.
+    pub front: wgpu::TextureView,
     pub depth: wgpu::TextureView,
     /// Linear view depth, if the adapter can render to `R32Float`.
     pub linear: Option<wgpu::TextureView>,
     /// Reflectance and face at 2x2 samples per pixel.
     paint: wgpu::TextureView,
-    paint_depth: wgpu::TextureView,
+    pub paint_depth: wgpu::TextureView,
     paint_group: wgpu::BindGroup,
     /// Normals at 2x2 samples per pixel, and the group of all samples, if the scene is a mesh.
     mesh_samples: Option<(wgpu::TextureView, wgpu::BindGroup)>,
-    /// With shadow of smoke: light of all other lights, and of those with shadow.
-    parts: Option<LightParts>,
+    /// With shadow of smoke: light of all other lights, and of those with shadow, for each layer.
+    parts: Option<[LightParts; 2]>,
     /// Of the scene that was recorded last.
-    scene_group: Option<wgpu::BindGroup>,
+    pub scene_group: Option<wgpu::BindGroup>,
     /// Uniform buffers of scene, boxes and lights.
     buffers: [wgpu::Buffer; 3],
 }
@@ -78,9 +85,10 @@ struct LightParts {
 
 impl SceneTargets {
     pub fn textures(&self) -> impl Iterator<Item = &wgpu::Texture> {
-        let parts = self.parts.iter().flat_map(|parts| &parts.views);
+        let parts = self.parts.iter().flatten().flat_map(|parts| &parts.views);
         let normals = self.mesh_samples.iter().map(|(normals, _)| normals);
-        let views = [&self.depth, &self.paint, &self.paint_depth].into_iter().chain(&self.linear).chain(parts);
+        let views = [&self.front, &self.depth, &self.paint, &self.paint_depth].into_iter();
+        let views = views.chain(&self.linear).chain(parts);
         let views = views.chain(normals);
         std::iter::once(&self.color).chain(views.map(wgpu::TextureView::texture))
     }
@@ -98,6 +106,8 @@ impl SceneRenderer {
         let source = shader::compose(concat!(
             include_str!("scene_materials.wgsl"),
             include_str!("scene.wgsl"),
+            include_str!("scene_samples.wgsl"),
+            include_str!("scene_light.wgsl"),
             include_str!("scene_boxes.wgsl"),
             include_str!("scene_shade.wgsl")
         ));
@@ -131,23 +141,26 @@ impl SceneRenderer {
         let buffers = [entry(0, uniform), entry(1, uniform), entry(2, uniform)];
         let scene_layout =
             layout(&[&buffers[..], &[entry(3, masks), entry(4, filterable), entry(5, sampler)]].concat());
-        let paint_layout = layout(&[entry(0, texture(wgpu::TextureSampleType::Float { filterable: false }))]);
         let unfilterable = texture(wgpu::TextureSampleType::Float { filterable: false });
-        let parts_layout = layout(&[1, 2, 3, 4, 5].map(|binding| entry(binding, unfilterable)));
+        let paint_layout = layout(&[0, 7].map(|binding| entry(binding, unfilterable)));
+        let parts_layout = layout(&[1, 2, 3, 4, 7].map(|binding| entry(binding, unfilterable)));
         let pipeline = |vertex, fragment, groups: &[_], depth| {
             ScenePipeline { groups, vertex, buffers: &[], fragment, depth }.create(device, &module)
         };
         let color = [COLOR_FORMAT; 4];
-        let linear = draws_linear.then_some(("linear_fragment", &[LINEAR_FORMAT][..]));
+        let depth = if draws_linear { ("linear_fragment", &[LINEAR_FORMAT][..]) } else { ("depth_fragment", &[][..]) };
         let scene_group = [Some(&scene_layout)];
         let paint_groups = [Some(&scene_layout), Some(&paint_layout)];
         let shade_groups = [Some(&scene_layout), Some(&parts_layout), Some(shadow_layout)];
+        let layers = |fragments: [_; 2], colors, groups: &[_]| {
+            fragments.map(|fragment| pipeline("fullscreen_vertex", Some((fragment, colors)), groups, false))
+        };
         Self {
             paint: pipeline("box_vertex", Some(("paint_fragment", &color[..1])), &scene_group, true),
-            depth: pipeline("box_vertex", linear, &scene_group, true),
-            light: pipeline("fullscreen_vertex", Some(("light_fragment", &color[..1])), &paint_groups, false),
-            light_parts: pipeline("fullscreen_vertex", Some(("light_parts_fragment", &color)), &paint_groups, false),
-            shade: pipeline("fullscreen_vertex", Some(("shade_fragment", &color[..1])), &shade_groups, false),
+            depth: pipeline("fullscreen_vertex", Some(depth), &paint_groups, true),
+            light: layers(LIGHT, &color[..1], &paint_groups),
+            light_parts: layers(LIGHT_PARTS, &color, &paint_groups),
+            shade: layers(["shade_fragment", "front_shade_fragment"], &color[..1], &shade_groups),
             shadow: pipeline("box_vertex", None, &scene_group, true),
             parts_layout,
             scene_layout,
@@ -172,6 +185,7 @@ impl SceneRenderer {
         let texture = |label, size, format| texture(&self.device, label, size, format);
         let target = |label, size, format| default_view(&texture(label, size, format));
         let paint = target("demo scene paint", size * 2, COLOR_FORMAT);
+        let paint_depth = target("demo scene paint depth", size * 2, DEPTH_FORMAT);
         let buffer = |size| {
             self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("demo scene"),
@@ -183,15 +197,16 @@ impl SceneRenderer {
         let (boxes, lights) = (size_of::<[SceneBox; MAX_BOXES]>(), size_of::<[LightUniform; MAX_LIGHTS]>());
         SceneTargets {
             color: texture("demo scene color", size, COLOR_FORMAT),
+            front: target("demo scene front", size, COLOR_FORMAT),
             depth: target("demo scene depth", size, DEPTH_FORMAT),
             linear: self.draws_linear.then(|| target("demo scene linear", size, LINEAR_FORMAT)),
-            paint_depth: target("demo scene paint depth", size * 2, DEPTH_FORMAT),
             paint_group: self.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("demo scene paint"),
                 layout: &self.paint_layout,
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&paint) }],
+                entries: &texture_entries([(0, &paint), (7, &paint_depth)]),
             }),
             paint,
+            paint_depth,
             mesh_samples: None,
             parts: None,
             scene_group: None,
@@ -245,31 +260,28 @@ impl SceneRenderer {
             }
         }
         {
-            let mut pass = begin_pass(encoder, targets.linear.as_ref().as_slice(), NO_SURFACE, Some(&targets.depth));
+            let linear = targets.linear.as_ref();
+            let mut pass = begin_pass(encoder, linear.as_slice(), wgpu::Color::TRANSPARENT, Some(&targets.depth));
             pass.set_bind_group(0, &group, &[]);
-            if let Some((pipelines, mesh)) = mesh {
-                pass.set_pipeline(&pipelines.depth);
-                mesh.draw(&mut pass);
-            } else {
-                pass.set_pipeline(&self.depth);
-                pass.draw(0..36, 0..count);
-            }
+            pass.set_bind_group(1, &targets.paint_group, &[]);
+            pass.set_pipeline(&self.depth);
+            pass.draw(0..3, 0..1);
         }
         targets.parts = match targets.parts.take() {
             _ if apart.is_empty() => None,
-            held => Some(held.unwrap_or_else(|| self.light_parts(targets))),
+            held => Some(held.unwrap_or_else(|| [(); 2].map(|()| self.light_parts(targets)))),
         };
-        {
-            let color = default_view(&targets.color);
-            let [light, light_parts] = match mesh {
-                Some((pipelines, _)) => [&pipelines.light, &pipelines.light_parts],
-                None => [&self.light, &self.light_parts],
+        let colors = [default_view(&targets.color), targets.front.clone()];
+        let [light, light_parts] = match mesh {
+            Some((pipelines, _)) => [&pipelines.light, &pipelines.light_parts],
+            None => [&self.light, &self.light_parts],
+        };
+        for layer in 0..2 {
+            let (views, pipelines) = match &targets.parts {
+                Some(parts) => (parts[layer].views.each_ref().to_vec(), light_parts),
+                None => (vec![&colors[layer]], light),
             };
-            let (views, pipeline) = match &targets.parts {
-                Some(parts) => (parts.views.each_ref().to_vec(), light_parts),
-                None => (vec![&color], light),
-            };
-            let mut pass = begin_pass(encoder, &views, wgpu::Color::BLACK, None);
+            let mut pass = begin_pass(encoder, &views, wgpu::Color::TRANSPARENT, None);
             pass.set_bind_group(0, &group, &[]);
             if let Some(((_, samples), (_, mesh))) = targets.mesh_samples.as_ref().zip(mesh) {
                 pass.set_bind_group(1, samples, &[]);
@@ -277,7 +289,7 @@ impl SceneRenderer {
             } else {
                 pass.set_bind_group(1, &targets.paint_group, &[]);
             }
-            pass.set_pipeline(pipeline);
+            pass.set_pipeline(&pipelines[layer]);
             pass.draw(0..3, 0..1);
         }
         targets.scene_group = Some(group);
@@ -287,12 +299,15 @@ impl SceneRenderer {
     /// apart.
     pub fn shade(&self, encoder: &mut wgpu::CommandEncoder, targets: &SceneTargets, shadow: &wgpu::BindGroup) {
         let Some((parts, group)) = targets.parts.as_ref().zip(targets.scene_group.as_ref()) else { return };
-        let mut pass = begin_pass(encoder, &[&default_view(&targets.color)], wgpu::Color::BLACK, None);
-        pass.set_bind_group(0, group, &[]);
-        pass.set_bind_group(1, &parts.group, &[]);
-        pass.set_bind_group(2, shadow, &[]);
-        pass.set_pipeline(&self.shade);
-        pass.draw(0..3, 0..1);
+        let colors = [&default_view(&targets.color), &targets.front];
+        for ((color, parts), pipeline) in colors.into_iter().zip(parts).zip(&self.shade) {
+            let mut pass = begin_pass(encoder, &[color], wgpu::Color::TRANSPARENT, None);
+            pass.set_bind_group(0, group, &[]);
+            pass.set_bind_group(1, &parts.group, &[]);
+            pass.set_bind_group(2, shadow, &[]);
+            pass.set_pipeline(pipeline);
+            pass.draw(0..3, 0..1);
+        }
     }
 
     /// Draws the scene as a light sees it, a layer per matrix.
@@ -361,7 +376,7 @@ impl SceneRenderer {
             return uploaded;
         }
         let pipelines = || {
-            let compile = || Arc::new(MeshPipelines::new(&self.device, &self.scene_layout, self.draws_linear));
+            let compile = || Arc::new(MeshPipelines::new(&self.device, &self.scene_layout));
             self.mesh.get_or_init(compile).clone()
         };
         let uploaded = Arc::new(UploadedBackdrop::new(&self.device, &self.queue, backdrop, pipelines));
@@ -401,13 +416,12 @@ impl SceneRenderer {
         let size = UVec2::new(targets.color.width(), targets.color.height());
         let view = |()| default_view(&texture(&self.device, "demo scene light", size, COLOR_FORMAT));
         let views = [(); 4].map(view);
-        let bound = (1..).zip(views.iter().chain([&targets.depth]));
-        let entry =
-            |(binding, view)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        let [rest, first, second, third] = &views;
+        let bound = [(1, rest), (2, first), (3, second), (4, third), (7, &targets.paint_depth)];
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("demo scene light"),
             layout: &self.parts_layout,
-            entries: &bound.map(entry).collect::<Vec<_>>(),
+            entries: &texture_entries(bound),
         });
         LightParts { views, group }
     }
@@ -434,10 +448,8 @@ impl SceneRenderer {
 
 /// Clear value of paint. `NO_BOX` in scene.wgsl.
 const NO_BOX: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
-/// Clear value of linear depth.
-const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::Color::BLACK };
 
-fn begin_pass<'a>(
+pub(crate) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     colors: &[&wgpu::TextureView],
     clear: wgpu::Color,

@@ -20,6 +20,7 @@ use glam::{UVec2, Vec4};
 
 use haze_core::assets::image::Image;
 use haze_core::error::FieldError;
+use haze_core::formula::depth::SKY_VIEW_DEPTH;
 use haze_core::settings::DebugView;
 use haze_core::view_setup::ViewGeometry;
 
@@ -60,6 +61,14 @@ impl<'a> PreparedFrame<'a> {
     /// Shadow of the smoke on the scene, if it casts any.
     pub fn scene_shadow(&self) -> Option<&SceneShadow> {
         self.scene_shadow.as_ref()
+    }
+
+    /// Range of view depths, metres, that deferred smoke lies in; from [`SKY_VIEW_DEPTH`] to 0 without any.
+    pub fn smoke_depths(&self) -> [f32; 2] {
+        let deferred = self.systems.iter().filter(|(_, visible)| !visible.settings.is_forward());
+        deferred.fold([SKY_VIEW_DEPTH, 0.0], |[nearest, farthest], (_, visible)| {
+            [nearest.min(visible.system.smoke_near), farthest.max(visible.system.smoke_far)]
+        })
     }
 
     /// Darkens a lit picture of the scene by the shadow of the smoke, as

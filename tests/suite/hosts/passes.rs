@@ -158,6 +158,30 @@ fn multisampled_depth_is_resolved_to_the_farthest_sample() {
 }
 
 #[test]
+fn every_sample_in_front_of_the_smoke_of_a_multisampled_pass_stays_clear() {
+    if !is_tiled_available() {
+        return;
+    }
+    for path in [RenderPath::Raster, RenderPath::Tiled, RenderPath::Forward] {
+        let mut scene = TestScene::new(SIZE);
+        scene.depth = DepthKind::Multisampled;
+        scene.host.samples = 4;
+        scene.settings.path = path;
+        // It is not tested by the hardware: it lies over whole pixels.
+        scene.settings.specular_scatter.intensity = 0.0;
+        let whole = scene.on_gpu(gpu()).picture;
+        // One sample of every pixel is an object's.
+        scene.host.has_near_sample = true;
+        let outlines = scene.on_gpu(gpu()).picture;
+        let expected = whole.texels.iter().map(|smoke| smoke.lerp(BACKDROP, 0.25));
+        let errors = outlines.texels.iter().zip(expected).map(|(found, expected)| (found - expected).abs());
+        let most = errors.map(|error| error.max_element()).fold(0.0, f32::max);
+        println!("{path:?}: {most:.4} off");
+        assert!(most <= 0.02, "{path:?}: {most} off");
+    }
+}
+
+#[test]
 fn depth_of_a_mip_level_is_measured_by_the_target_size() {
     let mut scene = TestScene::new(SIZE);
     scene.attach_depth = false;

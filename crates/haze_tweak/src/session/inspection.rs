@@ -36,6 +36,8 @@ pub struct PixelValues {
     pub side: ComparedSide,
     pub names: Vec<String>,
     pub probe: Probe,
+    /// Share of the pixel that an object in front covers at its outline, 0 to 1. The probe is of the rest.
+    pub front_share: f32,
     /// Factor on the light before tonemapping.
     pub exposure: f32,
 }

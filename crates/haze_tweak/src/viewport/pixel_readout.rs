@@ -68,7 +68,7 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
 }
 
 fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, size: Vec2) {
-    let PixelValues { pixel, side, names, probe, exposure } = values;
+    let PixelValues { pixel, side, names, probe, front_share, exposure } = values;
     let keep = if session.inspect.pinned.is_some() { "Pinned" } else { "Click to pin" };
     ui.horizontal(|ui| {
         ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
@@ -91,6 +91,12 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, size: Vec2) {
     }
     ui.separator();
     match probe.color {
+        Some(_) if *front_share > 0.0 => {
+            let covered = 100.0 * front_share;
+            ui.weak(format!(
+                "The edge of an object in front covers {covered:.0} %\nof this pixel: values of what is behind it"
+            ));
+        }
         Some(color) => picture(ui, color, *exposure),
         None => {
             ui.weak("The forward path lights each sprite\nseparately: no values to inspect");
