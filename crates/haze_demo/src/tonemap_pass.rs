@@ -33,13 +33,15 @@ pub fn encoded(image: &Image<Vec4>, exposure: f32) -> Image<Vec4> {
 /// Rounds an encoded image with alpha to 8 bits, with dithering.
 pub fn rgba8(encoded: &Image<Vec4>) -> RgbaImage {
     let mut rounded = Image::new(encoded.size, [0_u8; 4]);
-    rounded.for_each(|at, out| {
-        let texel = encoded.load(at.as_ivec2());
-        let [r, g, b] = quantise(texel.xyz(), at);
-        *out = [r, g, b, (texel.w * 255.0 + 0.5) as u8];
-    });
+    rounded.for_each(|at, out| *out = rgba8_codes(encoded.load(at.as_ivec2()), at));
     // Never the default: there is one texel per pixel.
     RgbaImage::from_raw(encoded.size.x, encoded.size.y, rounded.texels.into_flattened()).unwrap_or_default()
+}
+
+/// As [`rgba8`], for the texel at a position.
+pub fn rgba8_codes(encoded: Vec4, at: UVec2) -> [u8; 4] {
+    let [r, g, b] = quantise(encoded.xyz(), at);
+    [r, g, b, (encoded.w * 255.0 + 0.5) as u8]
 }
 
 /// Returns the exposure factor of a shot; 0 if its debug view shows data.

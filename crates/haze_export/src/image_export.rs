@@ -150,7 +150,8 @@ pub fn image_label(done: u32, count: u32) -> String {
     format!("haze: image {} of {count}", done + 1)
 }
 
-fn stopped(path: &Path, what: String) -> Error {
+/// Error of work that was stopped.
+pub fn stopped(path: &Path, what: String) -> Error {
     Error::Io { path: path.into(), error: IoError::new(ErrorKind::Interrupted, format!("stopped: {what}")) }
 }
 
@@ -177,11 +178,12 @@ const MAX_FLIPBOOK_SIDE: u32 = 32_768;
 
 /// Refuses a flipbook that has too few cells for its frames, or that is too large for an image or for the memory.
 pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), Error> {
-    check_sheet(size, frames, cells, BYTES_PER_PIXEL)
+    check_cells(size, frames, cells)?;
+    check_memory("--sheet", size * UVec2::new(cells.y, cells.x), BYTES_PER_PIXEL)
 }
 
-/// The same, for sheets that take so many bytes of memory per pixel.
-pub fn check_sheet(size: UVec2, frames: &Frames, cells: UVec2, bytes_per_pixel: u64) -> Result<(), Error> {
+/// The same, without a check of the memory.
+pub fn check_cells(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), Error> {
     let (rows, columns) = (cells.x, cells.y);
     let count = frames.count();
     if count > cells.element_product() {
@@ -194,7 +196,7 @@ pub fn check_sheet(size: UVec2, frames: &Frames, cells: UVec2, bytes_per_pixel: 
         let expected = format!("at most {MAX_FLIPBOOK_SIDE} along a side");
         return Err(FieldError::from_problem("--sheet", problem, expected).into());
     }
-    check_memory("--sheet", size, bytes_per_pixel)
+    Ok(())
 }
 
 /// Renders all frames onto one sheet of `cells.x` rows and `cells.y` columns. `path` is the output file, for errors.

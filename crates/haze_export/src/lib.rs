@@ -26,6 +26,8 @@ pub mod options;
 pub mod output;
 #[cfg(target_arch = "wasm32")]
 pub mod page_renderer;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod png_stream;
 pub mod progress;
 pub mod puff_sheet;
 pub mod recipe_files;

@@ -2,7 +2,7 @@
 
 use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use haze::{Error, FieldError};
 use haze_core::assets::file_type;
@@ -89,6 +89,36 @@ impl Failures {
     /// The errors that are still to be reported.
     pub fn errors(&self) -> &[Error] {
         &self.0
+    }
+}
+
+/// Folder that a command writes into. Folders that were made for it are removed at the end if nothing is in them.
+pub struct OutputFolder {
+    /// From the innermost.
+    made: Vec<PathBuf>,
+}
+
+impl OutputFolder {
+    /// Makes a folder, and those above it, where they do not exist.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it cannot be made.
+    pub fn make(folder: &Path) -> Result<Self, Error> {
+        let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+        let made = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
+        // Dropped, and so removed, if only a part of it can be made.
+        let made = Self { made };
+        std::fs::create_dir_all(folder).map_err(|error| Error::Io { path: folder.into(), error })?;
+        Ok(made)
+    }
+}
+
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        for folder in &self.made {
+            // Fails if something is in it.
+            let _ = std::fs::remove_dir(folder);
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, ErrorKind, Read as _, Seek, Write};
+use std::io::{self, ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -27,10 +27,18 @@ use haze_core::error::{Error, LINK_LOOP, display_path};
 /// # Errors
 /// [`Error::Io`] if the file cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    write_file_from(path, &mut &*bytes)
+}
+
+/// As [`write_file`], for contents that are not in memory.
+///
+/// # Errors
+/// [`Error::Io`] if the contents cannot be read, or the file cannot be written.
+pub fn write_file_from(path: &Path, contents: &mut dyn Read) -> Result<(), Error> {
     let io = |error| Error::Io { path: path.into(), error };
     let target = resolve_links(path).map_err(io)?;
     let old = replaceable_file(&target).map_err(|error| io(explain_link(path, &target, error)))?;
-    write_atomically(&target, old.as_ref(), bytes).map_err(io)
+    write_atomically(&target, old.as_ref(), contents).map_err(io)
 }
 
 /// Writes a file that a program keeps for itself, such as the layout of its window. It differs from [`write_file`] in
@@ -43,7 +51,7 @@ pub fn write_state_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let write = || {
         let old = replaceable_file(path)?;
         let (partial, file) = create_partial(path)?;
-        put(&partial, file, path, old.as_ref(), bytes)
+        put(&partial, file, path, old.as_ref(), &mut &*bytes)
     };
     write().map_err(|error| Error::Io { path: path.into(), error })
 }
@@ -132,26 +140,26 @@ fn explain_link(path: &Path, target: &Path, error: io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("a link to {}: {error}", display_path(target)))
 }
 
-fn write_atomically(path: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
+fn write_atomically(path: &Path, old: Option<&Metadata>, contents: &mut dyn Read) -> io::Result<()> {
     if old.is_some_and(has_hard_links) {
-        return overwrite(path, bytes);
+        return overwrite(path, contents);
     }
     let (partial, file) = match create_partial(path) {
-        Err(_) if old.is_some() => return overwrite(path, bytes),
+        Err(_) if old.is_some() => return overwrite(path, contents),
         made => made?,
     };
     if old.is_some_and(|old| !take_owner(&file, old)) {
         fs::remove_file(&partial)?;
-        return overwrite(path, bytes);
+        return overwrite(path, contents);
     }
-    put(&partial, file, path, old, bytes)
+    put(&partial, file, path, old, contents)
 }
 
 /// Writes the temporary file and renames it.
-fn put(partial: &Path, mut file: File, path: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
+fn put(partial: &Path, mut file: File, path: &Path, old: Option<&Metadata>, contents: &mut dyn Read) -> io::Result<()> {
     remove_stale_partials(folder_of(path));
     let mut write = || {
-        file.write_all(bytes)?;
+        io::copy(contents, &mut file)?;
         if let Some(old) = old {
             fs::set_permissions(partial, old.permissions())?;
         }
@@ -248,19 +256,19 @@ fn create_partial(path: &Path) -> io::Result<(PathBuf, File)> {
     }
 }
 
-fn overwrite(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    fn write(file: &mut File, bytes: &[u8]) -> io::Result<()> {
+fn overwrite(path: &Path, contents: &mut dyn Read) -> io::Result<()> {
+    fn write(file: &mut File, contents: &mut dyn Read) -> io::Result<()> {
         file.rewind()?;
-        file.write_all(bytes)?;
-        file.set_len(bytes.len() as u64)?;
+        let written = io::copy(contents, file)?;
+        file.set_len(written)?;
         file.sync_all()
     }
     let mut file = nonblocking().read(true).write(true).open(path)?;
     check_is_file(&file.metadata()?)?;
     let mut before = Vec::new();
     file.read_to_end(&mut before)?;
-    write(&mut file, bytes).inspect_err(|_| {
-        let _ = write(&mut file, &before);
+    write(&mut file, contents).inspect_err(|_| {
+        let _ = write(&mut file, &mut &*before);
     })
 }
 

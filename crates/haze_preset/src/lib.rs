@@ -29,9 +29,9 @@ pub use haze_core::assets::memory_files as directory;
 pub use animated_preset::AnimatedPreset;
 pub use animation::{Ease, Flicker, KeyValue, Keyframe, MAX_KEYFRAMES, MAX_TIME, Track};
 pub use asset_folders::AssetFolders;
-#[cfg(not(target_arch = "wasm32"))]
-pub use atomic_write::check_writable;
 pub use atomic_write::{FileIdentity, write_file, write_state_file};
+#[cfg(not(target_arch = "wasm32"))]
+pub use atomic_write::{check_writable, write_file_from};
 pub use baked_png::{encode_baked_png, is_baked_png, write_baked_png};
 pub use camera::Camera;
 pub use environment::{Environment, SceneName, backdrop_file_path, backdrop_kind};

@@ -8,9 +8,11 @@ use haze_core::assets::image::Image;
 use haze_demo::shot::Shot;
 
 use crate::backend::Backend;
-use crate::image_export::Frames;
+use crate::image_export::{ExportProgress, Frames, stopped};
 use crate::smoke_layers::SmokeLayers;
 
+/// Setting that is fitted.
+const FOV: &str = "camera.fov";
 /// Largest field of view of a camera, degrees.
 const MAX_FOV: f32 = 150.0;
 /// Longer side of the images by which a field of view is found, pixels.
@@ -33,6 +35,8 @@ pub struct CutSmoke {
     pub alpha: f32,
     /// Vertical field of view that holds the smoke of all frames, degrees; `None` if none does.
     pub fitting_fov: Option<f32>,
+    /// True if keyframes set the field of view.
+    pub has_keyframes: bool,
 }
 
 impl CutSmoke {
@@ -44,14 +48,14 @@ impl CutSmoke {
         }
         match found {
             Some(found) => found.frames += 1,
-            None => *found = Some(Self { frame, frames: 1, side, alpha, fitting_fov: None }),
+            None => *found = Some(Self { frame, frames: 1, side, alpha, fitting_fov: None, has_keyframes: false }),
         }
     }
 }
 
 impl Display for CutSmoke {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let Self { frame, frames, side, alpha, fitting_fov } = self;
+        let Self { frame, frames, side, alpha, fitting_fov, has_keyframes } = self;
         write!(f, "frame {frame} cuts off smoke on its {side} side, with alpha {alpha:.2}")?;
         match frames {
             1 => {}
@@ -59,6 +63,9 @@ impl Display for CutSmoke {
             _ => write!(f, ", and so do {} more", frames - 1)?,
         }
         match fitting_fov {
+            Some(fov) if *has_keyframes => {
+                write!(f, "; a camera.fov of {fov:.1} degrees, without keyframes, holds all of it")
+            }
             Some(fov) => write!(f, "; a camera.fov of {fov:.1} degrees holds all of it (--fit)"),
             None => write!(f, "; no field of view holds all of it: it takes a camera further back"),
         }
@@ -89,22 +96,33 @@ fn densest_side(smoke: &Image<Vec4>) -> (&'static str, f32) {
     densest
 }
 
+/// Returns true if keyframes set the field of view.
+pub(super) fn has_keyframes(shot: &Shot) -> bool {
+    shot.preset.animation.iter().any(|track| track.setting == FOV)
+}
+
 /// Returns the vertical field of view that holds the smoke of the first `count` frames, degrees; `None` if none does. It is at
-/// least that of the camera, and found by small images.
+/// least that of the camera, and found by small images. `stopped` makes the error of a search that was stopped after so many frames.
 pub(super) async fn fitting_fov(
     backend: &Backend,
     shot: &Shot,
     frames: &Frames,
     count: u32,
+    progress: &ExportProgress<'_>,
+    stopped: impl Fn(u32) -> Error,
 ) -> Result<Option<f32>, Error> {
     let mut small = shot.clone();
     small.size = (shot.size * PROBE_SIDE / shot.size.max_element().max(1)).max(UVec2::splat(8));
     let mut fov = shot.preset.camera.fov;
     for index in 0..count {
         loop {
+            if !progress.goes_on(index, count) {
+                return Err(stopped(index));
+            }
             let mut frame = frames.shot(&small, frames.range.start() + index);
             frame.preset.camera.fov = fov;
-            let layers = SmokeLayers::new(backend, &frame).await?;
+            let label = format!("haze: field of view that holds image {} of {count}", index + 1);
+            let layers = progress.show(label, SmokeLayers::new(backend, &frame)).await?;
             if densest_side(&layers.light).1 < MIN_ALPHA {
                 break;
             }
@@ -121,16 +139,22 @@ pub(super) async fn fitting_fov(
 /// Sets the field of view that holds the smoke of the first `count` frames.
 ///
 /// # Errors
-/// [`Error::Field`] if none does, and if keyframes set it; errors of rendering.
-pub(super) async fn fit(backend: &Backend, shot: &mut Shot, frames: &Frames, count: u32) -> Result<(), Error> {
+/// [`Error::Field`] if none does, and if keyframes set it; errors of rendering; [`Error::Io`] if it was stopped.
+pub(super) async fn fit(
+    backend: &Backend,
+    shot: &mut Shot,
+    frames: &Frames,
+    count: u32,
+    progress: &ExportProgress<'_>,
+) -> Result<(), Error> {
     let refused = |problem: &str, expected: &str| Err(FieldError::from_problem("--fit", problem, expected).into());
-    let Some(fov) = fitting_fov(backend, shot, frames, count).await? else {
+    if has_keyframes(shot) {
+        return refused("keyframes set camera.fov", "a preset whose camera.fov has none");
+    }
+    let stopped = |done| stopped("--fit".as_ref(), format!("nothing is written; {done} of {count} images fit"));
+    let Some(fov) = fitting_fov(backend, shot, frames, count, progress, stopped).await? else {
         return refused("no field of view holds all of the smoke", "a camera further back");
     };
     shot.preset.camera.fov = fov;
-    let animated = frames.shot(shot, *frames.range.start()).preset.camera.fov;
-    if animated.to_bits() != fov.to_bits() {
-        return refused("keyframes set camera.fov", "a preset whose camera.fov has none");
-    }
     Ok(())
 }

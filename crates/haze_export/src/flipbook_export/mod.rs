@@ -10,20 +10,22 @@ mod sheets;
 
 use std::path::Path;
 
-use glam::UVec2;
+use glam::{UVec2, Vec4};
 use haze::{Error, FieldError};
+use haze_core::assets::image::Image;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::encoded;
-use haze_preset::{CompressionEffort, write_file, write_png};
-use image::DynamicImage;
+use haze_preset::{CompressionEffort, write_file};
 
 use crate::backend::Backend;
 use crate::engine::Engine;
-use crate::image_export::{ExportProgress, Frames, check_sheet, image_label, stopped_before_writing};
+use crate::image_export::{ExportProgress, Frames, check_cells, image_label, stopped_before_writing};
+use crate::memory_check::{BYTES_PER_PIXEL, check_memory};
+use crate::png_stream::EncodedPng;
 pub use cut_smoke::CutSmoke;
 use frame_layers::FrameLayers;
 use numbers::FlipbookNumbers;
-use sheets::Sheets;
+use sheets::{SheetLayout, Sheets};
 
 /// Choices of a flipbook.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +38,8 @@ pub struct FlipbookOptions {
     pub loop_fade: u32,
     /// True for sheets of six-way light maps.
     pub has_six_way: bool,
+    /// Of the sheets' files.
+    pub effort: CompressionEffort,
 }
 
 impl FlipbookOptions {
@@ -43,7 +47,7 @@ impl FlipbookOptions {
     ///
     /// # Errors
     /// [`Error::Field`] for a fade that is longer than the flipbook, and for sheets with too few cells or too many pixels;
-    /// [`Error::Io`] for sheets that do not fit into memory.
+    /// [`Error::Io`] for rows of frames that do not fit into memory.
     pub fn check(&self, shot: &Shot, frames: &Frames) -> Result<(), Error> {
         let (count, fade) = (frames.count(), self.loop_fade);
         if fade >= count {
@@ -54,23 +58,34 @@ impl FlipbookOptions {
             let problem = format!("{fade} frames after {} are beyond the last frame", frames.range.end());
             return Err(FieldError::from_problem("--loop", problem, format!("at most frame {}", u32::MAX)).into());
         }
-        let bytes = sheets::bytes_per_pixel(frames.burns(shot, count + fade), self.has_six_way);
-        check_sheet(shot.size, frames, self.cells, bytes)
+        check_cells(shot.size, frames, self.cells)?;
+        let columns = self.cells.y;
+        let burns = frames.burns(shot, count + fade);
+        let frame = sheets::frame_bytes_per_pixel(burns, self.has_six_way) + BYTES_PER_PIXEL;
+        // Half as much again allows for the allocator's overhead.
+        let row = sheets::row_bytes_per_pixel(burns, self.has_six_way) * 3 / 2;
+        check_memory("--sheet", shot.size * UVec2::new(columns, 1), row + frame.div_ceil(u64::from(columns)))
     }
 
     /// Widens the field of view until it holds the smoke of all frames.
     ///
     /// # Errors
-    /// [`Error::Field`] if none does, and if keyframes set it; errors of rendering.
-    pub async fn fit(&self, backend: &Backend, shot: &mut Shot, frames: &Frames) -> Result<(), Error> {
-        cut_smoke::fit(backend, shot, frames, frames.count().saturating_add(self.loop_fade)).await
+    /// [`Error::Field`] if none does, and if keyframes set it; errors of rendering; [`Error::Io`] if it was stopped.
+    pub async fn fit(
+        &self,
+        backend: &Backend,
+        shot: &mut Shot,
+        frames: &Frames,
+        progress: &ExportProgress<'_>,
+    ) -> Result<(), Error> {
+        cut_smoke::fit(backend, shot, frames, frames.count().saturating_add(self.loop_fade), progress).await
     }
 }
 
 /// Files of a flipbook.
 pub struct FlipbookExport {
     /// Sheets, by the part of their file names.
-    pub images: Vec<(&'static str, DynamicImage)>,
+    pub images: Vec<(&'static str, EncodedPng)>,
     /// Numbers that a shader needs beside the sheets.
     pub numbers: FlipbookNumbers,
     /// Smoke that the borders of frames cut off; `None` if there is none.
@@ -94,10 +109,11 @@ const NUMBERS: &str = "flipbook.json";
 const README: &str = "README.md";
 
 impl FlipbookExport {
-    /// Renders a flipbook. `folder` is only named in errors.
+    /// Renders a flipbook. `folder`: the one to be written into. It need not exist; until [`FlipbookExport::write`], sheets are in
+    /// temporary files without names there, or in the nearest folder above.
     ///
     /// # Errors
-    /// As [`FlipbookOptions::check`]; errors of rendering; [`Error::Io`] if it was stopped.
+    /// As [`FlipbookOptions::check`]; errors of rendering; [`Error::Io`] if a temporary file cannot be written, or it was stopped.
     pub async fn render(
         backend: &Backend,
         shot: &Shot,
@@ -129,7 +145,12 @@ impl FlipbookExport {
             let share = 1.0 - index as f32 / fade as f32;
             Ok(layers.mixed(&at(count + index, done + 1).await?, share))
         };
-        let mut sheets = Sheets::new(shot.size, options.cells);
+        let FlipbookOptions { engine, cells, has_six_way, effort, .. } = options;
+        let layout = SheetLayout { engine, frame: shot.size, cells, effort, folder };
+        let mut sheets = Sheets::new(layout, burns, has_six_way)?;
+        let mut place = async |layers: &FrameLayers, pair: [&Image<Vec4>; 2]| {
+            progress.show("haze: encoding a frame".into(), async { sheets.place(layers, pair) }).await
+        };
         // A frame is placed when the next one is known, for its motion.
         let mut last = layers(0).await?;
         let mut cut_smoke = None;
@@ -140,17 +161,20 @@ impl FlipbookExport {
             let next = layers(index).await?;
             CutSmoke::add_frame(&mut cut_smoke, index, &next.light);
             let next_frame = encoded(&next.light, 1.0);
-            sheets.place(index - 1, &last, [&last_frame, &next_frame]);
+            place(&last, [&last_frame, &next_frame]).await?;
             if index + 1 == count && fade == 0 {
                 // No frame follows: its motion is that from the frame before.
-                sheets.place(index, &next, [&last_frame, &next_frame]);
+                place(&next, [&last_frame, &next_frame]).await?;
             }
             (last, last_frame) = (next, next_frame);
         }
         if fade > 0 || count == 1 {
-            sheets.place(count - 1, &last, [&last_frame, &first_frame]);
+            place(&last, [&last_frame, &first_frame]).await?;
         }
-        let made = sheets.encode(options.engine);
+        let goes_on =
+            || if progress.goes_on(all, all) { Ok(()) } else { Err(stopped_before_writing(folder, all, all)) };
+        goes_on()?;
+        let made = progress.show("haze: encoding the sheets".into(), async { sheets.encode(&goes_on) }).await?;
         let numbers = FlipbookNumbers {
             columns: options.cells.y,
             rows: options.cells.x,
@@ -160,23 +184,24 @@ impl FlipbookExport {
             six_way_intensity: made.six_way_intensity,
         };
         if let Some(cut_smoke) = &mut cut_smoke {
-            cut_smoke.fitting_fov = cut_smoke::fitting_fov(backend, shot, frames, all).await?;
+            let stopped = |_| stopped_before_writing(folder, all, all);
+            cut_smoke.fitting_fov = cut_smoke::fitting_fov(backend, shot, frames, all, progress, stopped).await?;
+            cut_smoke.has_keyframes = cut_smoke::has_keyframes(shot);
         }
-        let mut readme = readme::readme(options.engine, &shot.preset.name, &numbers, &made.images);
+        let mut readme =
+            readme::readme(options.engine, &shot.preset.name, &numbers, made.images.iter().map(|(name, _)| *name));
         if let Some(cut_smoke) = &cut_smoke {
             readme += &format!("\nBeware: {cut_smoke}.\n");
         }
         Ok(Self { images: made.images, numbers, cut_smoke, readme })
     }
 
-    /// Writes the files into a folder.
+    /// Writes the files into the folder, which must exist now.
     ///
     /// # Errors
     /// [`Error::Io`] for the first file that cannot be written.
-    pub fn write(&self, folder: &Path, effort: CompressionEffort) -> Result<(), Error> {
-        for (name, image) in &self.images {
-            write_png(&folder.join(name), image, effort)?;
-        }
+    pub fn write(&self, folder: &Path) -> Result<(), Error> {
+        self.images.iter().try_for_each(|(_, image)| image.write())?;
         // Numbers and strings always become JSON.
         let numbers = serde_json::to_string_pretty(&self.numbers).unwrap_or_default() + "\n";
         write_file(&folder.join(NUMBERS), numbers.as_bytes())?;

@@ -1,7 +1,5 @@
 //! Page that goes with a flipbook: its files, and how to use them.
 
-use image::DynamicImage;
-
 use super::numbers::FlipbookNumbers;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;
@@ -10,7 +8,7 @@ pub fn readme(
     engine: Engine,
     title: &str,
     numbers: &FlipbookNumbers,
-    images: &[(&'static str, DynamicImage)],
+    images: impl Iterator<Item = &'static str>,
 ) -> String {
     let FlipbookNumbers { columns, rows, frames, rate, motion_scale, six_way_intensity } = numbers;
     let mut text = format!(
@@ -23,8 +21,8 @@ pub fn readme(
     };
     let green = if engine.normals_point_up() { "up (OpenGL)" } else { "down (DirectX)" };
     let motion_down = if engine.first_row_is_at_the_top() { "down" } else { "up" };
-    for (name, _) in images {
-        let (space, content) = match *name {
+    for name in images {
+        let (space, content) = match name {
             COLOR => ("sRGB", "light, exposed and tonemapped, **not premultiplied**; a: opacity".to_owned()),
             NORMALS => ("linear", format!("n/2 + 1/2 in view space: right, {green}, to the viewer")),
             MOTION => {

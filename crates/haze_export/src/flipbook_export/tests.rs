@@ -1,5 +1,7 @@
-use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{IVec2, Vec2, Vec3, Vec4Swizzles};
 use haze_core::assets::image::read_png;
+use haze_demo::tonemap_pass::rgba8;
+use haze_preset::{Ease, KeyValue, Keyframe, Track};
 use image::RgbaImage;
 use pollster::block_on;
 
@@ -19,6 +21,11 @@ fn frames(count: u32, rate: f32) -> Frames {
     Frames { range: 0..=count - 1, rate, format: ImageFormat::default() }
 }
 
+fn options(engine: Engine) -> FlipbookOptions {
+    let (cells, effort) = (UVec2::splat(2), CompressionEffort::Quick);
+    FlipbookOptions { engine, cells, loop_fade: 0, has_six_way: false, effort }
+}
+
 /// A flipbook, read back from its files.
 struct Flipbook {
     folder: tempfile::TempDir,
@@ -28,10 +35,10 @@ struct Flipbook {
 impl Flipbook {
     fn new(shot: &Shot, frames: &Frames, engine: Engine, loop_fade: u32, has_six_way: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let options = FlipbookOptions { engine, cells: UVec2::new(2, 2), loop_fade, has_six_way };
+        let options = FlipbookOptions { loop_fade, has_six_way, ..options(engine) };
         let export = block_on(FlipbookExport::render(&Backend::Cpu, shot, frames, options, &GO_ON, folder.path()));
         let export = export.unwrap();
-        export.write(folder.path(), CompressionEffort::Quick).unwrap();
+        export.write(folder.path()).unwrap();
         assert!(export.files().all(|name| folder.path().join(name).is_file() && FILES.contains(&name)));
         let numbers = std::fs::read(folder.path().join(NUMBERS)).unwrap();
         Self { folder, numbers: serde_json::from_slice(&numbers).unwrap() }
@@ -160,7 +167,7 @@ fn faded_flipbooks_loop() {
         closed < 1.5 * usual && closed < 0.8 * open,
         "{open} without a fade, {closed} with, {usual} between frames"
     );
-    let options = FlipbookOptions { engine: Engine::Godot, cells: UVec2::new(2, 2), loop_fade: 4, has_six_way: false };
+    let options = FlipbookOptions { loop_fade: 4, ..options(Engine::Godot) };
     let refused = block_on(FlipbookExport::render(&Backend::Cpu, &shot, &frames, options, &GO_ON, "x".as_ref()));
     assert_eq!(
         refused.err().unwrap().to_string(),
@@ -204,7 +211,7 @@ fn six_way_maps_are_the_smoke_under_each_light() {
 #[test]
 fn smoke_that_borders_cut_off_is_told_and_fits_a_wider_view() {
     let frames = frames(4, 4.0);
-    let options = FlipbookOptions { engine: Engine::Unity, cells: UVec2::splat(2), loop_fade: 0, has_six_way: false };
+    let options = options(Engine::Unity);
     let cut = |shot: &Shot| {
         let folder = tempfile::tempdir().unwrap();
         let export = block_on(FlipbookExport::render(&Backend::Cpu, shot, &frames, options, &GO_ON, folder.path()));
@@ -220,7 +227,7 @@ fn smoke_that_borders_cut_off_is_told_and_fits_a_wider_view() {
     assert!(text.starts_with(&format!("frame 0 cuts off smoke on its {} side, with alpha", found.side)), "{text}");
     let fov = found.fitting_fov.unwrap();
     assert!(text.ends_with(&format!("a camera.fov of {fov:.1} degrees holds all of it (--fit)")), "{text}");
-    block_on(options.fit(&Backend::Cpu, &mut shot, &frames)).unwrap();
+    block_on(options.fit(&Backend::Cpu, &mut shot, &frames, &GO_ON)).unwrap();
     assert_eq!(shot.preset.camera.fov.to_bits(), fov.to_bits());
     assert_eq!(cut(&shot), None);
     // A view that is a tenth narrower is too narrow.
@@ -229,7 +236,7 @@ fn smoke_that_borders_cut_off_is_told_and_fits_a_wider_view() {
     // Inside the smoke nothing fits.
     shot.preset.camera.position = shot.preset.camera.target;
     shot.preset.camera.target.x += 1.0;
-    let refused = block_on(options.fit(&Backend::Cpu, &mut shot, &frames)).unwrap_err().to_string();
+    let refused = block_on(options.fit(&Backend::Cpu, &mut shot, &frames, &GO_ON)).unwrap_err().to_string();
     assert_eq!(refused, "--fit: no field of view holds all of the smoke; expected a camera further back");
 }
 
@@ -237,7 +244,7 @@ fn smoke_that_borders_cut_off_is_told_and_fits_a_wider_view() {
 fn stopped_flipbooks_leave_no_file() {
     let (shot, frames) = (shot("column"), frames(3, 8.0));
     let folder = tempfile::tempdir().unwrap();
-    let options = FlipbookOptions { engine: Engine::Unity, cells: UVec2::new(2, 2), loop_fade: 1, has_six_way: false };
+    let options = FlipbookOptions { loop_fade: 1, ..options(Engine::Unity) };
     let stop = ExportProgress::Callback(&|done, _| done < 2);
     let stopped = block_on(FlipbookExport::render(&Backend::Cpu, &shot, &frames, options, &stop, folder.path()));
     let said = stopped.err().unwrap().to_string();
@@ -246,18 +253,118 @@ fn stopped_flipbooks_leave_no_file() {
 }
 
 #[test]
-fn sheets_take_no_more_memory_than_is_checked() {
+fn searches_for_a_view_can_be_stopped_and_say_how_far_they_are() {
+    let (mut shot, frames) = (shot("column"), frames(3, 8.0));
+    let seen = std::cell::RefCell::new(Vec::new());
+    let stop = |done, count| {
+        seen.borrow_mut().push((done, count));
+        done < 2
+    };
+    let progress = ExportProgress::Callback(&stop);
+    let options = options(Engine::Unity);
+    let stopped = options.fit(&Backend::Cpu, &mut shot, &frames, &progress);
+    let said = block_on(stopped).unwrap_err().to_string();
+    assert!(said.contains("--fit: stopped: nothing is written; 2 of 3 images fit"), "{said}");
+    let seen = seen.into_inner();
+    assert!(seen.is_sorted() && seen.first() == Some(&(0, 3)) && seen.last() == Some(&(2, 3)), "{seen:?}");
+}
+
+#[test]
+fn a_view_that_keyframes_set_is_not_told_to_fit() {
+    let (mut shot, frames) = (shot("column"), frames(2, 8.0));
+    shot.preset.camera.fov = 20.0;
+    let key = |time, fov| Keyframe { time, value: KeyValue::Number(fov), ease: Ease::Smooth };
+    let keys = vec![key(0.0, 20.0), key(100.0, 20.0)];
+    shot.preset.animation = vec![Track { setting: "camera.fov".into(), keys, ..Track::default() }];
+    let folder = tempfile::tempdir().unwrap();
+    let options = options(Engine::Unity);
+    let export = FlipbookExport::render(&Backend::Cpu, &shot, &frames, options, &GO_ON, folder.path());
+    let cut = block_on(export).unwrap().cut_smoke.unwrap();
+    let fov = cut.fitting_fov.unwrap();
+    let text = cut.to_string();
+    assert!(
+        text.ends_with(&format!("; a camera.fov of {fov:.1} degrees, without keyframes, holds all of it")),
+        "{text}"
+    );
+    // Refused at once.
+    let never = ExportProgress::Callback(&|_, _| false);
+    let refused = block_on(options.fit(&Backend::Cpu, &mut shot, &frames, &never)).unwrap_err().to_string();
+    assert_eq!(refused, "--fit: keyframes set camera.fov; expected a preset whose camera.fov has none");
+}
+
+#[test]
+fn sheets_hold_one_row_of_frames() {
     for (preset, has_six_way) in [("column", false), ("campfire", true)] {
         let (shot, frames) = (shot(preset), frames(1, 8.0));
         let burns = frames.burns(&shot, 1);
         let layers = block_on(FrameLayers::render(&Backend::Cpu, &shot, 0.1, burns, has_six_way)).unwrap();
-        let mut sheets = Sheets::new(shot.size, UVec2::ONE);
         let light = encoded(&layers.light, 1.0);
-        sheets.place(0, &layers, [&light, &light]);
-        let made = sheets.encode(Engine::Unity);
-        let encoded: usize = made.images.iter().map(|(_, image)| image.as_bytes().len()).sum();
-        let pixels = (SIDE * SIDE) as usize;
-        let expected = (sheets.bytes() + 16 * pixels + encoded) as u64 * 3 / 2;
-        assert_eq!(sheets::bytes_per_pixel(burns, has_six_way), expected / pixels as u64, "{preset}");
+        let folder = tempfile::tempdir().unwrap();
+        for rows in [1, 5] {
+            let (frame, cells) = (shot.size, UVec2::new(rows, 3));
+            let effort = CompressionEffort::Quick;
+            let layout = SheetLayout { engine: Engine::Unity, frame, cells, effort, folder: folder.path() };
+            let mut sheets = Sheets::new(layout, burns, has_six_way).unwrap();
+            for _ in 0..3 * rows {
+                sheets.place(&layers, [&light, &light]).unwrap();
+            }
+            let pixels = u64::from(3 * SIDE * SIDE);
+            let expected = sheets::row_bytes_per_pixel(burns, has_six_way) * pixels;
+            assert_eq!(sheets.bytes() as u64, expected, "{preset}, {rows} rows");
+        }
+        // Temporary files have no names.
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
+
+#[test]
+fn sheets_of_rows_are_those_of_whole_images() {
+    let (shot, frames) = (shot("campfire"), frames(3, 8.0));
+    let at = |index| {
+        let shot = frames.shot(&shot, index);
+        block_on(FrameLayers::render(&Backend::Cpu, &shot, 1.0 / 8.0, true, true)).unwrap()
+    };
+    let layers = [at(0), at(1), at(2)];
+    let light = layers.each_ref().map(|layers| encoded(&layers.light, 1.0));
+    let flipbook = Flipbook::new(&shot, &frames, Engine::Unreal, 0, true);
+    let whole = |layer: &dyn Fn(usize) -> Image<Vec4>| {
+        let mut sheet = Image::new(UVec2::splat(2 * SIDE), Vec4::ZERO);
+        let frames: Vec<_> = (0..3).map(layer).collect();
+        sheet.for_each(|at, texel| {
+            let cell = at / SIDE;
+            if let Some(frame) = frames.get((cell.x + 2 * cell.y) as usize) {
+                *texel = frame.load((at % SIDE).as_ivec2());
+            }
+        });
+        sheet
+    };
+    let file = |name: &str| read_png(&flipbook.folder.path().join(name)).unwrap();
+    let colors = rgba8(&encoded(&whole(&|index| fill::filled(&layers[index].light)), 1.0));
+    assert_eq!(file(sheets::COLOR).into_rgba8(), colors);
+    let fire = rgba8(&encoded(&whole(&|index| layers[index].fire.clone().unwrap()), 1.0));
+    assert_eq!(file(sheets::EMISSION).into_rgb8(), image::DynamicImage::from(fire).into_rgb8());
+    let motion = whole(&|index| {
+        let pair = [&light[index.min(1)], &light[index.min(1) + 1]];
+        motion_fit::followed(&fill::filled(&layers[index].motion), pair)
+    });
+    let visible = |image: &Image<Vec4>, value: &dyn Fn(&Vec4) -> f32| {
+        image.texels.iter().filter(|texel| texel.w > 0.05).map(value).fold(0.0, f32::max)
+    };
+    let scale = visible(&motion, &|way| way.xy().abs().max_element());
+    assert_eq!(scale.to_bits(), flipbook.numbers.motion_scale.to_bits());
+    let sides = [0, 1].map(|side| whole(&|index| fill::filled(&layers[index].six_way.as_ref().unwrap()[side])));
+    let brightest = sides.each_ref().map(|side| visible(side, &|light| light.xyz().max_element()));
+    let intensity = brightest[0].max(brightest[1]);
+    assert_eq!(Some(intensity.to_bits()), flipbook.numbers.six_way_intensity.map(f32::to_bits));
+    let code = |value: f32| (value * 255.0).round() as u8;
+    let (motions, positive) = (file(sheets::MOTION).into_rgb8(), file(sheets::SIX_WAY[0]).into_rgba8());
+    for (index, pixel) in (0..).zip(motions.pixels()) {
+        let at = IVec2::new(index % (2 * SIDE as i32), index / (2 * SIDE as i32));
+        let way = (motion.load(at).xy() / scale * Vec2::new(1.0, -1.0)).clamp(Vec2::NEG_ONE, Vec2::ONE) * 0.5 + 0.5;
+        assert_eq!(pixel.0, [code(way.x), code(way.y), 128], "{at}");
+        let [p, n] = sides.each_ref().map(|side| side.load(at) * (1.0 / intensity).max(0.0));
+        // Right, left, top; opacity is not scaled.
+        let expected = [p.x, n.x, p.y, sides[0].load(at).w].map(code);
+        assert_eq!(positive.get_pixel(at.x as u32, at.y as u32).0, expected, "{at}");
     }
 }

@@ -385,7 +385,6 @@ async fn make(
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::EngineFlipbook => {
-            render_job::check_flipbook(shot.size, &frames, options.cells)?;
             let engine = (options.engine, options.cells);
             render_job::write_engine_flipbook(backend, shot, &frames, engine, path, watch).await?;
             return Ok(ExportResult::Written(path.clone()));

@@ -93,10 +93,11 @@ pub async fn write_engine_flipbook(
     folder: &Path,
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
-    let options = FlipbookOptions { engine, cells, loop_fade: 0, has_six_way: false };
+    let effort = CompressionEffort::Quick;
+    let options = FlipbookOptions { engine, cells, loop_fade: 0, has_six_way: false, effort };
     let export = FlipbookExport::render(backend, shot, frames, options, progress, folder).await?;
     make_folder(folder)?;
-    export.write(folder, CompressionEffort::Quick)
+    export.write(folder)
 }
 
 /// A page offers no flipbooks for engines.

@@ -13,7 +13,7 @@ use haze_export::frame_range::{parse_frames, parse_rate, parse_sheet};
 use haze_export::image_export::{ExportProgress, Frames};
 use haze_export::image_format::ImageFormat;
 use haze_export::options::{ShotArguments, whole_number};
-use haze_export::output::{print_error, print_line};
+use haze_export::output::{OutputFolder, print_error, print_line};
 
 #[derive(Args)]
 #[command(
@@ -55,19 +55,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         cells: arguments.sheet,
         loop_fade: arguments.loop_fade,
         has_six_way: arguments.six_way,
+        effort: arguments.shot.effort(),
     };
     options.check(&shot, &frames)?;
     let backend = arguments.shot.run.backend()?;
+    let progress = ExportProgress::terminal();
     if arguments.fit {
-        block_on(options.fit(&backend, &mut shot, &frames))?;
+        block_on(options.fit(&backend, &mut shot, &frames, &progress))?;
     }
     // The folder is made when all else is known to be right.
-    std::fs::create_dir_all(folder).map_err(|error| Error::Io { path: folder.into(), error })?;
+    let _made = OutputFolder::make(folder)?;
     let outputs = FILES.map(|name| ("--output", folder.join(name), name.rsplit('.').next().unwrap_or_default()));
     arguments.shot.check_outputs(&shot, &outputs)?;
-    let progress = ExportProgress::terminal();
     let export = block_on(FlipbookExport::render(&backend, &shot, &frames, options, &progress, folder))?;
-    export.write(folder, arguments.shot.effort())?;
+    export.write(folder)?;
     if let Some(cut_smoke) = &export.cut_smoke {
         print_error(cut_smoke);
     }

@@ -10,7 +10,7 @@ use haze_export::engine::Engine;
 use haze_export::inputs::image_paths;
 use haze_export::material_export::MaterialExport;
 use haze_export::options::{AssetsArguments, parse_assignment, with_option};
-use haze_export::output::{FileChecks, print_line};
+use haze_export::output::{FileChecks, OutputFolder, print_line};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     };
     let export = MaterialExport::new(&preset.name, (index, system), images, *engine)?;
     let pictures = image_paths(&folders, &preset);
-    std::fs::create_dir_all(output).map_err(|error| Error::Io { path: output.into(), error })?;
+    let _made = OutputFolder::make(output)?;
     let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([path.as_path()]));
     for name in export.files() {
         let file = output.join(name);

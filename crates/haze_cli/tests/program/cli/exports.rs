@@ -99,6 +99,28 @@ fn refused_flipbooks_leave_no_folder() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn interrupted_flipbooks_leave_no_folder() {
+    use std::process::{Command, Stdio};
+    let folder = folder();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_haze"));
+    command.args(["export", "flipbook", "--engine", "unity", "--backend", "cpu", "--size", "64x64", "--set"]);
+    command.args(["camera.fov=60", "--frames", "0..999", "--sheet", "40x40", "-o", "deep/book"]);
+    let child = command.current_dir(folder.path()).stderr(Stdio::piped()).spawn().unwrap();
+    let start = std::time::Instant::now();
+    while !folder.path().join("deep/book").exists() {
+        assert!(start.elapsed().as_secs() < 60);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let text = stderr(&output);
+    assert_eq!((output.status.code(), text.lines().count()), (Some(1), 1), "{text}");
+    assert!(text.contains("deep/book: stopped: not written; "), "{text}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
 #[test]
 fn pixels_of_images_are_as_asked_for() {
     let folder = folder();
