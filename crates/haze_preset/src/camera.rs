@@ -3,7 +3,7 @@
 use haze_core::glam::camera::rh;
 use haze_core::glam::{UVec2, Vec3};
 
-use haze_core::frame::View;
+use haze_core::frame::{FOV_RANGE, View};
 use haze_core::settings::settings;
 
 settings! {
@@ -18,7 +18,7 @@ settings! {
         target: Vec3 = Vec3::new(0.0, 1.5, 0.0), vector(-1.0e5..=1.0e5, "m");
         /// Vertical field of view, degrees. Lower: brings the smoke near and flattens it. Higher: shows more of the
         /// scene around it.
-        fov: f32 = 45.0, number(1.0..=150.0, "degrees");
+        fov: f32 = 45.0, number(FOV_RANGE, "degrees");
         /// Near plane, metres. Anything nearer is cut off.
         near: f32 = 0.1, number(0.001..=100.0, "m");
         /// Far plane, metres. Anything beyond is cut off.

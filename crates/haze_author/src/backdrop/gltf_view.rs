@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Mat3, UVec2, Vec3};
 use gltf::khr_lights_punctual::Kind;
-use haze_core::frame::{Light, LightKind};
+use haze_core::frame::{FOV_RANGE, Light, LightKind};
 use haze_preset::Camera;
 
 use super::file_limits::MAX_DISTANCE;
@@ -19,7 +19,7 @@ pub fn camera_of(camera: &gltf::Camera<'_>, world: &Affine3A) -> Option<Camera> 
     Some(Camera {
         position: position.clamp(Vec3::splat(-MAX_DISTANCE), Vec3::splat(MAX_DISTANCE)),
         target: position + forward,
-        fov: perspective.yfov().to_degrees().clamp(1.0, 150.0),
+        fov: perspective.yfov().to_degrees().clamp(*FOV_RANGE.start(), *FOV_RANGE.end()),
         near,
         far: perspective.zfar().unwrap_or(Camera::default().far).clamp(near * 1.01, 1.0e5),
         ..Camera::default()

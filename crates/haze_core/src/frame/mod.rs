@@ -15,4 +15,4 @@ pub use light::{Light, LightKind, LightRole, MAX_LIGHTS};
 pub use particle::{MAX_MAGNITUDE, Particle, particle_bounds};
 pub use shadow_projection::ShadowProjection;
 pub use sprite_extent::SpriteExtent;
-pub use view::View;
+pub use view::{FOV_RANGE, View};

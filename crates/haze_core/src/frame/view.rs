@@ -1,6 +1,11 @@
 //! The camera of a frame.
 
+use std::ops::RangeInclusive;
+
 use glam::{Mat4, UVec2};
+
+/// Vertical fields of view of a perspective camera in presets and in files, degrees.
+pub const FOV_RANGE: RangeInclusive<f32> = 1.0..=150.0;
 
 /// Camera of one frame, in the conventions of the host: any world axes, left- or right-handed, any kind of depth
 /// buffer.

@@ -5,6 +5,7 @@ use std::fmt::{Display, Formatter};
 use glam::{UVec2, Vec4};
 use haze::{Error, FieldError};
 use haze_core::assets::image::Image;
+use haze_core::frame::FOV_RANGE;
 use haze_demo::shot::Shot;
 
 use crate::backend::Backend;
@@ -13,8 +14,6 @@ use crate::smoke_layers::SmokeLayers;
 
 /// Setting that is fitted.
 const FOV: &str = "camera.fov";
-/// Largest field of view of a camera, degrees.
-const MAX_FOV: f32 = 150.0;
 /// Longer side of the images by which a field of view is found, pixels.
 const PROBE_SIDE: u32 = 64;
 /// Growth of the view from one image to the next.
@@ -128,7 +127,7 @@ pub(super) async fn fitting_fov(
             }
             let slope = (0.5 * fov).to_radians().tan() * WIDENING;
             fov = 2.0 * slope.atan().to_degrees();
-            if fov > MAX_FOV {
+            if !FOV_RANGE.contains(&fov) {
                 return Ok(None);
             }
         }
