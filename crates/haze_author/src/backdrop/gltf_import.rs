@@ -7,8 +7,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use glam::{Affine3A, Mat3, Mat4, Quat, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles as _};
-use gltf::Semantic;
+use glam::{Affine3A, Mat4, Quat, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles as _};
 use gltf::material::AlphaMode;
 use gltf::mesh::Mode;
 use haze_core::assets::image::{Image, catch_decoder_panic};
@@ -19,9 +18,10 @@ use image::{ImageDecoder as _, ImageReader, Limits};
 use super::bvh::Bvh;
 use super::color_texture::{ColorTexture, Wrap};
 use super::file_limits::MAX_DISTANCE;
-use super::gltf_accessor::{colors, vectors};
+use super::gltf_accessor::vectors;
 use super::gltf_files::{self, GltfFiles};
 use super::gltf_json::{GltfJson, Instances};
+use super::gltf_shape::{InstanceTransform, Shape};
 use super::gltf_view::{camera_of, light_of, roll_of};
 use super::scene_mesh::{SceneCamera, SceneMaterial, SceneMesh, SceneVertex};
 
@@ -263,7 +263,7 @@ impl Import {
         let texels = texels.map_or(Vec2::ZERO, |level| level.size.as_vec2());
         let vertices = self.vertices.get_mut(part).ok_or("a material is missing; expected a whole file")?;
         for world in worlds.iter().filter(|_| count > 0) {
-            let placed = Placed::new(world);
+            let placed = InstanceTransform::new(world);
             for triangle in 0..count {
                 let mut corners = corners(triangle);
                 if placed.is_mirrored {
@@ -409,102 +409,8 @@ fn is_from_blender(generator: &str) -> bool {
     generator.contains("Blender")
 }
 
-/// Data of a primitive, in the space of its node.
-struct Shape {
-    positions: Vec<Vec3>,
-    /// Empty for flat ones.
-    normals: Vec<Vec3>,
-    /// Places in the texture, transformed. Empty if there are none.
-    uvs: Vec<Vec2>,
-    /// Linear colors and alpha of corners, times those of the material. Empty if there are none.
-    colors: Vec<Vec4>,
-    /// Linear color and alpha of the material.
-    color: Vec4,
-    indices: Vec<usize>,
-}
-
-impl Shape {
-    fn read(primitive: &gltf::Primitive<'_>, buffers: &[Vec<u8>], node: &str) -> Result<Self, String> {
-        let named = |reason| format!("{node}: {reason}");
-        let pbr = primitive.material().pbr_metallic_roughness();
-        let of_file = Vec4::from(pbr.base_color_factor());
-        let color = if of_file.is_finite() { of_file.max(Vec4::ZERO) } else { Vec4::ONE };
-        let info = pbr.base_color_texture();
-        let transform = info.as_ref().and_then(gltf::texture::Info::texture_transform);
-        let set = transform.as_ref().and_then(gltf::texture::TextureTransform::tex_coord);
-        let set = set.or(info.as_ref().map(gltf::texture::Info::tex_coord)).unwrap_or_default();
-        let Some(positions) = primitive.get(&Semantic::Positions) else {
-            return Err(format!("{node} has no positions; expected a whole file"));
-        };
-        let positions = vectors::<3>(&positions, buffers, positions.normalized()).map_err(named)?;
-        let mut shape = Self {
-            positions: positions.into_iter().map(Vec3::from).collect(),
-            normals: Vec::new(),
-            uvs: Vec::new(),
-            colors: Vec::new(),
-            color,
-            indices: Vec::new(),
-        };
-        if let Some(normals) = primitive.get(&Semantic::Normals) {
-            shape.normals = vectors::<3>(&normals, buffers, normals.normalized())
-                .map_err(named)?
-                .into_iter()
-                .map(Vec3::from)
-                .collect();
-        }
-        if let Some(uvs) = primitive.get(&Semantic::TexCoords(set)) {
-            let moved = |uv: [f32; 2]| {
-                let uv = Vec2::from(uv);
-                let moved = transform.as_ref().map_or(uv, |transform| transformed(uv, transform));
-                if moved.is_finite() { moved } else { Vec2::ZERO }
-            };
-            shape.uvs = vectors::<2>(&uvs, buffers, uvs.normalized()).map_err(named)?.into_iter().map(moved).collect();
-        }
-        if let Some(of_corners) = primitive.get(&Semantic::Colors(0)) {
-            let painted = |of_corner: Vec4| match of_corner.is_finite() {
-                true => color * of_corner.max(Vec4::ZERO),
-                false => color,
-            };
-            shape.colors = colors(&of_corners, buffers).map_err(named)?.into_iter().map(painted).collect();
-        }
-        let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
-        shape.indices = match (reader.read_indices(), primitive.indices()) {
-            (Some(indices), _) => indices.into_u32().map(|index| index as usize).collect(),
-            (None, Some(_)) => return Err(format!("{node} has no indices; expected a whole file")),
-            (None, None) => (0..shape.positions.len()).collect(),
-        };
-        Ok(shape)
-    }
-}
-
-/// Place of an instance, as its normals and corners need it.
-struct Placed {
-    is_mirrored: bool,
-    normals: Mat3,
-}
-
-impl Placed {
-    fn new(world: &Affine3A) -> Self {
-        let linear = Mat3::from(world.matrix3);
-        let is_mirrored = linear.determinant() < 0.0;
-        // Adjugate transposed: like the inverse transposed, but defined for flattened nodes too.
-        let normals = Mat3::from_cols(
-            linear.y_axis.cross(linear.z_axis),
-            linear.z_axis.cross(linear.x_axis),
-            linear.x_axis.cross(linear.y_axis),
-        );
-        Self { is_mirrored, normals: if is_mirrored { -normals } else { normals } }
-    }
-}
-
 fn name_of(node: &gltf::Node<'_>) -> String {
     node.name().map_or_else(|| format!("node {}", node.index()), |name| format!("{:?}", one_line(name)))
-}
-
-fn transformed(uv: Vec2, transform: &gltf::texture::TextureTransform<'_>) -> Vec2 {
-    let (sin, cos) = transform.rotation().sin_cos();
-    let scaled = uv * Vec2::from(transform.scale());
-    Vec2::new(cos * scaled.x + sin * scaled.y, cos * scaled.y - sin * scaled.x) + Vec2::from(transform.offset())
 }
 
 fn decode(bytes: &[u8]) -> Result<Image<[u8; 4]>, String> {

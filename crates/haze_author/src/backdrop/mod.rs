@@ -14,6 +14,7 @@ mod gltf_import;
 #[cfg(not(target_arch = "wasm32"))]
 mod gltf_json;
 #[cfg(not(target_arch = "wasm32"))]
+mod gltf_shape;
 mod gltf_view;
 #[cfg(not(target_arch = "wasm32"))]
 mod name_list;
