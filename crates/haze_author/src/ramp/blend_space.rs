@@ -170,7 +170,7 @@ fn hsv_from_rgb(c: Vec3) -> Vec3 {
     Vec3::new(sixth / 6.0, saturation, value)
 }
 
-fn rgb_from_hsv(c: Vec3) -> Vec3 {
+pub(super) fn rgb_from_hsv(c: Vec3) -> Vec3 {
     let sixth = (c.x - c.x.floor()) * 6.0;
     let pure = Vec3::new((sixth - 3.0).abs() - 1.0, 2.0 - (sixth - 2.0).abs(), 2.0 - (sixth - 4.0).abs());
     c.z * (Vec3::ONE + c.y * (pure.clamp(Vec3::ZERO, Vec3::ONE) - 1.0))

@@ -24,7 +24,7 @@ pub fn read(text: &str, name: Option<&str>) -> Result<NotedGradient, GradientPar
         return Err(error(0, "no gradient; expected a Gradient saved by Godot as text"));
     }
     let names: Vec<_> =
-        sections.iter().map(|section| GradientName { name: section.name, line: section.line + 1 }).collect();
+        sections.iter().map(|section| GradientName { name: section.name, line: Some(section.line + 1) }).collect();
     let ChosenGradient { index, note } = choose_gradient(&names, name)?;
     Ok(NotedGradient { gradient: sections[index].gradient()?, note })
 }

@@ -14,16 +14,16 @@ pub fn parse_numbers(text: &str) -> Option<Vec<f32>> {
     words.map(|word| word.parse().ok().filter(|number: &f32| number.is_finite())).collect()
 }
 
-/// A gradient's name in its file, and its 1-based line.
+/// A gradient's name in its file, and its 1-based line if that is a text.
 pub struct GradientName<'a> {
     pub name: &'a str,
-    pub line: usize,
+    pub line: Option<usize>,
 }
 
 /// Gradient that is read of those in a file.
 pub struct ChosenGradient {
     pub index: usize,
-    /// Line, the gradient that is read, and the others, if a name did not choose it.
+    /// Line, if it is known, the gradient that is read, and the others, if a name did not choose it.
     pub note: Option<String>,
 }
 
@@ -40,7 +40,8 @@ pub fn choose_gradient(names: &[GradientName], name: Option<&str>) -> Result<Cho
     let others: Vec<_> = names.iter().enumerate().filter_map(is_other).collect();
     let note = (name.is_none() && !others.is_empty()).then(|| {
         let GradientName { name, line } = &names[index];
-        format!("{line}: read gradient {}, not {}; --gradient chooses one", one_line(name), others.join(", "))
+        let line = line.map(|line| format!("{line}: ")).unwrap_or_default();
+        format!("{line}read gradient {}, not {}; --gradient chooses one", one_line(name), others.join(", "))
     });
     Ok(ChosenGradient { index, note })
 }

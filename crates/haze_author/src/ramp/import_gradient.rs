@@ -12,29 +12,33 @@ use super::fit_stops::{RampFit, fit_image, validate_max_error};
 use super::gradient_text::{GradientParseError, parse_numbers};
 use super::ramp_recipe::Blend;
 use super::source_gradient::{Interpolation, NotedGradient, SourceGradient, SourcePoint};
-use super::{color_tables, css, gimp, godot, svg};
+use super::{color_tables, css, gimp, godot, grd, svg};
 
 /// Extensions of gradients of other programs.
-pub const GRADIENT_ENDINGS: [&str; 8] = ["ggr", "tres", "txt", "svg", "css", "cpt", "gpl", "pal"];
+pub const GRADIENT_ENDINGS: [&str; 9] = ["ggr", "tres", "txt", "svg", "css", "cpt", "gpl", "pal", "grd"];
 
 /// Extensions of files that may have several gradients.
-const ENDINGS_OF_SEVERAL: [&str; 2] = ["tres", "svg"];
+const ENDINGS_OF_SEVERAL: [&str; 3] = ["tres", "svg", "grd"];
 
 /// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
+
+/// Size limit of a file of Photoshop, which holds a library of gradients, bytes.
+const MAX_LIBRARY_BYTES: u64 = 16 << 20;
 
 /// A recipe made of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImportedGradient {
     /// The recipe and its error.
     pub fit: RampFit,
-    /// File, line, the gradient that was read, and those that were not; `None` for a file of one gradient.
+    /// File, line, the gradient that was read, and those that were not; what a gradient of Photoshop has besides. `None` if all is
+    /// read.
     pub note: Option<String>,
 }
 
 /// Converts a file to a recipe. The format follows from the extension: `.png`, or one of [`GRADIENT_ENDINGS`]. `max_error`
-/// is the maximum error of a channel, 1 to 64 steps of 255. `name` chooses one of several gradients in a file of Godot or
-/// SVG. Transparent colors are darkened by their alpha, in linear light.
+/// is the maximum error of a channel, 1 to 64 steps of 255. `name` chooses one of several gradients in a file of Godot,
+/// SVG or Photoshop. Transparent colors are darkened by their alpha, in linear light.
 ///
 /// # Errors
 /// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
@@ -43,7 +47,7 @@ pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Resul
     validate_max_error(max_error)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if let Some(name) = name.filter(|_| !ENDINGS_OF_SEVERAL.contains(&ending.as_str())) {
-        let expected = "no name: only a .tres or .svg has several gradients";
+        let expected = "no name: only a .tres, .svg or .grd has several gradients";
         return Err(FieldError::new("gradient", format!("{name:?}"), expected).into());
     }
     if ending == "png" {
@@ -61,6 +65,14 @@ pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Resul
         column: 1,
         reason,
     };
+    if ending == "grd" {
+        let bytes = bounded_read::read(path, "gradient", MAX_LIBRARY_BYTES)?;
+        let refuse = |reason| Error::Image { path: path.into(), reason };
+        let NotedGradient { gradient, note } = grd::read(&bytes, name).map_err(refuse)?;
+        let fit = gradient.fit(max_error);
+        fit.recipe.validate()?;
+        return Ok(ImportedGradient { fit, note: note.map(|note| format!("{}: {note}", display_path(path))) });
+    }
     let bytes = bounded_read::read(path, "gradient", MAX_BYTES)?;
     let text = std::str::from_utf8(&bytes).map_err(|_| {
         refuse(GradientParseError { line: 1, reason: "not UTF-8; expected a gradient as UTF-8 text".into() })
@@ -189,6 +201,13 @@ mod tests {
         }
     }
 
+    #[test]
+    fn files_of_photoshop_are_read_as_bytes() {
+        let refused = import_text("a.grd", "8BGR\0\u{3}").unwrap_err();
+        assert!(refused.starts_with("a.grd: version 3 of the format; expected version 5: open it in"), "{refused}");
+        assert!(import_text("a.grd", "GIMP Gradient").unwrap_err().starts_with("a.grd: not a gradient of Photoshop"));
+    }
+
     const TWO_GRADIENTS: &str = "[gd_resource type=\"ParticleProcessMaterial\" load_steps=4 format=3]\n\n\
         [sub_resource type=\"Gradient\" id=\"Gradient_a\"]\ncolors = PackedColorArray(1, 0.5, 0, 1, 0.1, 0.1, 0.1, 1)\n\n\
         [sub_resource type=\"GradientTexture1D\" id=\"GradientTexture1D_a\"]\ngradient = SubResource(\"Gradient_a\")\n\n\
@@ -217,7 +236,7 @@ mod tests {
         let refused = import(Some("Gradient_c")).unwrap_err().to_string();
         assert!(refused.ends_with("no gradient \"Gradient_c\"; expected one of Gradient_a, Gradient_b"), "{refused}");
         let refused = import_gradient(Path::new("a.ggr"), 1.5, Some("b")).unwrap_err().to_string();
-        assert!(refused.contains("expected no name: only a .tres or .svg has several gradients"), "{refused}");
+        assert!(refused.contains("expected no name: only a .tres, .svg or .grd has several gradients"), "{refused}");
     }
 
     #[test]

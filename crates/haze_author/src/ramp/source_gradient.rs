@@ -16,7 +16,7 @@ pub struct SourceGradient {
     points: Vec<SourcePoint>,
 }
 
-/// A gradient, and a note with its line on others in its file.
+/// A gradient, and a note on others in its file, with its line, and on what is not read.
 pub struct NotedGradient {
     pub gradient: SourceGradient,
     pub note: Option<String>,

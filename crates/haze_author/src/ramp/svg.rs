@@ -28,7 +28,7 @@ pub fn read(text: &str, name: Option<&str>) -> Result<NotedGradient, GradientPar
     let name_of = |node: &Node<'_, '_>| node.attribute("id").unwrap_or_default().to_owned();
     let ids: Vec<_> = gradients.iter().map(name_of).collect();
     let names: Vec<_> =
-        ids.iter().zip(&gradients).map(|(name, node)| GradientName { name, line: line_of(node) }).collect();
+        ids.iter().zip(&gradients).map(|(name, node)| GradientName { name, line: Some(line_of(node)) }).collect();
     // An id may be that of a gradient without stops of its own.
     let linked = name.and_then(|name| with_stops(&document, name));
     let linked = linked.and_then(|linked| gradients.iter().position(|gradient| *gradient == linked));

@@ -14,8 +14,8 @@ use super::ramp_io::{check_recipe_output, write_recipe};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// A PNG, or a gradient: of GIMP (.ggr), Godot (.tres), Blender (.txt, as text), SVG, CSS or GMT (.cpt), or a palette (.gpl,
-    /// .pal).
+    /// A PNG, or a gradient: of GIMP (.ggr), Photoshop (.grd), Godot (.tres), Blender (.txt, as text), SVG, CSS or GMT (.cpt), or
+    /// a palette (.gpl, .pal).
     file: PathBuf,
     /// Recipe to write.
     #[arg(short, long, value_name = "NAME.ramp.json")]
@@ -24,7 +24,8 @@ pub struct Arguments {
     #[arg(long, value_name = "STEPS", default_value_t = DEFAULT_MAX_ERROR, allow_hyphen_values = true)]
     #[arg(value_parser = number(MAX_ERROR_RANGE))]
     error: f32,
-    /// Gradient to read of a file with several: its id in SVG, that of its sub-resource in Godot. Without, the first.
+    /// Gradient to read of a file with several: its id in SVG, that of its sub-resource in Godot, its name in Photoshop. Without,
+    /// the first.
     #[arg(long, value_name = "ID")]
     gradient: Option<String>,
 }

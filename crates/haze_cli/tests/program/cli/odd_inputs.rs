@@ -5,7 +5,7 @@
 use super::{folder, refusal};
 
 /// Commands that read a file, with `{}` in its place.
-const READERS: [(&str, &str); 24] = [
+const READERS: [(&str, &str); 25] = [
     ("{}.json", "preset check {}"),
     ("{}.json", "preset show {}"),
     ("{}.json", "preset new new.json --from {}"),
@@ -22,6 +22,7 @@ const READERS: [(&str, &str); 24] = [
     ("{}.ramp.json", "ramp show {}"),
     ("{}.png", "ramp import {} -o out.ramp.json"),
     ("{}.ggr", "ramp import {} -o out.ramp.json"),
+    ("{}.grd", "ramp import {} -o out.ramp.json"),
     ("{}.sprite.json", "ramp fit --sprite {} -o out.ramp.json"),
     ("{}.sprite.json", "sprite bake {}"),
     ("{}.noise.json", "sprite bake {}"),
