@@ -37,10 +37,23 @@ pub fn read(text: &str, name: Option<&str>) -> Result<NotedGradient, GradientPar
         None => choose_gradient(&names, name)?,
     };
     let gradient = gradients[index];
-    let is_linear = property(&gradient, "color-interpolation") == Some("linearRGB");
+    let sheets = StyleSheets::new(&document);
+    let stops: Vec<_> = gradient.children().filter(is_stop).collect();
+    for (property, nodes) in
+        [("stop-color", &stops[..]), ("stop-opacity", &stops), ("color-interpolation", &[gradient])]
+    {
+        let node = nodes.iter().find(|node| inline(node, property).is_none());
+        if let Some((line, _)) = sheets.line_of(property).zip(node) {
+            let expected = "it in the style of each stop or gradient: export with inline styles";
+            let reason = format!("{property} may be set by this style sheet, which is not read; expected {expected}");
+            return Err(GradientParseError { line, reason });
+        }
+    }
+    let interpolation = gradient.ancestors().find_map(|node| property(&node, "color-interpolation"));
+    let is_linear = interpolation == Some("linearRGB");
     let mut points = Vec::new();
     let mut most = 0.0_f32;
-    for stop in gradient.children().filter(is_stop) {
+    for stop in stops {
         let mut point = point(&stop).map_err(|reason| GradientParseError { line: line_of(&stop), reason })?;
         // A stop in front of an earlier one becomes that one.
         most = most.max(point.at);
@@ -75,9 +88,54 @@ fn with_stops<'a>(document: &'a Document<'a>, id: &str) -> Option<Node<'a, 'a>> 
 
 /// Returns a property: of the style, or the attribute of its name.
 fn property<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
+    inline(node, name).or(node.attribute(name).map(str::trim))
+}
+
+/// Returns a property of the style, which prevails over style sheets; an attribute does not.
+fn inline<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
     let style = node.attribute("style").unwrap_or_default();
     let of_style = style.split(';').filter_map(|part| part.split_once(':')).find(|(key, _)| key.trim() == name);
-    of_style.map(|(_, value)| value.trim()).or(node.attribute(name).map(str::trim))
+    of_style.map(|(_, value)| value.trim())
+}
+
+/// Style sheets of a file: their lines and rules; no rules for one in another file.
+struct StyleSheets(Vec<(usize, Option<String>)>);
+
+impl StyleSheets {
+    fn new(document: &Document) -> Self {
+        let line_of = |node: &Node| document.text_pos_at(node.range().start).row as usize;
+        let sheets = document.descendants().filter_map(|node| {
+            let is_other_file = node.pi().is_some_and(|pi| pi.target == "xml-stylesheet") || node.has_tag_name("link");
+            if is_other_file {
+                return Some((line_of(&node), None));
+            }
+            let is_style = node.is_element() && node.tag_name().name() == "style";
+            let text: String = node.descendants().filter(Node::is_text).filter_map(|text| text.text()).collect();
+            let rules = without_comments(&text);
+            is_style.then(|| (line_of(&node), (!rules.contains("@import")).then_some(rules)))
+        });
+        Self(sheets.collect())
+    }
+
+    /// Returns the line of the first sheet that may set a property.
+    fn line_of(&self, property: &str) -> Option<usize> {
+        let sets = |rules: &String| {
+            let mut found = rules.match_indices(property);
+            // `-` and letters continue a name.
+            found.any(|(at, name)| {
+                let before = rules[..at].chars().next_back();
+                let starts = !before.is_some_and(|c| c.is_alphanumeric() || c == '-' || c == '_');
+                starts && rules[at + name.len()..].trim_start().starts_with(':')
+            })
+        };
+        self.0.iter().find(|(_, rules)| rules.as_ref().is_none_or(sets)).map(|(line, _)| *line)
+    }
+}
+
+fn without_comments(text: &str) -> String {
+    let mut parts = text.split("/*");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |rules, part| rules + " " + part.split_once("*/").map_or("", |(_, rest)| rest))
 }
 
 fn point(stop: &Node) -> Result<SourcePoint, String> {
@@ -154,5 +212,49 @@ mod tests {
         assert!(of_stop("offset=\"x\"").starts_with("3: a stop without a valid offset"));
         assert!(refused("<svg/>").starts_with("1: no gradient; expected a linearGradient"));
         assert!(refused("<svg>").ends_with("; expected an SVG file"));
+    }
+
+    #[test]
+    fn style_sheets_that_may_set_a_stop_are_refused() {
+        let of_sheet = |sheet: &str, stops: &str| {
+            refused(&format!("<svg>\n{sheet}<linearGradient id=\"a\">{stops}</linearGradient></svg>"))
+        };
+        let attributes = r#"<stop id="b" class="c" stop-color="red"/>"#;
+        let inline = r#"<stop class="c" style="stop-color:red"/>"#;
+        for rule in [
+            "stop { stop-color: blue }",
+            "#b{stop-color:blue}",
+            "linearGradient > .c { fill: none; stop-color :blue }",
+            "@media screen { * { stop-color: blue } }",
+        ] {
+            let sheet = format!("<style>{rule}</style>");
+            let said = of_sheet(&sheet, attributes);
+            assert!(
+                said.starts_with("2: stop-color may be set by this style sheet, which is not read"),
+                "{rule}: {said}"
+            );
+            assert_eq!(of_sheet(&sheet, inline), "", "{rule}");
+        }
+        let faded = "<style>stop { stop-opacity: 0.5 }</style>";
+        assert!(of_sheet(faded, inline).starts_with("2: stop-opacity may be set"), "{}", of_sheet(faded, inline));
+        let linear = "<style><![CDATA[ #a { color-interpolation: linearRGB } ]]></style>";
+        assert!(of_sheet(linear, inline).starts_with("2: color-interpolation may be set"));
+        for other_file in ["<style>@import url(a.css);</style>", "<?xml-stylesheet href='a.css'?>"] {
+            assert!(of_sheet(other_file, attributes).starts_with("2: stop-color may be set"), "{other_file}");
+        }
+        for unrelated in [
+            "<style>.s0 { fill: url(#a); color-interpolation-filters: sRGB }</style>",
+            "<style>/* stop { stop-color: blue } */ stop { --stop-color: blue }</style>",
+        ] {
+            assert_eq!(of_sheet(unrelated, attributes), "", "{unrelated}");
+        }
+    }
+
+    #[test]
+    fn the_space_of_colors_is_inherited() {
+        let text = "<svg color-interpolation=\"linearRGB\"><linearGradient><stop stop-color=\"black\"/>\
+                    <stop offset=\"1\" stop-color=\"white\"/></linearGradient></svg>";
+        let Ok(read) = read(text, None) else { panic!("refused") };
+        assert!(read.gradient.code(0.5).distance(Vec3::splat(0.735_36)) < 1.0e-3, "{}", read.gradient.code(0.5));
     }
 }
