@@ -28,6 +28,11 @@ impl Engine {
         self != Self::Unreal
     }
 
+    /// Returns true if the shader of a material gets the age of each particle.
+    pub fn knows_age(self) -> bool {
+        self == Self::Godot
+    }
+
     /// Order of the sides in two maps of six-way light.
     pub fn six_way_packing(self) -> Packing {
         match self {

@@ -1,9 +1,11 @@
 //! Material of a system for other engines: its ramps as textures, and the formula of its lighting as source code with the
 //! preset's numbers.
 
+mod calls;
 mod readme;
 mod snippet;
 mod sources;
+mod spatial_shader;
 mod translation;
 
 use std::path::Path;
@@ -51,7 +53,7 @@ impl MaterialExport {
             let expected = "another mode: an engine's lights do not light a painted motif";
             return refuse("diffuse.mode", "painted_motif", expected);
         }
-        let snippet = Snippet::new(settings)?;
+        let snippet = Snippet::new(settings, engine)?;
         let mut texts = sources::sources(engine, &snippet)?;
         texts.push(("README.md", readme::readme(engine, title, system, &snippet)));
         let textures = snippet

@@ -48,8 +48,8 @@ fn functions(snippet: &Snippet) -> String {
 }
 
 fn steps(engine: Engine, snippet: &Snippet) -> String {
-    let names = |prefix: &str| {
-        let names: Vec<_> = snippet.ramps.iter().map(|ramp| format!("{prefix}`{}`", ramp.name)).collect();
+    let names = |before: &str, prefix: &str| {
+        let names: Vec<_> = snippet.ramps.iter().map(|ramp| format!("{before}`{prefix}{}`", ramp.name)).collect();
         names.join(", ")
     };
     let burns = snippet.functions.iter().any(|function| function.name == "haze_emission");
@@ -69,7 +69,7 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
              6. Connect rgb with *Emissive Color* and a with *Opacity*.\n\n\
              `haze_material.ush` has the same functions for a plugin's shader folder: *Include File Paths* of the node, and \
              only the last lines of `custom_node.hlsl` as its code, without `haze.`\n",
-            names(""),
+            names("", ""),
         ),
         Engine::Unity => format!(
             "## In Unity\n\n\
@@ -83,19 +83,21 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
              4. Connect the vectors in one space, for example *View Direction* in world space; `amount` with alpha of the \
              sprite times that of the vertex color. `to_light` and `light_color` are those of the main light, from \
              *Main Light Direction* (negated) or `GetMainLight()`.\n",
-            names(""),
+            names("", ""),
             if burns { ", `heat`" } else { "" },
         ),
         Engine::Godot => format!(
             "## In Godot 4\n\n\
              1. Import the textures with *Compress Mode* `Lossless` and *Mipmaps* off. Import the sprite (a PNG of haze, for \
              example from its folder `sprites/`) in the same way, with mipmaps.\n\
-             2. Make a *ShaderMaterial* with `haze_material.gdshader`; set the sprite with its columns and rows \
-             (`sprite_cells`), and {}.\n\
-             3. Use it on quads, such as the draw pass of `GPUParticles3D`: the shader turns them towards the camera. The \
-             color's alpha multiplies the amount.\n\n\
+             2. Make a *ShaderMaterial* with `haze_material.gdshader` (Godot 4.4 or later, all renderers); set the sprite \
+             (`haze_sprite`) with its columns and rows (`haze_sprite_cells`), and {}.\n\
+             3. Use it on quads, such as the draw pass of `GPUParticles3D`: the shader turns them towards the camera, by the \
+             angle of each particle. *Animation* of the process material plays the frames. The color's alpha multiplies the \
+             amount{}.\n\n\
              All lights of the scene light the smoke, by `light()`.\n",
-            names("the texture of "),
+            names("the texture of ", "haze_"),
+            if burns { "; the age is the place in the heat ramp" } else { "" },
         ),
         Engine::Wgsl => format!(
             "## In WGSL\n\n\
@@ -108,7 +110,7 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
              return vec4f(light * opacity, opacity); // premultiplied\n\
              ```\n\n\
              Functions with further ramps take them before the sampler.\n",
-            names(""),
+            names("", ""),
         ),
     }
 }

@@ -6,6 +6,7 @@ use haze_core::assets::ramp::Ramp;
 use haze_core::settings::{Backlight, Choice as _, CoverageMode, Settings, SoftScatterMode};
 
 use super::translation::untranslated;
+use crate::engine::Engine;
 
 /// A ramp that a material reads.
 pub struct UsedRamp {
@@ -45,6 +46,7 @@ pub struct Snippet {
 const VECTORS_AND_AMOUNT: &[(&str, &str)] =
     &[("normal", "vec3f"), ("to_light", "vec3f"), ("to_viewer", "vec3f"), ("amount", "f32")];
 const AMOUNT: &[(&str, &str)] = &[("amount", "f32")];
+const AGE: &[(&str, &str)] = &[("age", "f32")];
 const HEAT_AND_AMOUNT: &[(&str, &str)] = &[("heat", "f32"), ("amount", "f32")];
 
 impl Snippet {
@@ -52,14 +54,15 @@ impl Snippet {
     ///
     /// # Errors
     /// [`Error::Field`] if the library does not compose.
-    pub fn new(settings: &Settings) -> Result<Self, Error> {
-        let (ramps, functions) = (used_ramps(settings), functions(settings));
+    pub fn new(settings: &Settings, engine: Engine) -> Result<Self, Error> {
+        let knows_age = engine.knows_age();
+        let (ramps, functions) = (used_ramps(settings, knows_age), functions(settings, knows_age));
         let constants = constants(settings);
         let own: String = functions.iter().map(Function::wgsl).collect();
         let library = shader::compose(LIBRARY).map_err(|reason| untranslated("WGSL", &reason))?;
         let chosen = [("BACKLIGHT", settings.diffuse.backlight.index()), ("RAMP_FILTER", settings.ramp_filter.index())];
         let items = items(&with_chosen(&library, &chosen));
-        let wgsl = constants + &used_items(&items, &own) + &own;
+        let wgsl = with_prefixes(&items, &(constants + &used_items(&items, &own) + &own));
         Ok(Self { ramps, functions, wgsl: wgsl.trim_end().to_owned() + "\n" })
     }
 }
@@ -80,7 +83,7 @@ impl Function {
     }
 }
 
-fn used_ramps(settings: &Settings) -> Vec<UsedRamp> {
+fn used_ramps(settings: &Settings, knows_age: bool) -> Vec<UsedRamp> {
     let angle = "across: dot(normal, to_light)/2 + 1/2; rows: amount times boost";
     let all = [
         (true, UsedRamp { name: "diffuse_ramp", axes: angle, of: |assets| &assets.diffuse_ramp }),
@@ -104,11 +107,15 @@ fn used_ramps(settings: &Settings) -> Vec<UsedRamp> {
                 of: |assets| &assets.fire_ramp,
             },
         ),
+        (
+            settings.burns() && knows_age,
+            UsedRamp { name: "heat_ramp", axes: "across: age; gray: heat", of: |assets| &assets.heat_ramp },
+        ),
     ];
     all.into_iter().filter(|(is_used, _)| *is_used).map(|(_, ramp)| ramp).collect()
 }
 
-fn functions(settings: &Settings) -> Vec<Function> {
+fn functions(settings: &Settings, knows_age: bool) -> Vec<Function> {
     let backlight = (settings.diffuse.backlight == Backlight::Ramp).then_some("backlight_ramp");
     let by_ramp = settings.soft_scatter.mode == SoftScatterMode::Ramp;
     let covers_by_ramp = settings.coverage == CoverageMode::Ramp;
@@ -173,6 +180,16 @@ fn functions(settings: &Settings) -> Vec<Function> {
             result: "vec3f",
             body: "    return fire_response(fire_ramp, ramp_sampler, vec2f(heat, 1.0), amount, HAZE_BOOST) * HAZE_FIRE_INTENSITY;\n"
                 .into(),
+        });
+    }
+    if settings.burns() && knows_age {
+        functions.push(Function {
+            name: "haze_heat_by_age",
+            doc: "Heat of a particle. `age`: 0 at birth, 1 at death.",
+            ramps: vec!["heat_ramp"],
+            inputs: AGE,
+            result: "f32",
+            body: "    return painted_share(sample_ramp(heat_ramp, ramp_sampler, age));\n".into(),
         });
     }
     functions
@@ -241,6 +258,25 @@ fn items(library: &str) -> Vec<Item> {
 fn declared_name(line: &str) -> Option<&str> {
     let rest = ["fn ", "const ", "struct "].iter().find_map(|keyword| line.strip_prefix(keyword))?;
     words(rest).next()
+}
+
+/// Gives all names of the library a prefix: an engine has names of its own, such as `BACKLIGHT`.
+fn with_prefixes(items: &[Item], text: &str) -> String {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let mut prefixed = String::new();
+    let mut rest = text;
+    while let Some(start) = rest.find(is_name) {
+        let (before, from) = rest.split_at(start);
+        let (word, after) = from.split_at(from.find(|c| !is_name(c)).unwrap_or(from.len()));
+        let prefix = match items.iter().any(|item| item.name == word) {
+            false => "",
+            true if word.starts_with(|c: char| c.is_uppercase()) => "HAZE_LIB_",
+            true => "haze_lib_",
+        };
+        prefixed.extend([before, prefix, word]);
+        rest = after;
+    }
+    prefixed + rest
 }
 
 fn words(text: &str) -> impl Iterator<Item = &str> {

@@ -1,3 +1,4 @@
+use std::collections::BTreeSet;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
@@ -226,7 +227,7 @@ fn wgsl_computes_what_the_renderers_compute() {
     let gpu = Headless::new().unwrap();
     let (assets, cases) = (assets(), cases());
     for settings in all_settings() {
-        let snippet = Snippet::new(&settings).unwrap();
+        let snippet = Snippet::new(&settings, Engine::Wgsl).unwrap();
         let exact = snippet.wgsl.replace("EXACT_FILTERING: bool = false", "EXACT_FILTERING: bool = true");
         let worst = |text: &str| error(&settings, &assets, &cases, &run(&gpu, &snippet, text, &assets, &cases));
         // The precision that Vulkan allows `pow`.
@@ -260,7 +261,8 @@ const HLSL: [&str; 8] = ["-D", "-V", "-e", "main", "-S", "frag", "-o", "/dev/nul
 const GLSL: [&str; 2] = ["-S", "frag"];
 
 /// A pixel shader around one source of an engine, with stand-ins for what the engine declares.
-fn shader_around(file: &str, text: &str, snippet: &Snippet) -> String {
+/// `renderer`: 0 for Godot's Compatibility, 2 for Forward+.
+fn shader_around(file: &str, text: &str, snippet: &Snippet, renderer: u32) -> String {
     let ramps =
         |declare: &dyn Fn(&str) -> String| -> String { snippet.ramps.iter().map(|ramp| declare(ramp.name)).collect() };
     let heat = if snippet.functions.len() > 3 { "float heat = 0.5;" } else { "" };
@@ -307,8 +309,9 @@ fn shader_around(file: &str, text: &str, snippet: &Snippet) -> String {
             };
             let text: String = text.lines().map(line).collect();
             format!(
-                "#version 300 es\nprecision highp float;\nprecision highp int;\n\
-                 const float PI = 3.14159265;\nvec2 UV;\nvec4 COLOR;\nvec3 NORMAL, ALBEDO, EMISSION, VIEW;\nfloat ALPHA;\n\
+                "#version 300 es\n#define RENDERER_COMPATIBILITY 0\n#define CURRENT_RENDERER {renderer}\n\
+                 precision highp float;\nprecision highp int;\n\
+                 const float PI = 3.14159265;\nvec2 UV;\nvec4 COLOR, INSTANCE_CUSTOM;\nvec3 NORMAL, ALBEDO, EMISSION, VIEW;\nfloat ALPHA;\n\
                  vec3 LIGHT, LIGHT_COLOR, DIFFUSE_LIGHT;\nfloat ATTENUATION;\n\
                  mat4 MODEL_MATRIX, VIEW_MATRIX, INV_VIEW_MATRIX, MODELVIEW_MATRIX;\nout vec4 result;\n\
                  {text}\nvoid main() {{\n    vertex();\n    fragment();\n    light();\n    \
@@ -321,8 +324,8 @@ fn shader_around(file: &str, text: &str, snippet: &Snippet) -> String {
 #[test]
 fn sources_for_engines_compile() {
     for settings in all_settings() {
-        let snippet = Snippet::new(&settings).unwrap();
         for engine in ENGINES {
+            let snippet = Snippet::new(&settings, engine).unwrap();
             for (file, text) in sources::sources(engine, &snippet).unwrap() {
                 if file.ends_with(".wgsl") {
                     // The comparison with the renderers compiles it; here, that it needs nothing else.
@@ -331,19 +334,89 @@ fn sources_for_engines_compile() {
                 }
                 let is_glsl = file.ends_with(".gdshader");
                 let arguments: &[&str] = if is_glsl { &GLSL } else { &HLSL };
-                let source = shader_around(file, &text, &snippet);
-                let Some(compiled) = glslang(arguments, &source) else {
-                    let required = std::env::var("HAZE_REQUIRE").unwrap_or_default();
-                    assert!(!required.contains("glslang"), "glslangValidator is not installed");
-                    println!("skipped: glslangValidator is not installed");
-                    return;
-                };
-                compiled.unwrap_or_else(|error| panic!("{file}: {error}"));
-                // A call of a missing function is an error: the formula was compiled.
-                let broken = source.replacen("clamp(", "no_function(", 1).replacen("saturate(", "no_function(", 1);
-                assert!(glslang(arguments, &broken).is_some_and(|compiled| compiled.is_err()), "{file}");
+                let renderers: &[u32] = if is_glsl { &[0, 2] } else { &[0] };
+                for renderer in renderers {
+                    let source = shader_around(file, &text, &snippet, *renderer);
+                    let Some(compiled) = glslang(arguments, &source) else {
+                        let required = std::env::var("HAZE_REQUIRE").unwrap_or_default();
+                        assert!(!required.contains("glslang"), "glslangValidator is not installed");
+                        println!("skipped: glslangValidator is not installed");
+                        return;
+                    };
+                    compiled.unwrap_or_else(|error| panic!("{file}: {error}"));
+                    // A call of a missing function is an error: the formula was compiled.
+                    let broken = source.replacen("clamp(", "no_function(", 1).replacen("saturate(", "no_function(", 1);
+                    assert!(glslang(arguments, &broken).is_some_and(|compiled| compiled.is_err()), "{file}");
+                }
             }
         }
+    }
+}
+
+/// Names that Godot declares in spatial shaders. (Godot 4.6, `servers/rendering/shader_types.cpp`)
+const BUILT_INS: &str = "
+    TIME PI TAU E OUTPUT_IS_SRGB CLIP_SPACE_FAR VIEWPORT_SIZE IN_SHADOW_PASS
+    VERTEX NORMAL TANGENT BINORMAL POSITION UV UV2 COLOR ROUGHNESS POINT_SIZE INSTANCE_ID INSTANCE_CUSTOM VERTEX_ID
+    MODEL_MATRIX MODEL_NORMAL_MATRIX MODELVIEW_MATRIX MODELVIEW_NORMAL_MATRIX VIEW_MATRIX INV_VIEW_MATRIX
+    PROJECTION_MATRIX INV_PROJECTION_MATRIX MAIN_CAM_INV_VIEW_MATRIX VIEW_INDEX VIEW_MONO_LEFT VIEW_RIGHT EYE_OFFSET
+    NODE_POSITION_WORLD NODE_POSITION_VIEW CAMERA_POSITION_WORLD CAMERA_DIRECTION_WORLD CAMERA_VISIBLE_LAYERS
+    CUSTOM0 CUSTOM1 CUSTOM2 CUSTOM3 BONE_INDICES BONE_WEIGHTS Z_CLIP_SCALE
+    FRAGCOORD VIEW FRONT_FACING POINT_COORD SCREEN_UV SCREEN_MATRIX DEPTH ALBEDO ALPHA ALPHA_SCISSOR_THRESHOLD
+    ALPHA_HASH_SCALE ALPHA_ANTIALIASING_EDGE ALPHA_TEXTURE_COORDINATE PREMUL_ALPHA_FACTOR METALLIC SPECULAR RIM RIM_TINT
+    CLEARCOAT CLEARCOAT_ROUGHNESS ANISOTROPY ANISOTROPY_FLOW SSS_STRENGTH SSS_TRANSMITTANCE_COLOR
+    SSS_TRANSMITTANCE_DEPTH SSS_TRANSMITTANCE_BOOST BACKLIGHT AO AO_LIGHT_AFFECT EMISSION FOG RADIANCE IRRADIANCE
+    NORMAL_MAP NORMAL_MAP_DEPTH BENT_NORMAL_MAP LIGHT_VERTEX
+    LIGHT LIGHT_COLOR LIGHT_IS_DIRECTIONAL ATTENUATION DIFFUSE_LIGHT SPECULAR_LIGHT SPECULAR_AMOUNT
+    CURRENT_RENDERER RENDERER_COMPATIBILITY RENDERER_MOBILE RENDERER_FORWARD_PLUS
+    SCREEN_TEXTURE DEPTH_TEXTURE NORMAL_ROUGHNESS_TEXTURE";
+
+/// Returns the names that a Godot shader declares outside functions.
+fn global_names(text: &str) -> Vec<&str> {
+    let names = text.lines().filter_map(|line| {
+        let line = line.strip_prefix("#define ").map_or(line, |rest| rest);
+        let is_declaration = !line.starts_with([' ', '/', '#', '}']) && line.contains(' ');
+        let declared = line.split(['(', '=', ':', ';', '{', '[']).next().filter(|_| is_declaration)?.trim_end();
+        declared.rsplit(' ').next()
+    });
+    names.filter(|name| !["spatial", "specular_disabled", "vertex", "fragment", "light"].contains(name)).collect()
+}
+
+#[test]
+fn global_names_of_shaders_for_godot_are_none_of_its_own() {
+    let mut kinds = BTreeSet::new();
+    for settings in all_settings() {
+        let snippet = Snippet::new(&settings, Engine::Godot).unwrap();
+        let [(_, text)] = &sources::sources(Engine::Godot, &snippet).unwrap()[..] else { panic!("one file") };
+        let names = global_names(text);
+        assert!(names.len() > 20, "{names:?}");
+        for name in names {
+            assert!(name.starts_with("haze_") || name.starts_with("HAZE_"), "{name}");
+            assert!(!BUILT_INS.split_whitespace().any(|own| own == name), "{name}");
+            kinds.insert(name.to_owned());
+        }
+    }
+    // Constants, uniforms, varyings, and functions of the library and of the material.
+    for name in
+        ["HAZE_BOOST", "HAZE_LIB_BACKLIGHT", "haze_heat_ramp", "haze_turn", "haze_lib_coverage", "haze_coverage"]
+    {
+        assert!(kinds.contains(name), "{name} is not in {kinds:?}");
+    }
+    let named = "const uint BACKLIGHT = 0u;\nuniform vec2 size = vec2(1.0);\nvarying float amount;\nvoid vertex() {\n    x = 1;\n}";
+    assert_eq!(global_names(named), ["BACKLIGHT", "size", "amount"]);
+}
+
+#[test]
+fn materials_for_godot_have_the_heat_by_age() {
+    let preset = Preset::load("campfire").unwrap();
+    let assets = preset.load_materials("campfire".as_ref()).unwrap();
+    for engine in ENGINES {
+        let export = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets[0], engine).unwrap();
+        let is_godot = engine == Engine::Godot;
+        assert_eq!(export.files().any(|file| file == "heat_ramp.png"), is_godot, "{engine:?}");
+        let readme = &export.texts.iter().find(|(name, _)| *name == "README.md").unwrap().1;
+        assert_eq!(readme.contains("`haze_heat_ramp`") && readme.contains("| `heat_ramp.png` |"), is_godot, "{readme}");
+        let by_age = "haze_particle_heat = haze_heat * haze_heat_by_age(haze_heat_ramp, INSTANCE_CUSTOM.y);";
+        assert_eq!(export.texts[0].1.contains(by_age), is_godot, "{}", export.texts[0].1);
     }
 }
 
