@@ -136,6 +136,8 @@ impl ShotArguments {
     /// have no effect.
     pub fn load_outputs(&self, outputs: &[(&str, PathBuf, &str)]) -> Result<Shot, Error> {
         let ChangedShot { shot, names } = self.changed_shot(None)?;
+        // Errors come first: a refused command says one line.
+        self.check_outputs(&shot, outputs)?;
         for note in shot.backdrop.notes(&shot.preset.environment) {
             print_error(note);
         }
@@ -149,7 +151,6 @@ impl ShotArguments {
         if let Some(line) = self.backdrop.sky_note(&shot, is_turned) {
             print_error(line);
         }
-        self.check_outputs(&shot, outputs)?;
         Ok(shot)
     }
 

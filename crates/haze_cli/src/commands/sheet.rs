@@ -40,6 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let (mut cells, mut reasons) = (Vec::new(), Vec::new());
     for value in values {
         let VariedShot { mut shot, name: varied } = arguments.shot.varied_shot("--vary", (field, value))?;
+        arguments.shot.check_outputs(&shot, &[("--output", arguments.shot.output.clone(), "png")])?;
         reasons.push(no_effect_reason_of_set(&shot.preset, field, &varied, size));
         name = varied;
         shot.size = size;

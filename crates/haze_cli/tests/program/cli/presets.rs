@@ -51,6 +51,14 @@ fn a_setting_without_effect_is_reported() {
     let vary = |field: &str| stderr(&haze(folder.path(), &[&sheet[..], &["--vary", field]].concat()));
     assert_eq!(vary("accumulate.scale=2,4"), note.replace("--set", "--vary"));
     assert_eq!(vary("accumulate.max_error=0.05,0.1"), "");
+    // A refused command says its error alone.
+    image::RgbImage::new(4, 4).save(folder.path().join("own.png")).unwrap();
+    let own = ["-o", "own.png", "corridor"];
+    let set = refusal(folder.path(), &[&["render", "--set", "material.motif=own.png"], &own[..]].concat());
+    assert_eq!(set, "haze: --output: own.png is also an input; expected another file\n");
+    let vary =
+        refusal(folder.path(), &[&["sheet", "--vary", "material.motif=motif_studio,own.png"], &own[..]].concat());
+    assert_eq!(vary, set);
 }
 
 #[test]
