@@ -184,6 +184,8 @@ fn exit_code(error: &Error) -> u8 {
         Error::Io { error, .. } => match error.kind() {
             std::io::ErrorKind::NotFound
             | std::io::ErrorKind::PermissionDenied
+            | std::io::ErrorKind::AlreadyExists
+            | std::io::ErrorKind::ReadOnlyFilesystem
             | std::io::ErrorKind::InvalidData
             | std::io::ErrorKind::InvalidFilename
             | std::io::ErrorKind::InvalidInput

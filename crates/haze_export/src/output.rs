@@ -92,6 +92,20 @@ impl Failures {
     }
 }
 
+/// Refuses a folder that cannot be made, because something else has its name.
+///
+/// # Errors
+/// [`Error::Field`] with the option that names it.
+pub fn check_folder(option: &str, path: &Path) -> Result<(), Error> {
+    // `symlink_metadata`: a link to nothing is in the way too.
+    let Ok(found) = std::fs::metadata(path).or_else(|_| path.symlink_metadata()) else { return Ok(()) };
+    if found.is_dir() {
+        return Ok(());
+    }
+    let problem = format!("{} is {}, not a folder", path.display(), file_type::name(&found));
+    Err(FieldError::from_problem(option, problem, "a folder, or a name that does not exist yet").into())
+}
+
 /// Folder that a command writes into. Folders that were made for it are removed at the end if nothing is in them.
 pub struct OutputFolder {
     /// From the innermost.
@@ -102,8 +116,9 @@ impl OutputFolder {
     /// Makes a folder, and those above it, where they do not exist.
     ///
     /// # Errors
-    /// [`Error::Io`] if it cannot be made.
-    pub fn make(folder: &Path) -> Result<Self, Error> {
+    /// As [`check_folder`]; [`Error::Io`] if it cannot be made.
+    pub fn make(option: &str, folder: &Path) -> Result<Self, Error> {
+        check_folder(option, folder)?;
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
         // Dropped, and so removed, if only a part of it can be made.

@@ -13,7 +13,7 @@ use haze_export::frame_range::{parse_frames, parse_rate, parse_sheet};
 use haze_export::image_export::{ExportProgress, Frames};
 use haze_export::image_format::ImageFormat;
 use haze_export::options::{ShotArguments, whole_number};
-use haze_export::output::{OutputFolder, print_error, print_line};
+use haze_export::output::{OutputFolder, check_folder, print_error, print_line};
 
 #[derive(Args)]
 #[command(
@@ -48,6 +48,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let folder = &arguments.shot.output;
+    check_folder("--output", folder)?;
     let mut shot = arguments.shot.load_outputs(&[])?;
     let frames = Frames { range: arguments.frames.clone(), rate: arguments.rate, format: ImageFormat::default() };
     let options = FlipbookOptions {
@@ -64,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         block_on(options.fit(&backend, &mut shot, &frames, &progress))?;
     }
     // The folder is made when all else is known to be right.
-    let _made = OutputFolder::make(folder)?;
+    let _made = OutputFolder::make("--output", folder)?;
     let outputs = FILES.map(|name| ("--output", folder.join(name), name.rsplit('.').next().unwrap_or_default()));
     arguments.shot.check_outputs(&shot, &outputs)?;
     let export = block_on(FlipbookExport::render(&backend, &shot, &frames, options, &progress, folder))?;

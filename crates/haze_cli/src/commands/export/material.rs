@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     };
     let export = MaterialExport::new(&preset.name, (index, system), images, *engine)?;
     let pictures = image_paths(&folders, &preset);
-    let _made = OutputFolder::make(output)?;
+    let _made = OutputFolder::make("--output", output)?;
     let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([path.as_path()]));
     for name in export.files() {
         let file = output.join(name);

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::{MOTIF, folder, stderr};
+use super::{MOTIF, folder, refusal, stderr};
 
 /// Every file that a command writes, with the command. `ramp watch` and the window have tests of their own.
 const WRITERS: [(&str, &str); 28] = [
@@ -92,5 +92,28 @@ fn every_command_refuses_to_replace_what_is_not_a_file() {
         }
         let after = fs::symlink_metadata(path(target)).unwrap();
         assert_eq!((after.file_type(), after.modified().unwrap()), (before.file_type(), before.modified().unwrap()));
+    }
+}
+
+#[test]
+fn exports_refuse_a_folder_whose_name_something_else_has() {
+    let folder = folder();
+    fs::write(folder.path().join("file"), "").unwrap();
+    std::os::unix::fs::symlink("nothing", folder.path().join("astray")).unwrap();
+    let [device, pipe, _, looped] = make_targets(folder.path());
+    let flipbook = "export flipbook --engine unity --backend cpu --size 8x8 --frames 0..1 --sheet 1x2 -o";
+    for command in ["export material --engine wgsl -o", flipbook] {
+        for (output, problem) in [
+            ("file", "--output: file is a file, not a folder; expected a folder, or a name that does not exist yet"),
+            ("file/book", "file/book: a part of the path is a file, not a folder; expected"),
+            ("astray", "--output: astray is a link, not a folder; expected"),
+            (device, "--output: device is a device, not a folder; expected"),
+            (pipe, "--output: pipe is a pipe, not a folder; expected"),
+            (looped, "--output: loop is a link, not a folder; expected"),
+        ] {
+            let arguments: Vec<_> = command.split(' ').chain([output]).collect();
+            let said = refusal(folder.path(), &arguments);
+            assert!(said.starts_with(&format!("haze: {problem}")), "{command}: {said}");
+        }
     }
 }
