@@ -19,6 +19,12 @@ const KELVIN: RangeInclusive<f32> = 800.0..=2000.0;
 /// Larger temperatures are kelvin: no smoke is colder than 200 K.
 const MIN_KELVIN: f32 = 200.0;
 
+/// Name of heat that two conventions share: 0 to 1 in Blender and Houdini, kelvin in physical simulations.
+const TEMPERATURE: &str = "temperature";
+
+/// Largest temperature that is a rounded 1.
+const MAX_HEAT: f32 = 1.001;
+
 /// Largest value that may be a fraction above 1. Codes of 255 that are all below it would be almost black.
 const MAX_FRACTION: f32 = 16.0;
 
@@ -192,8 +198,8 @@ impl ValueRange {
                 range.include(values(particle, attribute), index);
             }
         }
-        range.scale = range.scale(attribute).map_err(|expected| {
-            let name = frames.get(range.frame).map(|frame| frame.columns.names(attribute)).unwrap_or_default();
+        let name = frames.get(range.frame).map(|frame| frame.columns.names(attribute)).unwrap_or_default();
+        range.scale = range.scale(attribute, &name).map_err(|expected| {
             let reason = format!("{name}: the largest value, {}, is not valid; expected {expected}", range.largest);
             UnknownScale { frame: range.frame, reason }
         })?;
@@ -209,17 +215,20 @@ impl ValueRange {
         }
     }
 
-    /// The error says what is expected.
-    fn scale(&self, attribute: Attribute) -> Result<Scale, &'static str> {
+    /// `name`: that of the column. The error says what is expected.
+    fn scale(&self, attribute: Attribute, name: &str) -> Result<Scale, &'static str> {
         let is_code = self.largest <= MAX_CODE && self.largest > MAX_FRACTION;
         let is_whole_code = self.largest <= MAX_CODE && self.largest > 1.0 && self.is_whole;
         match attribute {
             Attribute::Color if is_code || is_whole_code => Ok(Scale::Codes),
             Attribute::Amount if is_code => Ok(Scale::Codes),
             Attribute::Heat if self.largest > MIN_KELVIN => Ok(Scale::Kelvin),
+            Attribute::Heat if self.largest > MAX_HEAT && plain_name(name) == TEMPERATURE => {
+                Err("heat of 0 to 1, or kelvin, above 200; a column of another name is not read")
+            }
             _ if self.largest <= MAX_FRACTION => Ok(Scale::Fraction),
             Attribute::Color => Err("linear light of 0 to 1, or sRGB codes of 0 to 255"),
-            Attribute::Heat => Err("heat of 0 to 1, or a temperature above 200 kelvin"),
+            Attribute::Heat => Err("heat of 0 to 1, or kelvin, above 200"),
             _ => Err("0 to 1, or 0 to 255"),
         }
     }
@@ -310,10 +319,21 @@ mod tests {
         assert_eq!(heat("0,0,0,1400"), Ok(0.5));
         assert_eq!(heat("0,0,0,293"), Ok(0.0));
         assert_eq!(heat("0,0,0,5000"), Ok(1.0));
-        assert_eq!(heat("0,0,0,0.5\n0,0,0,1.5"), Ok(0.5));
+        assert_eq!(heat("0,0,0,0.5\n0,0,0,1.0001"), Ok(0.5));
+        let expected = "heat of 0 to 1, or kelvin, above 200; a column of another name is not read";
+        for (row, largest) in
+            [("0,0,0,0.5\n0,0,0,1.5", "1.5"), ("0,0,0,3", "3"), ("0,0,0,20", "20"), ("0,0,0,150", "150")]
+        {
+            let refused =
+                format!("a.csv: temperature: the largest value, {largest}, is not valid; expected {expected}");
+            assert_eq!(heat(row), Err(refused));
+        }
+        // Names that mean nothing but heat.
+        let flame = |text: &str| first(&format!("x,y,z,flame\n{text}")).map(|particle| particle.heat);
+        assert_eq!(flame("0,0,0,0.5\n0,0,0,1.5"), Ok(0.5));
         assert_eq!(
-            heat("0,0,0,20").unwrap_err(),
-            "a.csv: temperature: the largest value, 20, is not valid; expected heat of 0 to 1, or a temperature above 200 kelvin"
+            flame("0,0,0,20").unwrap_err(),
+            "a.csv: flame: the largest value, 20, is not valid; expected heat of 0 to 1, or kelvin, above 200"
         );
     }
 
