@@ -17,6 +17,7 @@ use image::{ImageDecoder as _, ImageReader, Limits};
 
 use super::bvh::Bvh;
 use super::color_texture::{ColorTexture, Wrap};
+use super::covered_triangles::remove_covered;
 use super::file_limits::MAX_DISTANCE;
 use super::gltf_accessor::vectors;
 use super::gltf_files::{self, GltfFiles};
@@ -373,6 +374,11 @@ impl Import {
     }
 
     fn finish(mut self, generator: &str) -> Result<SceneMesh, String> {
+        match remove_covered(&mut self.vertices, &self.mesh.materials) {
+            0 => {}
+            1 => self.note("a triangle lies exactly on another and is not shown"),
+            count => self.note(&format!("{count} triangles lie exactly on others and are not shown")),
+        }
         for (material, vertices) in std::mem::take(&mut self.vertices).into_iter().enumerate() {
             if !vertices.is_empty() {
                 let first = self.mesh.triangle_count();

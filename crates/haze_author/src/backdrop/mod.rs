@@ -3,6 +3,8 @@
 mod bvh;
 mod color_texture;
 #[cfg(not(target_arch = "wasm32"))]
+mod covered_triangles;
+#[cfg(not(target_arch = "wasm32"))]
 mod exr_header;
 mod file_limits;
 #[cfg(not(target_arch = "wasm32"))]

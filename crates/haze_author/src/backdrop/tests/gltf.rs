@@ -1,5 +1,7 @@
 //! Scene files as Blender, three.js and glTF-Transform write them: each part is shown, or a note tells it.
 
+use std::cell::Cell;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::{Quat, Vec3};
@@ -129,11 +131,32 @@ fn instances_are_shown() {
     }
 }
 
+/// Thousands of instances in one place: rays are tested against few triangles.
+#[test]
+fn copies_in_one_place_are_shown_once() {
+    const COPIES: usize = 3000;
+    let mut file = File::new();
+    let translation = file.floats(&[0.0; 3 * COPIES], "VEC3", COPIES);
+    file.json["nodes"][0]["rotation"] = json!([0.2, 0.3, 0.1, 0.9]);
+    file.json["nodes"][0]["extensions"] =
+        json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": translation}}});
+    let scene = file.load().unwrap();
+    assert_eq!(scene.triangle_count(), 2);
+    assert_eq!(scene.notes, ["5998 triangles lie exactly on others and are not shown"]);
+    let visited = Cell::new(0);
+    let triangle = |index| {
+        visited.set(visited.get() + 1);
+        scene.ray_triangle(index)
+    };
+    let hit = scene.bvh.nearest((Vec3::new(0.1, 0.1, 5.0), Vec3::NEG_Z), (0.0, 10.0), triangle, |_| true);
+    assert!(hit.is_some() && visited.get() <= 2, "{}", visited.get());
+}
+
 #[test]
 fn damaged_instances_are_refused() {
     let load = |translation: Value| {
         let mut file = File::new();
-        file.floats(&[1.0; 6], "VEC3", 2);
+        file.floats(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0], "VEC3", 2);
         file.floats(&[1.0; 9], "VEC3", 3);
         file.json["nodes"][0]["extensions"] =
             json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": translation, "SCALE": 1}}});
