@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::thread::ThreadId;
 
-use glam::{UVec2, Vec4};
+use glam::{UVec2, Vec3, Vec4};
 use haze_core::assets::image::Image;
 use haze_core::settings::*;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
@@ -102,6 +102,13 @@ fn agreement(shot: &Shot) -> (f32, Image<Vec4>) {
     let psnr = psnr_over([&on_gpu, &on_cpu], behind.images.each_ref());
     LAST.set(Some(behind));
     (psnr, on_gpu)
+}
+
+/// PSNR of the scene alone, over black, dB, and the CPU's image.
+fn agreement_of_scene(shot: &Shot) -> (f32, Image<Vec4>) {
+    let [on_gpu, on_cpu] = on_both(&without_smoke(shot));
+    let black = Image::new(shot.size, Vec4::ZERO);
+    (psnr_over([&on_gpu, &on_cpu], [&black, &black]), on_cpu)
 }
 
 fn assert_renderers_agree(preset: &str) {
@@ -230,11 +237,7 @@ fn gpu_and_cpu_agree_on_every_scene() {
         (environment.scene, environment.lamp, environment.brazier) = (scene, lamp, brazier);
         let scene = format!("{}, lamp {lamp}, brazier {brazier}", scene.name());
         let (psnr, _) = agreement(&shot);
-        // The scene alone, over black.
-        let alone = without_smoke(&shot);
-        let (on_gpu, on_cpu) = (on_gpu(&alone), alone.render_on_cpu().unwrap());
-        let black = Image::new(shot.size, Vec4::ZERO);
-        let alone = psnr_over([&on_gpu, &on_cpu], [&black, &black]);
+        let (alone, on_cpu) = agreement_of_scene(&shot);
         println!("{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
         assert!(psnr >= MIN_PSNR && alone >= MIN_PSNR, "{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
         if !pictures.contains(&on_cpu) {
@@ -243,6 +246,26 @@ fn gpu_and_cpu_agree_on_every_scene() {
     }
     // Only one scene, the yard, shows the lamp and the brazier, so the props add two images.
     assert_eq!(pictures.len(), SceneName::ALL.len() + 2);
+}
+
+#[test]
+fn gpu_and_cpu_agree_from_within_and_below_the_ground() {
+    for (scene, position) in [
+        (SceneName::Yard, Vec3::new(0.5, -0.5, 6.0)),
+        (SceneName::Yard, Vec3::new(-4.0, -0.9, 2.0)),
+        (SceneName::Yard, Vec3::new(2.0, -0.05, 3.0)),
+        (SceneName::Yard, Vec3::new(0.5, -3.0, 6.0)),
+        (SceneName::Corridor, Vec3::new(0.2, -0.6, 2.0)),
+        (SceneName::Corridor, Vec3::new(-1.0, -0.2, 5.0)),
+        (SceneName::Studio, Vec3::new(1.0, -0.4, 5.0)),
+    ] {
+        let mut shot = shot("column", UVec2::new(320, 180));
+        shot.preset.environment.scene = scene;
+        (shot.preset.camera.position, shot.preset.camera.target) = (position, Vec3::new(0.0, 1.0, -1.0));
+        let (psnr, _) = agreement_of_scene(&shot);
+        println!("{} from {position}: {psnr:.1} dB", scene.name());
+        assert!(psnr >= MIN_PSNR, "{} from {position}: {psnr:.1} dB", scene.name());
+    }
 }
 
 #[test]

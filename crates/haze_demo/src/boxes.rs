@@ -16,6 +16,9 @@ pub(crate) const WIDEST_PIXEL: f32 = 0.1;
 /// Distance before a light at which a shadow ray ends, metres: far above the rounding of coordinates, so that a light may
 /// stand in a surface, and small enough that its fixture casts shadows. `LIGHT_GAP` in scene.wgsl.
 pub(crate) const LIGHT_GAP: f32 = 0.02;
+/// Height of an underside that lies on the ground, metres: above the rounding of its corners. `UNDERSIDE_GAP` in
+/// scene_boxes.wgsl.
+const UNDERSIDE_GAP: f32 = 1.0e-4;
 
 /// A box, rotated about the vertical axis. `Box` in scene.wgsl.
 #[repr(C)]
@@ -34,6 +37,12 @@ pub(crate) struct SceneBox {
 }
 
 impl SceneBox {
+    /// True if it stands on the ground, which is at height 0. Its underside lies in the plane of the ground's surface, whose
+    /// inside would show through it from below: it is not drawn. `stands_on_ground` in scene_boxes.wgsl.
+    pub fn stands_on_ground(self) -> bool {
+        (self.center.y - self.half_size.y).abs() < UNDERSIDE_GAP
+    }
+
     /// Rotates a world vector into the box's frame.
     pub fn to_local(self, v: Vec3) -> Vec3 {
         Vec3::new(v.x * self.cos + v.z * self.sin, v.y, v.z * self.cos - v.x * self.sin)

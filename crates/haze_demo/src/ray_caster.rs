@@ -134,6 +134,19 @@ impl Hit<'_> {
     }
 }
 
+/// Normal of the face on which a point lies, both in the box's frame.
+fn face_normal(b: &SceneBox, local: Vec3) -> Vec3 {
+    let depth = (local.abs() - b.half_size).to_array();
+    let axis = if depth[0] >= depth[1] && depth[0] >= depth[2] {
+        Vec3::X
+    } else if depth[1] >= depth[2] {
+        Vec3::Y
+    } else {
+        Vec3::Z
+    };
+    axis * local.dot(axis).signum()
+}
+
 impl<'a> RayCaster<'a> {
     fn new(scene: &'a Scene, view: &View) -> Self {
         let clip_from_world = view.clip_from_view * view.view_from_world;
@@ -168,23 +181,17 @@ impl<'a> RayCaster<'a> {
                 continue;
             }
             // If the near plane cuts a box open, its far side is visible.
-            let distance = [enter, leave].into_iter().find(|distance| visible_range.contains(distance));
+            let is_drawn =
+                |distance: f32| !b.stands_on_ground() || face_normal(b, origin + local * distance) != Vec3::NEG_Y;
+            let distance =
+                [enter, leave].into_iter().find(|distance| visible_range.contains(distance) && is_drawn(*distance));
             if let Some(distance) = distance.filter(|distance| *distance < nearest) {
                 nearest = distance;
                 hit = Some((b, origin + local * distance));
             }
         }
         let (surface, local) = hit?;
-        // Finds the face on which the point lies.
-        let depth = (local.abs() - surface.half_size).to_array();
-        let axis = if depth[0] >= depth[1] && depth[0] >= depth[2] {
-            Vec3::X
-        } else if depth[1] >= depth[2] {
-            Vec3::Y
-        } else {
-            Vec3::Z
-        };
-        let local_normal = axis * local.dot(axis).signum();
+        let local_normal = face_normal(surface, local);
         Some(Hit { surface, world: self.rays.eye + direction * nearest, local, local_normal })
     }
 

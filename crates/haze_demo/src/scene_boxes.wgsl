@@ -14,6 +14,8 @@ const OCCLUDER_ORIGIN = vec3f(-20.0, -0.5, -24.0);
 const AMBIENT_REACH: f32 = 0.7;
 const SUN_SPREAD: f32 = 0.02;
 const WIDEST_PIXEL: f32 = 0.1;
+const UNDERSIDE_GAP: f32 = 1.0e-4;
+const UNDERSIDE: u32 = 2u;
 
 fn to_local(b: Box, v: vec3f) -> vec3f {
     return vec3f(v.x * b.cosine + v.z * b.sine, v.y, v.z * b.cosine - v.x * b.sine);
@@ -141,6 +143,11 @@ struct BoxVertex {
     @location(3) @interpolate(flat, either) face: u32,
 }
 
+// True if the underside lies in the plane of the ground's surface. It is not drawn.
+fn stands_on_ground(b: Box) -> bool {
+    return abs(b.center.y - b.half_size.y) < UNDERSIDE_GAP;
+}
+
 // Draws 36 vertices per instance: six faces of two triangles.
 @vertex
 fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> BoxVertex {
@@ -161,7 +168,10 @@ fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) insta
     }
     local *= b.half_size;
     let world = b.center + to_world(b, local);
-    return BoxVertex(scene.clip_from_world * vec4f(world, 1.0), world, local, normal, index * 6u + face);
+    // One point: no triangle is left.
+    let is_drawn = face != UNDERSIDE || !stands_on_ground(b);
+    let position = select(vec4f(0.0, 0.0, 0.0, 1.0), scene.clip_from_world * vec4f(world, 1.0), is_drawn);
+    return BoxVertex(position, world, local, normal, index * 6u + face);
 }
 
 // Writes reflectance (radiance of emissive boxes) and the face, at twice the size of the image. Cleared to NOTHING.
