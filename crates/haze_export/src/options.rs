@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use glam::UVec2;
 use haze::shader::Sources;
 use haze::{Error, FieldError};
+use haze_author::particle_files::unused_columns;
 use haze_author::preset::no_effect_reason_of_set;
 use haze_core::settings::{Choice, ParseChoiceError, RenderPath, ScaleMode, Technique};
 use haze_demo::headless::Headless;
@@ -132,14 +133,18 @@ impl ShotArguments {
         self.load_outputs(&outputs)
     }
 
-    /// Like [`Self::load_for`], with the ending of each output. Says which parts of a scene file are not shown, and which changes
-    /// have no effect.
+    /// Like [`Self::load_for`], with the ending of each output. Says which parts of a scene file are not shown, which columns of
+    /// particle files are not used, and which changes have no effect.
     pub fn load_outputs(&self, outputs: &[(&str, PathBuf, &str)]) -> Result<Shot, Error> {
         let ChangedShot { shot, names } = self.changed_shot(None)?;
         // Errors come first: a refused command says one line.
         self.check_outputs(&shot, outputs)?;
         for note in shot.backdrop.notes(&shot.preset.environment) {
             print_error(note);
+        }
+        for (index, frames) in (0..).zip(&shot.caches) {
+            let unused = frames.as_ref().map(|frames| unused_columns(&shot.preset, index, frames));
+            unused.unwrap_or_default().iter().for_each(print_error);
         }
         for ((field, _), name) in self.set.iter().zip(&names) {
             let reason = self.backdrop.no_effect_reason(name);

@@ -19,7 +19,9 @@ pub use file_frame::ColumnUse;
 pub use parse_error::ParseError;
 pub use particle_frame::{FileParticle, ParticleFrame, ProvidedAttributes};
 pub use particle_frames::{FramePair, Limits, MAX_FILE_BYTES, ParticleFrames, parse};
-pub use preset_files::{MAX_PARTICLE_FILE_BYTES, check_particle_files, emission, load_particle_files, particles};
+pub use preset_files::{
+    MAX_PARTICLE_FILE_BYTES, check_particle_files, emission, load_particle_files, particles, unused_columns,
+};
 
 #[cfg(test)]
 mod tests;

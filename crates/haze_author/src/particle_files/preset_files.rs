@@ -36,7 +36,7 @@ pub fn check_particle_files(preset: &Preset, path: &Path, folders: &AssetFolders
     let (mut errors, mut notes) = (Vec::new(), Vec::new());
     for (index, loaded) in load_each(preset, path, folders).into_iter().enumerate() {
         match loaded {
-            Ok(Some(frames)) => notes.extend(column_notes(preset, index, &frames)),
+            Ok(Some(frames)) => notes.extend(column_notes(preset, index, &frames).into_iter().map(|note| note.text)),
             Ok(None) => {}
             Err(error) => errors.push(error),
         }
@@ -44,8 +44,22 @@ pub fn check_particle_files(preset: &Preset, path: &Path, folders: &AssetFolders
     (errors, notes)
 }
 
-fn column_notes(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<String> {
-    let settings = &preset.systems[index].settings;
+/// Notes on columns of the particle files of a system that are not read, or that its settings do not use.
+pub fn unused_columns(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<String> {
+    let unused = column_notes(preset, index, frames).into_iter().filter(|note| note.is_unused);
+    unused.map(|note| note.text).collect()
+}
+
+/// Note on columns of a particle file.
+struct ColumnNote {
+    text: String,
+    /// False for the attributes that columns are read as.
+    is_unused: bool,
+}
+
+fn column_notes(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<ColumnNote> {
+    let Some(system) = preset.systems.get(index).filter(|system| system.cache.is_used()) else { return Vec::new() };
+    let settings = &system.settings;
     let is_animated = |setting: &str| {
         let path = format!("systems[{index}].settings.{setting}");
         preset.animation.iter().any(|track| track.setting == path)
@@ -55,14 +69,17 @@ fn column_notes(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<S
     let mut notes = Vec::new();
     for (file, columns) in frames.columns() {
         let name = file.file_name().map(OsStr::to_string_lossy).unwrap_or_default();
-        let mut add = |note: &str| notes.push(format!("systems[{index}].cache.path: {}: {note}", one_line(&name)));
-        add(&columns.read);
-        columns.unread.iter().for_each(|note| add(note));
+        let mut add = |note: &str, is_unused| {
+            let text = format!("systems[{index}].cache.path: {}: {note}", one_line(&name));
+            notes.push(ColumnNote { text, is_unused });
+        };
+        add(&columns.read, false);
+        columns.unread.iter().for_each(|note| add(note, true));
         if !columns.color.is_empty() && !is_tinted {
-            add(&format!("{}: no effect; expected a sprite.tint above 0", columns.color));
+            add(&format!("{}: no effect; expected a sprite.tint above 0", columns.color), true);
         }
         if !columns.heat.is_empty() && !burns {
-            add(&format!("{}: no effect; expected a fire.intensity above 0", columns.heat));
+            add(&format!("{}: no effect; expected a fire.intensity above 0", columns.heat), true);
         }
     }
     notes
@@ -225,6 +242,12 @@ mod tests {
                 format!("{second}red, green, blue: no effect; expected a sprite.tint above 0"),
             ]
         );
+        let loaded = load_particle_files(&preset, Path::new("my.json"), &AssetFolders::new(folder.path())).unwrap();
+        let unused: Vec<_> = (0..)
+            .zip(&loaded)
+            .flat_map(|(index, frames)| unused_columns(&preset, index, frames.as_ref().unwrap()))
+            .collect();
+        assert_eq!(unused, [&notes[1..6], &notes[8..]].concat());
         preset.systems[0].settings.sprite.tint = 1.0;
         preset.systems[0].settings.fire.intensity = 1.0;
         let notes = check(&preset).1;

@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Ui};
 use haze_author::backdrop::{BLENDER_SKY_ROTATION, Backdrop};
+use haze_author::particle_files::{ParticleFrames, unused_columns};
 use haze_core::settings::{Fields, field_path};
 use haze_preset::Preset;
 
@@ -115,6 +116,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
         searched_path: session.search.found.as_ref().map(|(path, _)| path.as_str()),
     };
     let backdrop = session.backdrop.of(&session.document.preset);
+    let frames = session.particle_frames();
     // Panels change a copy, because the rows borrow the session.
     let mut edited = session.document.preset.clone();
     let preset = &mut edited;
@@ -128,7 +130,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
             ui.separator();
             surroundings(ui, &mut context, preset, &backdrop);
         }
-        Tab::Smoke => smoke(ui, &mut context, preset, system),
+        Tab::Smoke => smoke(ui, &mut context, preset, system, frames.get(system).and_then(Option::as_ref)),
         Tab::Advanced => advanced(ui, &mut context, preset, system),
         Tab::Ramps | Tab::Sprite | Tab::Performance => {}
     });
@@ -213,11 +215,21 @@ fn surroundings(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, 
     section(ui, context, &[("camera", None)], true, &mut preset.camera);
 }
 
-fn smoke(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
+fn smoke(
+    ui: &mut Ui,
+    context: &mut RowContext<'_>,
+    preset: &mut Preset,
+    index: usize,
+    frames: Option<&ParticleFrames>,
+) {
+    let unused = frames.map(|frames| unused_columns(preset, index, frames)).unwrap_or_default();
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
     section(ui, context, &[at, ("emitter", None)], true, &mut system.emitter);
     section(ui, context, &[at, ("cache", None)], false, &mut system.cache);
+    for note in unused {
+        ui.label(egui::RichText::new(note).weak());
+    }
     section(ui, context, &[at, ("material", None)], false, &mut system.material);
     let settings = &mut system.settings;
     let at = |name| [at, ("settings", None), (name, None)];
@@ -341,6 +353,20 @@ mod tests {
                 assert!(tab.left() >= picture.right() && tab.right() <= size.x, "{name}: {tab}, beside {picture}");
             }
         }
+    }
+
+    #[test]
+    fn columns_of_particle_files_that_are_not_used_are_told_on_the_smoke_tab() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.csv"), "x,y,z,nx\n0,1,0,0\n").unwrap();
+        let path = folder.path().join("my.json");
+        let system = r#"{"name": "s", "cache": {"path": "a.csv"}}"#;
+        std::fs::write(&path, format!(r#"{{"version": 1, "name": "x", "systems": [{system}]}}"#)).unwrap();
+        let mut harness = window(path.to_str().unwrap(), Vec2::new(1000.0, 640.0), Theme::Dark);
+        harness.get_by_label("Smoke").click();
+        harness.run_steps(4);
+        let note = "systems[0].cache.path: a.csv: nx: not read; expected names that docs/particles.md lists";
+        assert!(harness.query_by_label(note).is_some());
     }
 
     fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {

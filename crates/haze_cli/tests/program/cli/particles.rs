@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{folder, haze, refusal, stderr};
+use super::{folder, haze, refusal, render, stderr};
 
 /// Three frames of two particles, as Houdini writes them.
 fn simulate(folder: &Path) {
@@ -36,6 +36,22 @@ fn particle_files_set_on_the_command_line_are_rendered() {
     assert!(line.contains("systems[0].cache.path: ") && line.contains("No such file in "), "{line}");
     let shared = ["render", "--size", "32x18", "--backend", "cpu", "-o", "d.png", "--set", path, "--assets", ".."];
     assert!(haze(&folder.path().join("sub"), &shared).status.success());
+}
+
+#[test]
+fn rendering_says_which_columns_are_not_used() {
+    let folder = folder();
+    std::fs::write(folder.path().join("a.csv"), "x,y,z,nx,heat\n0,1,0,0,1\n").unwrap();
+    let said = |more: &[&str]| {
+        let arguments = ["column", "--set", "systems[0].cache.path=a.csv"];
+        let output = render(folder.path(), &[&arguments[..], more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let start = "haze: systems[0].cache.path: a.csv: ";
+    let unread = format!("{start}nx: not read; expected names that docs/particles.md lists\n");
+    assert_eq!(said(&[]), format!("{unread}{start}heat: no effect; expected a fire.intensity above 0\n"));
+    assert_eq!(said(&["--set", "fire.intensity=1"]), unread);
 }
 
 #[test]
