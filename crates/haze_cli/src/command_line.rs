@@ -15,9 +15,9 @@ use haze_bench as bench;
 use haze_core::error::is_link_loop;
 use haze_export::output::{Failures, one_line, print_error, write_text};
 use haze_export::recipe_files::has_extension;
+use haze_export::share_link;
 use haze_preset::builtin;
 use haze_tweak as tweak;
-use haze_tweak::share_link;
 
 use crate::commands::{debug_views, export, info, preset, ramp, render, sheet, sprite, techniques};
 

@@ -20,6 +20,7 @@ pub mod interrupt;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod material_export;
 pub mod memory_check;
+pub mod named_preset;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod options;
 #[cfg(not(target_arch = "wasm32"))]
@@ -31,6 +32,7 @@ pub mod png_stream;
 pub mod progress;
 pub mod puff_sheet;
 pub mod recipe_files;
+pub mod share_link;
 pub mod smoke_alone;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod smoke_layers;

@@ -21,6 +21,7 @@ use super::backdrop_options::{BackdropArguments, BackdropShot, SKY_ROTATION};
 use super::backend::Backend;
 use super::inputs::image_paths;
 use super::memory_check::{BYTES_PER_PIXEL, check_memory};
+use super::named_preset::NamedPreset;
 use super::output::{FileChecks, print_error, print_line};
 
 /// Options of rendering that do not depend on the shot.
@@ -43,7 +44,7 @@ pub struct RunArguments {
 /// A preset, and changes to it for this run.
 #[derive(Args)]
 pub struct ShotArguments {
-    /// Name of a built-in preset (see `haze preset list`), or path of a preset file (JSON).
+    /// Name of a built-in preset (see `haze preset list`), path of a preset file (JSON), or link of a look.
     #[arg(default_value = "column")]
     preset: PathBuf,
     /// Size, path, renderer and shaders.
@@ -176,7 +177,7 @@ impl ShotArguments {
 
     /// Applies all changes. Fields that a scene file replaces are set once more afterwards: `--set` is the last word.
     fn changed_shot(&self, varied: Option<Assignment<'_>>) -> Result<ChangedShot, Error> {
-        let mut preset = Preset::load(&self.preset)?;
+        let NamedPreset { mut preset, path, folders, .. } = NamedPreset::load(&self.preset, self.assets.folder()?)?;
         let of_systems = [
             ("systems.emitter.seed", self.seed.map(|seed| seed.to_string())),
             ("systems.settings.accumulate.scale_mode", self.scale.map(|scale| scale.mode().name().into())),
@@ -201,8 +202,7 @@ impl ShotArguments {
             }
         }
         preset.validate()?;
-        let folders = self.assets.folders(&self.preset)?;
-        let load = |preset| Shot::from_folders(preset, &self.preset, &folders, self.run.size);
+        let load = |preset| Shot::from_folders(preset, &path, &folders, self.run.size);
         let BackdropShot { mut shot, replaced } = self.backdrop.apply(preset, load)?;
         for (assignment, name) in assignments.iter().zip(&mut names) {
             let is_replaced = replaced.iter().any(|group| name.strip_prefix(group).is_some_and(is_field_or_end));

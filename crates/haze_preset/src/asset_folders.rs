@@ -1,5 +1,6 @@
 //! Folders in which the images and particle files of a preset are searched for.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -13,6 +14,8 @@ use crate::{builtin, directory};
 pub struct AssetFolders {
     own: PathBuf,
     shared: Vec<PathBuf>,
+    /// Images in memory, by their names in the preset. They come first.
+    images: BTreeMap<PathBuf, Vec<u8>>,
 }
 
 /// Images that come with the program. Their names have no extension.
@@ -32,13 +35,24 @@ impl AssetFolders {
 
     /// One folder alone. The empty path is the working directory.
     pub fn new(folder: &Path) -> Self {
-        Self { own: folder.into(), shared: Vec::new() }
+        Self { own: folder.into(), ..Self::default() }
     }
 
     /// Adds folders that presets share, to be searched last.
     pub fn with_shared(mut self, shared: impl IntoIterator<Item = PathBuf>) -> Self {
         self.shared.extend(shared);
         self
+    }
+
+    /// Adds PNG files in memory, by their names in the preset, which come before those of the folders.
+    pub fn with_images(mut self, images: BTreeMap<PathBuf, Vec<u8>>) -> Self {
+        self.images = images;
+        self
+    }
+
+    /// Image in memory.
+    pub(super) fn image(&self, file: &Path) -> Option<&[u8]> {
+        self.images.get(file).map(Vec::as_slice)
     }
 
     /// All paths that a file may have. The first that exists is used.

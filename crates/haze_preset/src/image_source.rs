@@ -36,6 +36,9 @@ impl ImageSource<'_> {
                 Err(Error::Image { path: file.into(), reason })
             }
             Self::Folders(folders) => {
+                if let Some(bytes) = folders.image(file) {
+                    return Ok((file.into(), bytes.into()));
+                }
                 let path = folders.find(file)?;
                 let bytes = read_file(&path)?;
                 Ok((path, bytes))

@@ -7,17 +7,17 @@ use eframe::egui;
 use glam::UVec2;
 use haze::Error;
 use haze_export::options::{AssetsArguments, parse_assignment, parse_size, with_option};
+use haze_export::share_link;
 
 use super::files::hot_reload::ShaderFolder;
 use super::files::persistence::{Layout, Persistence};
 use super::files::shared_look;
 use super::platform::file_dialog::Dialogs;
-use super::platform::{asset_loading, file_io, state_folder};
+use super::platform::{asset_loading, state_folder};
 use super::session::Session;
 use super::session::playback::Playback;
 use super::window::Start;
 use super::window::open::open;
-use crate::share_link;
 
 /// Arguments of the tweaker.
 #[derive(Args)]
@@ -60,10 +60,7 @@ impl Default for Arguments {
 /// # Errors
 /// Of the preset and its files; [`Error::NoDevice`] without a display or a driver.
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    // A file may have the name of a link.
-    let link = arguments.preset.to_str().filter(|_| !file_io::exists(&arguments.preset));
-    let link = link.and_then(share_link::fragment);
-    let mut session = match link {
+    let mut session = match share_link::fragment_of_name(&arguments.preset) {
         Some(fragment) => shared_look::open(fragment, &link_folder(fragment))?,
         None => Session::open(&arguments.preset, arguments.assets.folder()?)?,
     };

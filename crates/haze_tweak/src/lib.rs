@@ -20,7 +20,6 @@ mod page_picture;
 mod panels;
 mod platform;
 mod session;
-pub mod share_link;
 mod viewport;
 mod viewport_renderer;
 mod window;

@@ -1,18 +1,23 @@
 //! `haze preset`: list, check, show, new, schema, settings.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use glam::UVec2;
 use haze::{Error, FieldError, Light};
 use haze_author::preset::{check_files, no_effect_reason};
+use haze_author::ramp::RampRecipe;
 use haze_core::settings::{FieldValue, field_values};
-use haze_preset::{Preset, PresetSystem, Track, builtin, write_file};
+use haze_preset::directory::is_taken;
+use haze_preset::{Preset, PresetSystem, Track, builtin, write_baked_png, write_file};
 
 use haze_export::file_kind::explain_wrong_kind;
+use haze_export::named_preset::NamedPreset;
 use haze_export::options::AssetsArguments;
 use haze_export::output::{Failures, print_line, write_text};
 use haze_export::recipe_files::has_extension;
+use haze_export::share_link::fragment_of_name;
 use haze_tweak::copy_assets;
 
 #[derive(Args)]
@@ -31,7 +36,7 @@ enum Command {
     /// Load presets and their files, and report errors, doubtful values, the use of columns of particle files, and
     /// settings without effect.
     Check {
-        /// Names or paths of presets.
+        /// Names, paths or links of presets.
         #[arg(required = true)]
         presets: Vec<PathBuf>,
         #[command(flatten)]
@@ -39,7 +44,7 @@ enum Command {
     },
     /// Print every setting of a preset with its value, its default, and the reason if it has no effect.
     Show {
-        /// Name or path of a preset.
+        /// Name, path or link of a preset.
         preset: PathBuf,
         /// Only settings that differ from their defaults.
         #[arg(long)]
@@ -49,7 +54,7 @@ enum Command {
     New {
         /// File to write; .json is added to a name without extension.
         file: PathBuf,
-        /// Preset to copy: a name or path.
+        /// Preset to copy: a name, a path, or a link, whose ramps are written beside the file.
         #[arg(long, value_name = "PRESET", default_value = "column")]
         from: PathBuf,
     },
@@ -80,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
             }
             return Failures::new(failures).into_result();
         }
-        Command::Show { preset, changed } => show(&Preset::load(preset)?, *changed)?,
+        Command::Show { preset, changed } => show(&NamedPreset::load(preset, None)?.preset, *changed)?,
         Command::New { file, from } => new(file, from)?,
         Command::Schema => write_text(haze_author::preset::schema())?,
         Command::Settings => write_text(haze_author::preset::settings_page().trim_end())?,
@@ -90,8 +95,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 
 /// Loads a preset and its files as rendering does. Returns all errors, and notes on values that may be unintended.
 fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<String>), Error> {
-    let preset = Preset::load(path).map_err(|error| explain_wrong_kind(error, path, "preset", "a preset"))?;
-    let (wrong, mut notes) = check_files(&preset, path, &assets.folders(path)?);
+    let named = NamedPreset::load(path, assets.folder()?);
+    let NamedPreset { preset, path, folders, .. } =
+        named.map_err(|error| explain_wrong_kind(error, path, "preset", "a preset"))?;
+    let (wrong, mut notes) = check_files(&preset, &path, &folders);
     let settings = settings(&preset);
     let changed = settings.iter().filter(|setting| !setting.is_default() || setting.track.is_some());
     let note = |setting: &Setting| Some(format!("{} has no effect: {}", setting.path, setting.no_effect_reason?));
@@ -167,6 +174,10 @@ fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
 
 /// Writes a copy of a preset, and of its images beside it.
 fn new(file: &Path, from: &Path) -> Result<(), Error> {
+    if fragment_of_name(file).is_some() {
+        let problem = "it is a link";
+        return Err(FieldError::from_problem("FILE", problem, "a name that ends in .json, then --from LINK").into());
+    }
     let path = if file.extension().is_none() { file.with_extension("json") } else { file.into() };
     if !has_extension(&path, "json") {
         return Err(FieldError::new("FILE", path.display(), "a name that ends in .json").into());
@@ -177,12 +188,28 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
             FieldError::from_problem("FILE", problem, "a name that does not exist yet: no file is replaced").into()
         );
     }
-    let mut preset = Preset::load(from)?;
+    let NamedPreset { mut preset, path: from, ramps, .. } = NamedPreset::load(from, None)?;
     if let Some(name) = path.file_stem() {
         preset.name = name.to_string_lossy().into_owned();
     }
     let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
-    copy_assets(&preset, &folder(from), &folder(&path))?;
+    write_ramps(&ramps, &folder(&path))?;
+    copy_assets(&preset, &folder(&from), &folder(&path))?;
     write_file(&path, preset.to_json("").as_bytes())?;
     print_line!("{}: a copy of {}; open it with `haze {0}`", path.display(), from.display())
+}
+
+/// Writes the ramps of a link with their recipes. No file is replaced.
+fn write_ramps(ramps: &BTreeMap<String, RampRecipe>, folder: &Path) -> Result<(), Error> {
+    let files = |name: &String| [folder.join(name), folder.join(name).with_extension("ramp.json")];
+    if let Some(taken) = ramps.keys().flat_map(files).find(|file| is_taken(file)) {
+        let problem = format!("{} exists already", taken.display());
+        return Err(FieldError::from_problem("FILE", problem, "a folder without the ramps of the link").into());
+    }
+    for (name, recipe) in ramps {
+        let [picture, file] = files(name);
+        write_file(&file, recipe.to_json().as_bytes())?;
+        write_baked_png(&picture, &recipe.bake()?)?;
+    }
+    Ok(())
 }

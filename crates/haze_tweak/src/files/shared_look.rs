@@ -5,13 +5,13 @@ use std::path::Path;
 use haze::{Error, FieldError};
 use haze_author::backdrop::backdrop_names;
 use haze_export::inputs::relative_image_paths;
+use haze_export::share_link::Look;
 use haze_preset::builtin;
 
 use crate::document::Document;
 use crate::document::ramp_edits::{self, RampOrigin};
 use crate::platform::file_io;
 use crate::session::Session;
-use crate::share_link::Look;
 
 /// Returns the part of a link after `#` for the present look.
 ///

@@ -9,12 +9,13 @@ use haze_preset::Preset;
 use haze_export::engine::Engine;
 use haze_export::inputs::image_paths;
 use haze_export::material_export::MaterialExport;
+use haze_export::named_preset::NamedPreset;
 use haze_export::options::{AssetsArguments, parse_assignment, with_option};
 use haze_export::output::{FileChecks, OutputFolder, print_line};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Name of a built-in preset (see `haze preset list`), or path of a preset file (JSON).
+    /// Name of a built-in preset (see `haze preset list`), path of a preset file (JSON), or link of a look.
     #[arg(default_value = "column")]
     preset: PathBuf,
     /// Engine to write for.
@@ -35,15 +36,14 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { preset: path, engine, system, set, output, assets } = arguments;
-    let mut preset = Preset::load(path)?;
+    let NamedPreset { mut preset, path: name, folders, .. } = NamedPreset::load(path, assets.folder()?)?;
     for (field, value) in set {
         preset.set_field(field, value).map_err(|error| with_option("--set", error))?;
     }
     preset.validate()?;
     let preset = preset.evaluate(preset.time);
     let index = system.as_ref().map_or(Ok(0), |name| system_index(&preset, name))?;
-    let folders = assets.folders(path)?;
-    let materials = preset.load_materials_from(path, &folders)?;
+    let materials = preset.load_materials_from(&name, &folders)?;
     let Some((system, images)) = preset.systems.get(index).zip(materials.get(index)) else {
         return Err(FieldError::new("PRESET", path.display(), "a preset with a system").into());
     };

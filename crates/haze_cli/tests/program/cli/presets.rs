@@ -117,6 +117,66 @@ fn preset_new_copies_a_preset_with_its_images() {
     assert!(!path("b.json").exists());
 }
 
+/// Link of the tests of links: `column` with changes, another light and a ramp of its own.
+fn link() -> &'static str {
+    include_str!("../../../../haze_export/src/share_link/links_1.txt").lines().nth(2).unwrap()
+}
+
+#[test]
+fn links_are_rendered_shown_checked_and_saved_as_presets() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let done = |arguments: &[&str]| {
+        let output = haze(folder.path(), arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(done(&["preset", "show", "--changed", link()]).contains("lights[1].intensity"));
+    assert!(done(&["preset", "check", link()]).contains(": good"));
+    assert!(render(folder.path(), &[link()]).status.success());
+    let of_link = std::fs::read(path("out.png")).unwrap();
+    done(&["export", "material", link(), "--engine", "wgsl", "-o", "material"]);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "a link leaves no files");
+    done(&["preset", "new", "mine", "--from", link()]);
+    done(&["ramp", "check", "mine.ramp.json"]);
+    assert!(path("mine.png").exists());
+    assert!(render(folder.path(), &["mine.json"]).status.success());
+    assert!(std::fs::read(path("out.png")).unwrap() == of_link);
+    let taken = refusal(folder.path(), &["preset", "new", "other", "--from", link()]);
+    assert_eq!(taken, "haze: FILE: mine.png exists already; expected a folder without the ramps of the link\n");
+    assert!(!path("other.json").exists());
+    let swapped = refusal(folder.path(), &["preset", "new", link()]);
+    assert_eq!(swapped, "haze: FILE: it is a link; expected a name that ends in .json, then --from LINK\n");
+}
+
+#[test]
+fn bad_links_are_refused_with_one_line() {
+    let folder = folder();
+    let cut = &link()[..link().len() - 9];
+    let damaged = "haze: link: it is damaged; expected a whole link, as it was copied\n";
+    for (name, expected) in [
+        (cut, damaged),
+        (
+            "https://example.org/haze/#9AAAA",
+            "haze: link: it is of a version that this program does not know; expected a link of version 1\n",
+        ),
+        (
+            "https://example.org/haze/",
+            "haze: link: https://example.org/haze/ has no look after #; expected a whole link, as it was copied\n",
+        ),
+    ] {
+        for command in [
+            &["render", "-o", "a.png"][..],
+            &["preset", "show"],
+            &["preset", "check"],
+            &["preset", "new", "a", "--from"],
+        ] {
+            assert_eq!(refusal(folder.path(), &[command, &[name]].concat()), expected);
+        }
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
 #[test]
 fn images_are_found_in_the_shared_assets_folder() {
     let folder = folder();

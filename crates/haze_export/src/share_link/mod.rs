@@ -55,6 +55,11 @@ pub fn fragment(text: &str) -> Option<&str> {
     fragment.starts_with(|first: char| first.is_ascii_digit()).then_some(fragment)
 }
 
+/// Returns the part after `#` of a link in place of a preset's name. A file may have the name of a link.
+pub fn fragment_of_name(name: &Path) -> Option<&str> {
+    name.to_str().filter(|_| !name.exists()).and_then(fragment)
+}
+
 impl Look {
     /// Returns the part of the link after `#`.
     ///
