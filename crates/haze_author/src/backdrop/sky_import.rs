@@ -1,13 +1,14 @@
 //! Reads a panorama: Radiance (.hdr) or OpenEXR (.exr).
 
 use std::io::{Cursor, Read as _};
+use std::ops::RangeInclusive;
 use std::path::Path;
 
-use glam::{DMat3, UVec2, Vec3};
+use glam::{DMat3, DVec3, UVec2, Vec3};
 use haze_core::assets::bounded_read;
 use haze_core::assets::image::catch_decoder_panic;
 use haze_core::error::{Error, one_line};
-use image::codecs::hdr::HdrDecoder;
+use image::codecs::hdr::{HdrDecoder, HdrMetadata};
 use image::codecs::openexr::OpenExrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageResult};
 
@@ -20,6 +21,8 @@ const SIGNATURE: &[u8] = b"#?RADIANCE";
 
 /// Format of a Radiance file whose colors are CIE XYZ.
 const XYZE: &[u8] = b"32-bit_rle_xyze";
+/// Factors of the colors of a Radiance file. Those of photographs are within by far, and radiance stays finite.
+const EXPOSURES: RangeInclusive<f64> = 1.0e-9..=1.0e9;
 /// Length of a Radiance header in which the format is looked for, bytes.
 const MAX_HDR_HEADER: usize = 1 << 16;
 
@@ -44,7 +47,7 @@ pub fn load_sky(path: &Path) -> Result<SkyImage, Error> {
 
 struct Decoded {
     image: DynamicImage,
-    /// Matrix from its colors to linear Rec.709.
+    /// Matrix from its colors to radiance in linear Rec.709.
     conversion: Option<DMat3>,
 }
 
@@ -64,8 +67,27 @@ fn decode(bytes: &[u8]) -> Result<Decoded, String> {
     if header.is_some_and(|header| header.windows(XYZE.len()).any(|text| text == XYZE)) {
         return Err("its colors are XYZ; expected RGB: export it as 32-bit_rle_rgbe".into());
     }
-    let image = pixels(HdrDecoder::new(SIGNATURE.chain(rest)), expected)?;
-    Ok(Decoded { image, conversion: None })
+    let decoder = HdrDecoder::new(SIGNATURE.chain(rest));
+    let conversion = decoder.as_ref().map_or(Ok(None), |decoder| to_radiance(&decoder.metadata()))?;
+    let image = pixels(decoder, expected)?;
+    Ok(Decoded { image, conversion })
+}
+
+/// Matrix from the colors of a Radiance file to radiance. A program that multiplies all colors says the factor in its header:
+/// `EXPOSURE`, and for each channel `COLORCORR`. Several lines multiply each other, as the decoder returns them.
+/// (Radiance, "The RADIANCE Picture File Format")
+fn to_radiance(header: &HdrMetadata) -> Result<Option<DMat3>, String> {
+    let exposure = header.exposure.unwrap_or(1.0);
+    let (red, green, blue) = header.color_correction.unwrap_or((1.0, 1.0, 1.0));
+    let factors = DVec3::new(f64::from(red), f64::from(green), f64::from(blue)) * f64::from(exposure);
+    if factors.to_array().iter().all(|factor| EXPOSURES.contains(factor)) {
+        return Ok((factors != DVec3::ONE).then(|| DMat3::from_diagonal(factors.recip())));
+    }
+    let found = match header.color_correction {
+        None => format!("EXPOSURE {exposure}"),
+        Some(_) => format!("EXPOSURE times COLORCORR {} {} {}", factors.x, factors.y, factors.z),
+    };
+    Err(format!("its header has {found}; expected {} to {}", EXPOSURES.start(), EXPOSURES.end()))
 }
 
 /// Decodes an image whose size is in range, so that little memory is asked for.

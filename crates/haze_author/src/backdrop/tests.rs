@@ -400,6 +400,35 @@ fn skies_that_cannot_be_read_say_what_would_be_right() {
 }
 
 #[test]
+fn values_of_radiance_skies_are_divided_by_the_factors_of_their_header() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sky.hdr");
+    let load = |lines: &str| {
+        let header = format!("#?RADIANCE\n{lines}FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n");
+        // Radiance 1, 0.5, 0.25.
+        std::fs::write(&path, [header.as_bytes(), &[128, 64, 32, 129].repeat(2)].concat()).unwrap();
+        load_sky(&path).map(|sky| sky.sample(Vec3::X)).map_err(|error| error.to_string())
+    };
+    let plain = Vec3::new(1.0, 0.5, 0.25);
+    assert_eq!(load(""), Ok(plain));
+    assert_eq!(load("EXPOSURE= 1.0000000000000\n"), Ok(plain));
+    assert_eq!(load("EXPOSURE=4\n"), Ok(plain / 4.0));
+    assert_eq!(load("EXPOSURE=4\nVIEW= -vta\nEXPOSURE = 0.25\nEXPOSURE=0.5\n"), Ok(plain * 2.0));
+    assert_eq!(load("COLORCORR=1 2 0.5\nEXPOSURE=2\n"), Ok(plain / Vec3::new(2.0, 4.0, 1.0)));
+    for (lines, found) in [
+        ("EXPOSURE=0\n", "EXPOSURE 0"),
+        ("EXPOSURE=-2\n", "EXPOSURE -2"),
+        ("EXPOSURE=nan\n", "EXPOSURE NaN"),
+        ("EXPOSURE=1e30\nEXPOSURE=1e30\n", "EXPOSURE inf"),
+        ("COLORCORR=1 0 1\n", "EXPOSURE times COLORCORR 1 0 1"),
+    ] {
+        let said = load(lines).unwrap_err();
+        let expected = format!("sky.hdr: its header has {found}; expected 0.000000001 to 1000000000");
+        assert!(said.ends_with(&expected), "{said}");
+    }
+}
+
+#[test]
 fn a_preset_names_its_backdrop_in_its_folder() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("court.glb"), court()).unwrap();
