@@ -110,6 +110,9 @@ fn reason_without_color(parts: &[Part]) -> String {
         return format!("its color lies in the layers {}; expected {cure}", listed(&layers));
     }
     let names: BTreeSet<_> = channels().map(|channel| channel.name.as_str()).collect();
+    if names.is_empty() {
+        return "it has no channels; expected R, G, B: export it as RGB".into();
+    }
     let kind = match (names.contains("Y"), names.contains("RY")) {
         (true, true) => " (luminance and chroma)",
         (true, false) => " (luminance alone)",

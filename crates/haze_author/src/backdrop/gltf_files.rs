@@ -2,8 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use base64::{DecodeError, Engine as _};
 use haze_core::assets::bounded_read;
 use haze_core::error::{Error, one_line};
 
@@ -21,11 +21,15 @@ impl GltfFiles {
         Self { folder: path.parent().unwrap_or(Path::new("")).into(), read: vec![path.into()] }
     }
 
-    /// Bytes of a URI: of a data URI itself, or of a file.
-    pub fn bytes(&mut self, uri: &str) -> Result<Vec<u8>, String> {
+    /// Bytes of a URI: of a data URI itself, or of a file. `kind` and `index` tell in errors what has it.
+    pub fn bytes(&mut self, uri: &str, kind: &str, index: usize) -> Result<Vec<u8>, String> {
         if let Some(data) = uri.strip_prefix("data:") {
-            let text = data.split_once(";base64,").map(|(_, text)| text).ok_or("a data URI without base64")?;
-            return STANDARD.decode(text).map_err(|error| format!("a data URI that is not base64: {error}"));
+            let refuse = |problem: &str| format!("{kind} {index}: its data URI {problem}; expected whole base64");
+            let text = data.split_once(";base64,").map(|(_, text)| text).ok_or_else(|| refuse("has no base64"))?;
+            return STANDARD.decode(text).map_err(|error| match error {
+                DecodeError::InvalidByte(at, _) => refuse(&format!("is damaged at character {}", at + 1)),
+                _ => refuse("ends too early"),
+            });
         }
         let file = self.folder.join(relative(uri)?);
         self.read.push(file.clone());
@@ -80,9 +84,18 @@ mod tests {
             assert!(relative(outside).unwrap_err().contains("expected a file beside it"), "{outside}");
         }
         let mut files = GltfFiles::new(Path::new("a/b.gltf"));
-        assert_eq!(files.bytes("data:application/octet-stream;base64,AAEC").unwrap(), [0, 1, 2]);
-        assert!(files.bytes("data:,x").is_err() && files.bytes("data:;base64,?").is_err());
-        assert!(files.bytes("gone.bin").unwrap_err().contains("gone.bin"));
+        let mut bytes = |uri: &str| files.bytes(uri, "image", 3);
+        assert_eq!(bytes("data:application/octet-stream;base64,AAEC").unwrap(), [0, 1, 2]);
+        for (uri, problem) in [
+            ("data:,x", "has no base64"),
+            ("data:;base64,AA?C", "is damaged at character 3"),
+            ("data:;base64,AAE", "ends too early"),
+            ("data:;base64,A", "ends too early"),
+        ] {
+            let expected = format!("image 3: its data URI {problem}; expected whole base64");
+            assert_eq!(bytes(uri).unwrap_err(), expected, "{uri}");
+        }
+        assert!(bytes("gone.bin").unwrap_err().contains("gone.bin"));
         assert_eq!(files.read, [Path::new("a/b.gltf"), Path::new("a/gone.bin")]);
     }
 }

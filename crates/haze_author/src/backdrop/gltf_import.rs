@@ -18,6 +18,7 @@ use image::{ImageDecoder as _, ImageReader, Limits};
 use super::bvh::Bvh;
 use super::color_texture::{ColorTexture, Wrap};
 use super::covered_triangles::remove_covered;
+use super::decode_problem::decode_problem;
 use super::file_limits::MAX_DISTANCE;
 use super::gltf_accessor::vectors;
 use super::gltf_files::{self, GltfFiles};
@@ -82,7 +83,7 @@ impl Import {
         for buffer in document.buffers() {
             let data = match buffer.source() {
                 gltf::buffer::Source::Bin => blob.take().ok_or("its binary chunk is missing; expected a whole file")?,
-                gltf::buffer::Source::Uri(uri) => files.bytes(uri)?,
+                gltf::buffer::Source::Uri(uri) => files.bytes(uri, "buffer", buffer.index())?,
             };
             if data.len() < buffer.length() {
                 let (has, says) = (data.len(), buffer.length());
@@ -343,7 +344,7 @@ impl Import {
                 (bytes.ok_or("an image lies outside its buffer; expected a whole file")?, name)
             }
             gltf::image::Source::Uri { uri, .. } => {
-                held = files.bytes(uri)?;
+                held = files.bytes(uri, "image", source.index())?;
                 let name = if uri.starts_with("data:") { format!("image {}", source.index()) } else { one_line(uri) };
                 (held.as_slice(), name)
             }
@@ -420,9 +421,12 @@ fn name_of(node: &gltf::Node<'_>) -> String {
 }
 
 fn decode(bytes: &[u8]) -> Result<Image<[u8; 4]>, String> {
-    let refuse = |error: image::ImageError| format!("{}; expected a PNG or JPEG image", one_line(error));
+    let refuse = |error: image::ImageError| decode_problem(&error, "a whole PNG or JPEG image");
     let reader = ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format();
-    let mut reader = reader.map_err(|error| error.to_string())?;
+    let mut reader = reader.map_err(|error| refuse(error.into()))?;
+    if reader.format().is_none() {
+        return Err("neither PNG nor JPEG; expected one of the two".into());
+    }
     let mut limits = Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(MAX_TEXTURE_SIDE), Some(MAX_TEXTURE_SIDE));
     reader.limits(limits);

@@ -2,10 +2,13 @@
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
 
+use haze_core::assets::json;
 use haze_core::error::one_line;
 use serde_json::Value;
 
+use super::gltf_problem::{WHOLE, field_problem, gltf_problem, json_problem};
 use super::name_list::listed;
 
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
@@ -52,14 +55,15 @@ pub struct Instances {
 
 impl GltfJson {
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
-        let invalid = |error: String| format!("{}; expected a glTF 2.0 file", one_line(error));
         let (json, blob) = if bytes.starts_with(b"glTF") {
-            let parts = gltf::Glb::from_slice(bytes).map_err(|error| invalid(error.to_string()))?;
+            let parts = gltf::Glb::from_slice(bytes).map_err(|error| gltf_problem(&error))?;
             (parts.json, parts.bin.map(Cow::into_owned))
-        } else {
+        } else if begins_as_json(bytes) {
             (Cow::Borrowed(bytes), None)
+        } else {
+            return Err(format!("not a glTF file; expected {WHOLE}"));
         };
-        let mut json: Value = serde_json::from_slice(&json).map_err(|error| invalid(error.to_string()))?;
+        let mut json: Value = json::decode(Path::new(""), &json).map_err(|error| json_problem(&error))?;
         let mut notes = Vec::new();
         check_extensions(&mut json, &mut notes)?;
         if let Some(file) = json.as_object_mut()
@@ -76,10 +80,16 @@ impl GltfJson {
             notes.push(format!("attributes of other programs are not read: {}", listed(&unread)));
         }
         remove_extras(&mut json);
-        let root = serde_json::from_value(json).map_err(|error| invalid(error.to_string()))?;
-        let document = gltf::Document::from_json(root).map_err(|error| invalid(error.to_string()))?;
+        let root = json::from_value(json).map_err(field_problem)?;
+        let document = gltf::Document::from_json(root).map_err(|error| gltf_problem(&error))?;
         Ok(Self { document, blob, instances, notes })
     }
+}
+
+/// True if an object begins, or a mark of a Unicode text.
+fn begins_as_json(bytes: &[u8]) -> bool {
+    let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
+    matches!(first, Some(b'{' | 0xef | 0xfe | 0xff))
 }
 
 /// Refuses a file that requires an extension that is not read, and notes those that it uses. The reader then sees none as

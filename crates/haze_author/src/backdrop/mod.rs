@@ -5,6 +5,8 @@ mod color_texture;
 #[cfg(not(target_arch = "wasm32"))]
 mod covered_triangles;
 #[cfg(not(target_arch = "wasm32"))]
+mod decode_problem;
+#[cfg(not(target_arch = "wasm32"))]
 mod exr_header;
 mod file_limits;
 #[cfg(not(target_arch = "wasm32"))]
@@ -16,7 +18,10 @@ mod gltf_import;
 #[cfg(not(target_arch = "wasm32"))]
 mod gltf_json;
 #[cfg(not(target_arch = "wasm32"))]
+mod gltf_problem;
+#[cfg(not(target_arch = "wasm32"))]
 mod gltf_shape;
+#[cfg(not(target_arch = "wasm32"))]
 mod gltf_view;
 #[cfg(not(target_arch = "wasm32"))]
 mod name_list;

@@ -7,11 +7,12 @@ use std::path::Path;
 use glam::{DMat3, DVec3, UVec2, Vec3};
 use haze_core::assets::bounded_read;
 use haze_core::assets::image::catch_decoder_panic;
-use haze_core::error::{Error, one_line};
+use haze_core::error::Error;
 use image::codecs::hdr::{HdrDecoder, HdrMetadata};
 use image::codecs::openexr::OpenExrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageResult};
 
+use super::decode_problem::decode_problem;
 use super::exr_header;
 use super::file_limits::MAX_BACKDROP_FILE_BYTES;
 use super::sky_image::{MAX_SKY_WIDTH, SkyImage};
@@ -92,7 +93,7 @@ fn to_radiance(header: &HdrMetadata) -> Result<Option<DMat3>, String> {
 
 /// Decodes an image whose size is in range, so that little memory is asked for.
 fn pixels(decoder: ImageResult<impl ImageDecoder>, expected: &str) -> Result<DynamicImage, String> {
-    let refuse = |error| format!("{}; expected {expected}", one_line(error));
+    let refuse = |error| decode_problem(&error, expected);
     let decoder = decoder.map_err(refuse)?;
     let (width, height) = decoder.dimensions();
     if width > MAX_SKY_WIDTH || height > MAX_SKY_WIDTH {

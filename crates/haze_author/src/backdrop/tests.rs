@@ -332,7 +332,10 @@ fn damaged_and_unknown_files_say_what_would_be_right() {
     let said = |bytes: &[u8]| load(bytes).unwrap_err();
     for length in [0, 3, 11, 19, 60, whole.len() - 40, whole.len() - 1] {
         let said = said(&whole[..length]);
-        assert!(said.starts_with("/scene.glb: ") && said.contains("expected a glTF 2.0 file"), "{length}: {said}");
+        assert!(
+            said.starts_with("/scene.glb: ") && said.ends_with("; expected a whole glTF 2.0 file"),
+            "{length}: {said}"
+        );
     }
     let [nan, far] =
         [f32::NAN, 1.0e9].map(|x| said(&triangle([Vec3::ZERO, Vec3::new(x, 0.0, 0.0), Vec3::Y], nodes, "")));
@@ -389,6 +392,26 @@ fn skies_that_cannot_be_read_say_what_would_be_right() {
             said.contains("sky.hdr: ") && said.contains("; expected a Radiance (.hdr) or OpenEXR (.exr) image"),
             "{said}"
         );
+    }
+    let size = "its header gives no size that is read; expected -Y HEIGHT +X WIDTH";
+    for (rest, expected) in [
+        ("", "the file ends too early; expected a Radiance (.hdr) or OpenEXR (.exr) image"),
+        ("\n-Y 1 +X 2\n", "the file ends too early; expected a Radiance (.hdr) or OpenEXR (.exr) image"),
+        (
+            "\n-Y 4 +X 8\n\x02\x02\0\x08\x08\x7f",
+            "the file ends too early; expected a Radiance (.hdr) or OpenEXR (.exr) image",
+        ),
+        ("\n-Y 1 +X 2\n\x01\x01\x01\x01", "damaged; expected a Radiance (.hdr) or OpenEXR (.exr) image"),
+        ("\n+X 2 -Y 1\n", size),
+        ("\n-Y a +X 2\n", size),
+        ("\n-Y 1 +X\n", size),
+        ("\n-Y 4294967295 +X 4294967295\n", size),
+        ("FORMAT=foo\n\n", "its format is foo; expected 32-bit_rle_rgbe"),
+        ("EXPOSURE=a\n\n", "EXPOSURE of its header is not a number; expected one above 0"),
+        ("COLORCORR=1 2\n\n", "COLORCORR of its header is not three numbers; expected three above 0"),
+    ] {
+        let said = load(format!("#?RADIANCE\n{rest}").as_bytes()).unwrap_err();
+        assert!(said.ends_with(&format!("sky.hdr: {expected}")), "{rest:?}: {said}");
     }
     // Another first line, which Photoshop and others write.
     let renamed = [b"#?RGBE", &whole[10..]].concat();

@@ -13,9 +13,11 @@ const MAX_LINKS: usize = 16;
 
 /// Reads the gradient of an id; without one, the first that has stops.
 pub fn read(text: &str, name: Option<&str>) -> Result<NotedGradient, GradientParseError> {
-    let document = Document::parse(text).map_err(|error| GradientParseError {
-        line: error.pos().row as usize,
-        reason: format!("{}; expected an SVG file", one_line(error.to_string())),
+    let document = Document::parse(text).map_err(|error| {
+        // The line is told apart.
+        let problem = error.to_string().replace(&format!(" at {}", error.pos()), "");
+        let reason = format!("{}; expected an SVG file", one_line(problem));
+        GradientParseError { line: error.pos().row as usize, reason }
     })?;
     let line_of = |node: &Node| document.text_pos_at(node.range().start).row as usize;
     let is_gradient = |node: &Node| ["linearGradient", "radialGradient"].contains(&node.tag_name().name());
@@ -212,6 +214,7 @@ mod tests {
         assert!(of_stop("offset=\"x\"").starts_with("3: a stop without a valid offset"));
         assert!(refused("<svg/>").starts_with("1: no gradient; expected a linearGradient"));
         assert!(refused("<svg>").ends_with("; expected an SVG file"));
+        assert_eq!(refused("<svg a=1/>"), "1: expected a quote not '1'; expected an SVG file");
     }
 
     #[test]

@@ -313,6 +313,64 @@ fn notes_tell_the_rest() {
 }
 
 #[test]
+fn messages_name_the_place_in_plain_words() {
+    let said = |change: &dyn Fn(&mut Value)| {
+        let mut file = File::new();
+        change(&mut file.json);
+        file.load().unwrap_err()
+    };
+    let whole = "expected a whole glTF 2.0 file";
+    let card = |json: &mut Value, field: &str, value: Value| json["nodes"][0][field] = value;
+    let image = |json: &mut Value, uri: &str| {
+        json["images"] = json!([{"uri": uri}]);
+        json["textures"] = json!([{"source": 0}]);
+        json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+    };
+    for (said, expected) in [
+        (
+            said(&|json| card(json, "mesh", json!(7))),
+            format!("nodes[0].mesh names what the file does not have; {whole}"),
+        ),
+        (
+            said(&|json| card(json, "mesh", json!(-1))),
+            "nodes[0].mesh: -1 is not valid; expected an index, 0 or more".into(),
+        ),
+        (said(&|json| json["nodes"] = json!("x")), "nodes: \"x\" is not valid; expected a list".into()),
+        (said(&|json| json["cameras"] = json!([{"type": "perspective"}])), format!("cameras[0] lacks a part; {whole}")),
+        (said(&|json| json["asset"] = json!({})), format!("asset: missing field `version`; {whole}")),
+        (
+            said(&|json| json["materials"][0]["alphaMode"] = json!("GLASS")),
+            format!("materials[0].alphaMode is not valid; {whole}"),
+        ),
+        (
+            said(&|json| image(json, "data:image/png;base64,AAAA")),
+            "image 0: neither PNG nor JPEG; expected one of the two".into(),
+        ),
+        (
+            said(&|json| image(json, "data:image/png;base64,iVBORw0KGgo=")),
+            "image 0: the file ends too early; expected a whole PNG or JPEG image".into(),
+        ),
+        (
+            said(&|json| image(json, "data:image/png;base64,A#AA")),
+            "image 0: its data URI is damaged at character 2; expected whole base64".into(),
+        ),
+    ] {
+        assert!(said.ends_with(&format!("scene.gltf: {expected}")), "{said}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.gltf");
+    for (text, expected) in [
+        ("", format!("not a glTF file; {whole}")),
+        ("{\n\"asset\": {]}", "line 2, column 11: asset: expected a field's name in double quotes".into()),
+        ("{\"asset\": ", format!("line 1, column 10: asset: the file ends where a value should be; {whole}")),
+    ] {
+        std::fs::write(&path, text).unwrap();
+        let said = load_scene(&path).unwrap_err().to_string();
+        assert!(said.ends_with(&format!("scene.gltf: {expected}")), "{said}");
+    }
+}
+
+#[test]
 fn quantized_positions_are_read() {
     let mut file = File::new();
     // Items of a vertex buffer start at multiples of four bytes.

@@ -38,6 +38,25 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
     })
 }
 
+/// Decodes and parses UTF-8. `path` is used only in errors.
+///
+/// # Errors
+/// As [`parse`], also for other text.
+pub fn decode<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, Error> {
+    parse(path, text(path, bytes)?)
+}
+
+/// Converts a value that is parsed already.
+///
+/// # Errors
+/// The reason, with the field.
+pub fn from_value<T: DeserializeOwned>(value: serde_json::Value) -> Result<T, String> {
+    serde_path_to_error::deserialize(value).map_err(|error| {
+        let field = error.path().to_string();
+        serde_messages::translate(&error.into_inner().to_string(), field.trim_end_matches(['.', '?']), "")
+    })
+}
+
 /// Parses a file with a `version` from 1 to `newest`. The version is checked before any other field is parsed.
 ///
 /// # Errors

@@ -36,6 +36,7 @@ const EXPECTED: &[(&str, &str)] = &[
     ("a boolean", "true or false"),
     ("a sequence", "a list"),
     ("a sequence of 3 f32 values", "a list of 3 numbers"),
+    ("index into child of root", "an index, 0 or more"),
 ];
 
 /// Translates `message`, serde_json's error without its position, for the field at `path` ("" for the whole file).

@@ -294,7 +294,7 @@ fn a_dropped_file_that_is_no_scene_changes_nothing_and_says_why() {
     fs::write(&broken, &fs::read(example("court.glb")).unwrap()[..400]).unwrap();
     bench.drop_file(&broken);
     bench.until(|bench| bench.said().contains("broken.glb: "));
-    assert!(bench.said().ends_with("; expected a glTF 2.0 file"), "{}", bench.said());
+    assert!(bench.said().ends_with("; expected a whole glTF 2.0 file"), "{}", bench.said());
     // The name would stand for another file.
     fs::write(bench.path("dusk.hdr"), "another").unwrap();
     bench.drop_file(&example("dusk.hdr"));
