@@ -10,6 +10,7 @@ use haze::Error;
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
 
 const SIGHUP: i32 = 1;
+#[cfg(unix)]
 const SIGINT: i32 = 2;
 const SIGTERM: i32 = 15;
 

@@ -139,17 +139,19 @@ impl<T: 'static> Worker<T> {
         }
     }
 
-    /// Cancels all jobs.
-    pub fn cancel_all(&self) {
-        self.queue.borrow_mut().clear();
-        self.running.borrow().iter().for_each(|running| running.ticket.cancel());
-    }
-
     /// Returns true while a job runs or waits.
     pub fn is_busy(&self) -> bool {
         let is_wanted = |running: &Running<T>| !running.ticket.is_cancelled();
         self.running.borrow().as_ref().is_some_and(is_wanted)
             || self.queue.borrow().iter().any(|(ticket, _)| !ticket.is_cancelled())
+    }
+}
+
+impl<T> Worker<T> {
+    /// Cancels all jobs.
+    pub fn cancel_all(&self) {
+        self.queue.borrow_mut().clear();
+        self.running.borrow().iter().for_each(|running| running.ticket.cancel());
     }
 }
 
