@@ -17,6 +17,7 @@ mod report;
 mod report_csv;
 mod report_json;
 mod run;
+mod run_time;
 mod shadow_suite;
 mod soft_particles;
 mod sprite_shots;

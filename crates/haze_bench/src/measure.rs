@@ -106,12 +106,13 @@ impl<'a> CaseBench<'a> {
         if self.timing.is_some() { Clock::Gpu } else { Clock::Wall }
     }
 
-    /// Measures a group for about `budget`.
+    /// Measures a group for about `budget`. Returns the time that it needs at least.
     ///
     /// # Errors
     /// If the device failed, or a stop was requested; the cases measured so far are in the rows.
-    pub fn group(&mut self, group: &Group, budget: Duration) -> Result<(), Error> {
+    pub fn group(&mut self, group: &Group, budget: Duration) -> Result<Duration, Error> {
         let started = Instant::now();
+        let mut least = None;
         let reference = self.reference(group)?;
         let (mut running, mut pictures) = (Vec::new(), Vec::new());
         for case in &group.cases {
@@ -129,8 +130,13 @@ impl<'a> CaseBench<'a> {
         drop((reference, pictures));
         let warm_up_rounds = if self.is_software { 0 } else { WARM_UP_ROUNDS };
         for round in 0..warm_up_rounds + MAX_ROUNDS {
-            let is_late = started.elapsed() > budget;
-            if interrupt::is_requested() || (is_late && round >= warm_up_rounds + MIN_ROUNDS) {
+            let elapsed = started.elapsed();
+            let is_late = elapsed > budget;
+            let is_enough = round >= warm_up_rounds + MIN_ROUNDS;
+            if is_enough {
+                least.get_or_insert(elapsed);
+            }
+            if interrupt::is_requested() || (is_late && is_enough) {
                 break;
             }
             for case in &mut running {
@@ -151,7 +157,8 @@ impl<'a> CaseBench<'a> {
             let row = self.row(group.suite, case);
             self.rows.extend(row);
         }
-        check_stop()
+        check_stop()?;
+        Ok(least.unwrap_or_else(|| started.elapsed()))
     }
 
     fn reference(&self, group: &Group) -> Result<Reference, Error> {

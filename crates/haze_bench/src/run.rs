@@ -1,7 +1,7 @@
 //! Options of a run of `haze bench`, the order of its measurements, and its output files.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::Args;
 use glam::UVec2;
@@ -19,6 +19,7 @@ use super::limits;
 use super::measure::CaseBench;
 use super::particle_cpu_time;
 use super::report::{Report, VERSION};
+use super::run_time::RunTime;
 use super::stop::check_stop;
 use super::suites::{Group, Suite, groups};
 
@@ -31,7 +32,8 @@ pub struct Arguments {
     /// Measure for two minutes instead of ten, with fewer cases.
     #[arg(long)]
     quick: bool,
-    /// Seconds of measurement, about; preparation and checks come on top. Default: 100 with --quick, else 360.
+    /// Seconds of the run, about, after the limits of the adapter. Each case is prepared, checked and measured three times even
+    /// if they do not suffice; a line then says how long it will take. Default: 100 with --quick, else 360.
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     #[arg(value_parser = whole_number(0..=86_400))]
     seconds: Option<u32>,
@@ -140,20 +142,22 @@ impl Arguments {
             .flatten()
             .collect();
         let whole = Duration::from_secs(self.seconds.unwrap_or(if self.quick { QUICK } else { THOROUGH }).into());
-        let started = Instant::now();
+        let mut time = RunTime::start(whole);
         for (index, group) in groups.iter().enumerate() {
-            // Time that a group does not use goes to the later groups.
-            let left = whole.saturating_sub(started.elapsed());
-            let cases: usize = groups[index..].iter().map(|group| group.cases.len()).sum();
-            let budget = left.mul_f64(group.cases.len() as f64 / cases.max(1) as f64);
+            let left: usize = groups[index..].iter().map(|group| group.cases.len()).sum();
+            if let Some(text) = time.overrun(left) {
+                eprintln!("{text}");
+            }
             let what = format!(
                 "haze: {}, group {} of {}, about {} s left",
                 group.suite.name(),
                 index + 1,
                 groups.len(),
-                left.as_secs()
+                time.remaining(left).as_secs()
             );
-            with_progress(what, || bench.group(group, budget))?;
+            let budget = time.budget(group.cases.len(), left);
+            let least = with_progress(what, || bench.group(group, budget))?;
+            time.add(least, group.cases.len());
             if group.suite == Suite::Particles {
                 // The CPU is measured without filler work on the GPU.
                 let _pause = keepalive.pause();

@@ -25,6 +25,7 @@ struct ScaleRun {
     json: Vec<u8>,
     csv: String,
     page: String,
+    said: String,
 }
 
 impl ScaleRun {
@@ -32,9 +33,11 @@ impl ScaleRun {
         static RUN: OnceLock<ScaleRun> = OnceLock::new();
         RUN.get_or_init(|| {
             let folder = folder();
-            run(folder.path(), "scale", &["--csv", "run.csv", "--html", "run.html"]);
+            let outputs = ["run.json", "--csv", "run.csv", "--html", "run.html"];
+            let output = haze(folder.path(), &[&["bench", "scale"], &SMALL[..], &outputs].concat());
+            assert!(output.status.success(), "{}", stderr(&output));
             let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-            Self { json: text("run.json").into(), csv: text("run.csv"), page: text("run.html") }
+            Self { json: text("run.json").into(), csv: text("run.csv"), page: text("run.html"), said: stderr(&output) }
         })
     }
 
@@ -50,6 +53,13 @@ fn rows(report: &Value) -> &Vec<Value> {
 #[test]
 fn the_suite_scale_has_figures_and_says_what_it_left_out() {
     assert_has_figures("scale", &ScaleRun::get().report());
+}
+
+#[test]
+fn a_run_that_takes_longer_than_it_should_says_how_long() {
+    let said = &ScaleRun::get().said;
+    let lines: Vec<_> = said.lines().filter(|line| line.starts_with("haze: 0 s do not suffice")).collect();
+    assert!(matches!(lines[..], [line] if line.ends_with(" s")), "{said}");
 }
 
 /// A test for each suite, so that they run side by side.
@@ -93,7 +103,7 @@ fn assert_has_figures(suite: &str, report: &Value) {
 #[test]
 fn a_run_writes_json_csv_and_a_page() {
     let folder = folder();
-    let ScaleRun { json, csv, page } = ScaleRun::get();
+    let ScaleRun { json, csv, page, .. } = ScaleRun::get();
     let report = ScaleRun::get().report();
     let rows = rows(&report);
     let deferred: Vec<_> = rows.iter().filter(|row| row["path"] == "raster").collect();
