@@ -170,15 +170,21 @@ fn surface_weights(fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     return upsample_weights(UPSAMPLE_BILINEAR, fraction, depths, depth) * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
 }
 
-// Mean of four texels, in columns, each carried along its slope to the pixel's depth. A texel's slope is depth_slope().
+// Mean of four texels, in columns, each carried along its slope to the pixel's depth, as far as all channels stay within the
+// range of the texels. A texel's slope is depth_slope().
 fn carried_value(weights: vec4f, values: mat4x4f, slopes: mat4x4f, depths: vec4f, depth: f32, fade: f32) -> vec4f {
     let nearest = min(min(depths.x, depths.y), min(depths.z, depths.w));
     let farthest = max(max(depths.x, depths.y), max(depths.z, depths.w));
     let way = (clamp(depth, nearest, farthest) - depths) / (SLOPE_LENGTH * fade);
-    let carried = (values * weights + slopes * (weights * way)) / dot(weights, vec4f(1.0));
+    let total = dot(weights, vec4f(1.0));
     let low = min(min(values[0], values[1]), min(values[2], values[3]));
     let high = max(max(values[0], values[1]), max(values[2], values[3]));
-    return clamp(carried, low, high);
+    let mean = clamp(values * weights / total, low, high);
+    let change = slopes * (weights * way) / total;
+    // All channels stop where the first one leaves the range. Each by itself would leave light without amount, or the reverse.
+    let room = select(low, high, change > vec4f(0.0)) - mean;
+    let steps = select(vec4f(1.0), room / change, abs(change) > abs(room));
+    return mean + change * min(min(steps.x, steps.y), min(steps.z, steps.w));
 }
 
 // Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of

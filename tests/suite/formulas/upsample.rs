@@ -208,12 +208,17 @@ fn carried() -> Vec<Formula> {
         Formula {
             name: "carried_value",
             file: "lib/upsample.wgsl",
-            wgsl: "var v: mat4x4f; var s: mat4x4f; for (var i = 0u; i < 4u; i++) { v[i] = vec4f(x(i)); s[i] = vec4f(x(4u + i)); } \
-                   y(0, carried_value(vec4f(x(8), x(9), x(10), x(11)), v, s, vec4f(x(12), x(13), x(14), x(15)), x(16), x(17)).x);",
+            wgsl: "var v: mat4x4f; var s: mat4x4f; for (var i = 0u; i < 4u; i++) { let a = x(i); v[i] = vec4f(a, 0.5 * a, 1.0 - a, 1.0); \
+                   let b = x(4u + i); s[i] = vec4f(b, b, 0.5 * b, 0.0); } \
+                   let c = carried_value(vec4f(x(8), x(9), x(10), x(11)), v, s, vec4f(x(12), x(13), x(14), x(15)), x(16), x(17)); \
+                   y(0, c.x); y(1, c.y); y(2, c.z); y(3, c.w);",
             reference: |x| {
-                let columns = |x: &[f32]| Mat4::from_cols_array_2d(&[[x[0]; 4], [x[1]; 4], [x[2]; 4], [x[3]; 4]]);
-                let (values, slopes) = (columns(x), columns(&x[4..]));
-                vec![upsample::carried_value(v4(&x[8..]), values, slopes, v4(&x[12..]), x[16], x[17]).x]
+                let columns = |x: &[f32], column: fn(f32) -> [f32; 4]| {
+                    Mat4::from_cols_array_2d(&[column(x[0]), column(x[1]), column(x[2]), column(x[3])])
+                };
+                let values = columns(x, |a| [a, 0.5 * a, 1.0 - a, 1.0]);
+                let slopes = columns(&x[4..], |b| [b, b, 0.5 * b, 0.0]);
+                upsample::carried_value(v4(&x[8..]), values, slopes, v4(&x[12..]), x[16], x[17]).to_array().into()
             },
             cases: {
                 let share = [(0.01, 0.25); 4];
@@ -226,10 +231,12 @@ fn carried() -> Vec<Formula> {
             tolerance: ARITHMETIC * 100.0,
             mutants: &[
                 ("clamp(depth, nearest, farthest) - depths", "depth - depths"),
-                ("/ dot(weights, vec4f(1.0))", ""),
-                ("clamp(carried, low, high)", "carried"),
+                ("let total = dot(weights, vec4f(1.0))", "let total = 1.0"),
+                ("change * min(min(steps.x, steps.y), min(steps.z, steps.w))", "change"),
+                ("change * min(min(steps.x, steps.y), min(steps.z, steps.w))", "change * steps"),
+                ("select(low, high, change > vec4f(0.0))", "low"),
                 ("slopes * (weights * way)", "slopes * way"),
-                ("/ (SLOPE_LENGTH * fade);\n    let carried", "/ SLOPE_LENGTH;\n    let carried"),
+                ("/ (SLOPE_LENGTH * fade);\n    let total", "/ SLOPE_LENGTH;\n    let total"),
             ],
         },
         Formula {
