@@ -153,8 +153,8 @@ impl Host {
             }
         };
         let size = UVec2::new(self.configuration.width, self.configuration.height);
-        let time = self.start.elapsed().as_secs_f32();
-        let angle = 0.3 * time;
+        let time = self.start.elapsed().as_secs_f64();
+        let angle = 0.3 * time as f32;
         let eye = vec3(6.5 * angle.sin(), 1.8, 6.5 * angle.cos());
         Emitter::default().evaluate(time, &mut self.particles);
 

@@ -27,13 +27,14 @@ pub struct FrameInput<'a> {
     /// of the scene, such as that of the sky, as a white matte surface shows it, in the units of the lights. `None`
     /// prepares nothing.
     pub scene_ambient: Option<Vec3>,
-    /// Particle systems, in any order. They are drawn far to near.
+    /// Particle systems, in any order. They are drawn by
+    /// [`sort_priority`](crate::Settings::sort_priority), then far to near.
     pub systems: &'a [ParticleSystem<'a>],
     /// Multiplies all light that the smoke sends to the viewer, for hosts whose target holds exposed light. 1 leaves it
     /// in the units of the lights. From 0 on.
     pub exposure: f32,
     /// Seconds from any start. The noise of volumetric sprites rises with time.
-    pub time: f32,
+    pub time: f64,
     /// Up direction of the world, along which the noise rises; need not be unit length.
     pub up: Vec3,
     /// Debug views that may be shown of this frame; [`DebugView::Final`] for a normal image. All views share one

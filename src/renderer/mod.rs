@@ -34,7 +34,7 @@ use haze_core::assets::ramp_steps::RampSteps;
 use haze_core::error::{Error, FieldError};
 use haze_core::formula::shadow::SHADOWED_LIGHTS;
 use haze_core::settings::DebugView;
-use haze_core::view_setup::{AttachmentSet, ResolvedSettings, ViewGeometry};
+use haze_core::view_setup::{AttachmentSet, DrawOrder, ResolvedSettings, ViewGeometry};
 
 use crate::frame::FrameInput;
 
@@ -92,7 +92,7 @@ pub struct Renderer {
     /// True between `prepare_shadow` and the `prepare` that completes the frame.
     has_cast: bool,
     states: Vec<SystemState>,
-    /// Visible systems, farthest first.
+    /// Visible systems, in the order in which they are drawn.
     order: Vec<VisibleSystem>,
     /// View of the last successful `prepare`.
     view: Option<ViewGeometry>,
@@ -102,8 +102,7 @@ pub struct Renderer {
 #[derive(Clone, Copy, Debug)]
 struct VisibleSystem {
     state: usize,
-    /// View depth of the smoke's center, metres.
-    distance: f32,
+    draw_order: DrawOrder,
 }
 
 impl Renderer {
@@ -245,8 +244,8 @@ impl Renderer {
         for tiled in self.order.iter().filter_map(|visible| self.states[visible.state].tiled_passes()) {
             tiled.read_entries(encoder.commands());
         }
-        // Far to near; systems at equal distance keep the host's order.
-        self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        // Systems of equal priority and distance keep the host's order.
+        self.order.sort_by(|a, b| a.draw_order.compare(&b.draw_order));
         Ok(())
     }
 

@@ -88,7 +88,7 @@ impl Renderer {
             }
             // A system out of sight casts shadow, and no more.
             if state.passes().is_some() {
-                self.order.push(VisibleSystem { state: index, distance: state.distance() });
+                self.order.push(VisibleSystem { state: index, draw_order: state.draw_order() });
             }
             // Copies the number of a host's particles, if only the GPU knows it.
             if let Some(copy) = state.alive() {

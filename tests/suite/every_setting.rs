@@ -177,7 +177,9 @@ fn stages() -> Vec<TestScene> {
 }
 
 /// Values that give the same image wherever both can be drawn, with the reason.
-const SAME: [&str; 9] = [
+const SAME: [&str; 10] = [
+    // There is one system.
+    "sort_priority",
     // Shades the scene, which this test does not draw.
     "shadow.scene",
     // A light that the host adds to its own.

@@ -264,7 +264,7 @@ fn light_of_strange_particles_is_valid_or_none() {
             particles_per_sample: 1,
             settings: &settings,
             assets: &assets,
-            time: f32::MAX,
+            time: f64::MAX,
             seed: 3,
         };
         let Some(light) = fire.estimate() else { continue };

@@ -228,7 +228,7 @@ fn noise_keeps_its_precision_far_from_the_origin() {
 
 #[test]
 fn noise_scrolls_along_the_up_vector() {
-    let scrolled = |up: Vec3, time: f32| {
+    let scrolled = |up: Vec3, time: f64| {
         let mut scene = moved(Vec3::ZERO);
         (scene.up, scene.time, scene.settings.volumetric.scroll_speed) = (up, time, 0.25);
         scene.on_cpu()

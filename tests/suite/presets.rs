@@ -197,7 +197,7 @@ fn worst_step(mut shot: Shot, frames: u32) -> f32 {
     shot.debug_view = DebugView::Combined;
     let start = shot.preset.time;
     let mut frame = |i: u32| {
-        shot.preset.time = start + i as f32 / 60.0;
+        shot.preset.time = start + i as f64 / 60.0;
         shot.render_on_cpu().unwrap()
     };
     let mut last = frame(0);
@@ -225,6 +225,32 @@ fn births_and_deaths_do_not_pop() {
         println!("{name}: largest step {worst:.2} times the median");
         assert!(worst <= 1.3, "{name}: largest step {worst} times the median");
     }
+}
+
+#[test]
+fn systems_around_each_other_are_drawn_by_their_priority() {
+    // Black smoke within white smoke.
+    let mut shot = shot("column", UVec2::new(96, 54));
+    let mut black = shot.preset.systems[0].clone();
+    black.emitter.extent *= 0.5;
+    black.settings.diffuse.intensity = 0.0;
+    black.settings.ambient.intensity = 0.0;
+    black.settings.soft_scatter.intensity = 0.0;
+    black.settings.specular_scatter.intensity = 0.0;
+    shot.preset.systems.push(black);
+    shot.materials.push(shot.materials[0].clone());
+    shot.caches.push(None);
+    let light = |image: &Image<Vec4>| image.texels.iter().map(|texel| texel.truncate().element_sum()).sum::<f32>();
+    let mut with_priorities = |white: u32, black: u32| {
+        let systems = &mut shot.preset.systems;
+        systems[0].settings.sort_priority = white;
+        systems[1].settings.sort_priority = black;
+        let (psnr, on_cpu) = agreement(&shot);
+        assert!(psnr >= MIN_PSNR, "white {white}, black {black}: {psnr:.1} dB");
+        light(&on_cpu)
+    };
+    let [black_last, white_last] = [with_priorities(0, 1), with_priorities(7, 2)];
+    assert!(white_last > 1.05 * black_last, "{white_last} against {black_last}");
 }
 
 #[test]

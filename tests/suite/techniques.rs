@@ -143,7 +143,7 @@ fn switching_the_depth_input_keeps_the_targets() {
 
 #[test]
 fn freezing_the_animation_stops_the_noise() {
-    let at = |time: f32, freeze_animation: bool| {
+    let at = |time: f64, freeze_animation: bool| {
         let mut scene = scene(Technique::VolumetricSoft);
         (scene.time, scene.settings.sprite.freeze_animation) = (time, freeze_animation);
         scene.on_gpu(gpu()).picture
@@ -155,6 +155,6 @@ fn freezing_the_animation_stops_the_noise() {
     scene.settings.volumetric.scroll_speed = 0.25;
     let seconds_per_tile = scene.settings.volumetric.noise_size / 0.25;
     let first = scene.on_gpu(gpu()).picture;
-    scene.time += seconds_per_tile;
+    scene.time += f64::from(seconds_per_tile);
     assert!(psnr(&first, &scene.on_gpu(gpu()).picture) > 60.0);
 }

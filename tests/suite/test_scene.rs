@@ -36,7 +36,7 @@ pub struct TestScene {
     pub material: MaterialAssets,
     pub world_from_particles: Mat4,
     pub exposure: f32,
-    pub time: f32,
+    pub time: f64,
     pub up: Vec3,
     /// Debug view that is drawn.
     pub debug_view: DebugView,

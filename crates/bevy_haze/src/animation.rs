@@ -12,7 +12,7 @@ pub(crate) struct SmokeAnimation {
     /// `None` for a preset without tracks.
     preset: Option<AnimatedPreset>,
     /// Seconds that `systems` are of.
-    seconds: Option<f32>,
+    seconds: Option<f64>,
     systems: Vec<SystemState>,
 }
 
@@ -25,13 +25,13 @@ pub(crate) struct SystemState {
 }
 
 impl SystemState {
-    fn new(system: &PresetSystem, seconds: f32) -> Self {
+    fn new(system: &PresetSystem, seconds: f64) -> Self {
         Self { snapshot: system.emitter_snapshot(seconds), settings: system.settings }
     }
 
     /// The state with this index; without it, that of the preset's own values.
     pub fn find(states: &[Self], index: usize, system: &PresetSystem, seconds: f64) -> Self {
-        states.get(index).copied().unwrap_or_else(|| Self::new(system, seconds as f32))
+        states.get(index).copied().unwrap_or_else(|| Self::new(system, seconds))
     }
 }
 
@@ -46,7 +46,7 @@ impl SmokeAnimation {
     }
 
     /// Evaluates the tracks at a time, unless they were evaluated at it.
-    pub fn evaluate(&mut self, seconds: f32) {
+    pub fn evaluate(&mut self, seconds: f64) {
         let Some(preset) = &mut self.preset else { return };
         if self.seconds.replace(seconds).is_some_and(|last| last.to_bits() == seconds.to_bits()) {
             return;

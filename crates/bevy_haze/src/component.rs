@@ -44,7 +44,7 @@ impl From<Handle<SmokeAsset>> for Smoke {
 #[reflect(Component, Default, Clone)]
 pub struct SmokeClock {
     /// Seconds since the start of the emitter. Negative is before the start. An emitter without a duration has always been
-    /// there. The shaders see this time in f32: after one day of smoke, in steps of 8 ms.
+    /// there.
     pub seconds: f64,
     /// Seconds of smoke per second of Bevy's virtual time. 1 is real time, negative runs backwards.
     pub speed: f64,
@@ -234,7 +234,7 @@ pub(crate) fn animate_smoke(
         if smoke.is_changed() || changed.contains(&smoke.id()) {
             *animation = assets.get(smoke.id()).map(SmokeAnimation::new).unwrap_or_default();
         }
-        animation.evaluate(clock.seconds as f32);
+        animation.evaluate(clock.seconds);
     }
 }
 

@@ -52,7 +52,7 @@ pub(crate) fn update_fire_lights(
             let seed = entity.index_u32();
             let of_system = |(index, system): (usize, &SmokeSystem)| {
                 let state = SystemState::find(animation.systems(), index, &system.preset, clock.seconds);
-                system_light(&state, &system.images, particles, (clock.seconds as f32, seed), &mut sample)
+                system_light(&state, &system.images, particles, (clock.seconds, seed), &mut sample)
             };
             let lights = systems.iter().enumerate().filter_map(of_system);
             let brightest = lights.max_by(|a, b| a.intensity.total_cmp(&b.intensity))?;
@@ -78,7 +78,7 @@ fn system_light(
     SystemState { snapshot, settings }: &SystemState,
     images: &haze::MaterialAssets,
     particles: Option<&SmokeParticles>,
-    (seconds, seed): (f32, u32),
+    (seconds, seed): (f64, u32),
     sample: &mut Vec<haze::Particle>,
 ) -> Option<haze::Light> {
     if !settings.burns() {

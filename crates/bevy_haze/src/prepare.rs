@@ -111,7 +111,7 @@ pub(crate) fn prepare_smoke(
         scene_ambient: shading.map(ViewSystem::mean_ambient),
         lights: &frame_lights.lights,
         shadow_maps: &shadow_maps,
-        time: smokes.seconds as f32,
+        time: smokes.seconds,
         ..FrameInput::new(haze_view(&view), read_depth(&view, encoder))
     };
     prepare_systems(kept, *view.camera_entity, encoder, &frame, systems);

@@ -109,7 +109,7 @@ pub(crate) fn fire_light(system: &ViewSystem<'_>) -> Option<haze::Light> {
         particles_per_sample: step,
         settings,
         assets: &system.system.images,
-        time: smoke.seconds as f32,
+        time: smoke.seconds,
         seed,
     };
     let light = fire.estimate()?;

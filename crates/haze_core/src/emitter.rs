@@ -4,6 +4,8 @@
 //! compared. The arithmetic is integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs,
 //! `shaders/lib/emitter.wgsl`.
 
+use std::f32::consts::TAU;
+
 use glam::{Quat, Vec2, Vec3};
 
 use crate::error::FieldError;
@@ -202,24 +204,24 @@ impl Emitter {
     }
 
     /// Replaces `particles` with those alive at `time`, seconds. The same input gives the same output, to the bit.
-    pub fn evaluate(&self, time: f32, particles: &mut Vec<Particle>) {
+    pub fn evaluate(&self, time: f64, particles: &mut Vec<Particle>) {
         self.snapshot(time).evaluate(particles);
     }
 
     /// Replaces `displacements` with the way of each particle of [`evaluate`](Self::evaluate) in the next `seconds`, in metres
     /// and in the same order: for motion vectors. The swirls of turbulence that a particle crosses are in it, and not in
     /// [`Particle::velocity`](Particle). Particles that die before are taken to fly on.
-    pub fn displacements(&self, time: f32, seconds: f32, displacements: &mut Vec<Vec3>) {
+    pub fn displacements(&self, time: f64, seconds: f32, displacements: &mut Vec<Vec3>) {
         let now = self.snapshot(time);
         let mut later = now.uniform;
         later.since_first += seconds;
-        later.phase = self.snapshot(time + seconds).uniform.phase;
+        later.phase = self.snapshot(time + f64::from(seconds)).uniform.phase;
         displacements.clear();
         displacements.extend(now.displacements(&later, seconds));
     }
 
     /// Particles alive at `time`, seconds, not evaluated, for `Particles::Emitter`.
-    pub fn snapshot(&self, time: f32) -> EmitterSnapshot {
+    pub fn snapshot(&self, time: f64) -> EmitterSnapshot {
         let (first, last) = self.birth_range(time);
         let pulses = self.pulses();
         // An emission that ends is one pulse; one without an end has a single pulse that begins with the first birth.
@@ -234,13 +236,14 @@ impl Emitter {
         };
         let up = self.up.normalize_or(Vec3::Y);
         let disc = Quat::from_rotation_arc(Vec3::Y, up);
+        let turn = (time * f64::from(self.turbulence_speed)).rem_euclid(1.0);
         let uniform = EmitterUniform {
             first: first as u32,
             count: (last - first) as u32,
             seed: self.seed,
             shape: self.shape as u32,
             // f64, because at 100 000 births a second f32 could not tell two births apart after three minutes.
-            since_first: (f64::from(time) - born) as f32,
+            since_first: (time - born) as f32,
             rate: self.rate,
             lifetime: self.lifetime,
             lifetime_spread: self.lifetime_spread,
@@ -258,7 +261,7 @@ impl Emitter {
             radius_start: self.radius_start,
             disc_z: disc * Vec3::Z,
             radius_end: self.radius_end,
-            phase: Vec2::from_angle(time * self.turbulence_speed * std::f32::consts::TAU),
+            phase: Vec2::from_angle(turn as f32 * TAU),
             radius_spread: self.radius_spread,
             spin: self.spin,
             amount: self.amount,
@@ -291,11 +294,11 @@ impl Emitter {
 
     /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate, in pulses at so much after the
     /// beginning of its pulse.
-    fn birth_range(&self, time: f32) -> (i64, i64) {
+    fn birth_range(&self, time: f64) -> (i64, i64) {
         if self.rate <= 0.0 {
             return (0, 0);
         }
-        let (time, rate, longest) = (f64::from(time), f64::from(self.rate), self.longest());
+        let (time, rate, longest) = (time, f64::from(self.rate), self.longest());
         if let Some(Pulses { births, period }) = self.pulses() {
             let index = |time: f64, more: i64| {
                 let pulse = (time / period).floor();

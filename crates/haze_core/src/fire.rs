@@ -33,7 +33,7 @@ pub struct FireLight<'a> {
     /// Images of the system: those of heat and fire are read.
     pub assets: &'a MaterialAssets,
     /// Seconds; the same time gives the same flicker.
-    pub time: f32,
+    pub time: f64,
     /// Each value flickers differently.
     pub seed: u32,
 }
@@ -143,9 +143,9 @@ impl Flames {
 }
 
 /// Brightness at a time: 1 on average. `depth`: 0 is steady. `rate`: slow changes per second.
-pub fn flicker(depth: f32, rate: f32, time: f32, seed: u32) -> f32 {
+pub fn flicker(depth: f32, rate: f32, time: f64, seed: u32) -> f32 {
     let wave = |octave: u32, relative: f64| {
-        let at = f64::from(time) * (f64::from(rate) * relative);
+        let at = time * (f64::from(rate) * relative);
         let value = |step: i64| unit(pcg3d(UVec3::new(step as u32, octave, seed)).x) * 2.0 - 1.0;
         let first = at.floor() as i64;
         let blend = (at - at.floor()) as f32;
@@ -162,7 +162,7 @@ mod tests {
     #[test]
     fn flicker_is_seekable_continuous_and_different_for_each_seed() {
         let at = |time, seed| flicker(0.8, FLICKER_RATE, time, seed);
-        let times = || (0..4000).map(|step| step as f32 * 0.005);
+        let times = || (0..4000).map(|step| f64::from(step) * 0.005);
         // A hundred turns of the slow wave do not average out entirely.
         let mean = times().map(|time| at(time, 1)).sum::<f32>() / 4000.0;
         assert!((mean - 1.0).abs() < 0.06, "{mean}");

@@ -130,7 +130,7 @@ mod tests {
         let ways = shot.displacements(system, None, &now, seconds);
         assert_eq!(now.len(), ways.len());
         let mut later = shot.clone();
-        later.preset.time += seconds;
+        later.preset.time += f64::from(seconds);
         let then = later.systems().remove(0).0;
         let is_there = |(particle, way): &(&Particle, &Vec3)| {
             then.iter().any(|other| other.position.distance(particle.position + **way) < 1.0e-4)

@@ -211,7 +211,7 @@ mod tests {
         let track = |setting: &str, keys| Track { setting: setting.into(), keys, ..Track::default() };
         let number = |time, number| key(time, KeyValue::Number(number));
         let scene = |time, name: &str| key(time, KeyValue::Choice(name.into()));
-        let start = preset.time;
+        let start = preset.time as f32;
         preset.animation = vec![
             track("systems[0].settings.fire.intensity", vec![number(start, 0.0), number(start + 0.5, 1.0)]),
             track("environment.scene", vec![scene(start, "empty"), scene(start + 0.5, "yard")]),

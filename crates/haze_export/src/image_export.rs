@@ -114,8 +114,8 @@ impl Frames {
         (0..count).any(|index| burns(animated.evaluate(self.time(shot, self.range.start() + index))))
     }
 
-    fn time(&self, shot: &Shot, frame: u32) -> f32 {
-        shot.preset.time + frame as f32 / self.rate
+    fn time(&self, shot: &Shot, frame: u32) -> f64 {
+        shot.preset.time + f64::from(frame) / f64::from(self.rate)
     }
 
     /// Renders every frame and passes it to `take` with its number. `stopped` makes the error of a run that was stopped

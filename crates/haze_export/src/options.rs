@@ -52,7 +52,7 @@ pub struct ShotArguments {
     pub run: RunArguments,
     /// Seconds since the start of the emission. Default: the preset's.
     #[arg(long, value_name = "S", value_parser = parse_time, allow_hyphen_values = true)]
-    time: Option<f32>,
+    time: Option<f64>,
     /// Pixels per texel of the accumulation target, 1 to 16; or `auto`: by the detail of the smoke. Default: the preset's.
     #[arg(long, value_name = "N", value_parser = parse_scale, allow_hyphen_values = true)]
     scale: Option<ScaleArgument>,
@@ -327,8 +327,8 @@ pub fn parse_assignment(text: &str) -> Result<(String, String), String> {
     Ok((field.into(), value.into()))
 }
 
-fn parse_time(text: &str) -> Result<f32, String> {
-    let time = text.parse().ok().filter(|time: &f32| time.abs() <= MAX_TIME);
+fn parse_time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.abs() <= f64::from(MAX_TIME));
     time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{MAX_TIME} to {MAX_TIME}"))
 }
 

@@ -15,7 +15,7 @@ use super::preset_file::Preset;
 ///
 /// let mut animated = AnimatedPreset::new(&Preset::load("column")?);
 /// for frame in 0..3 {
-///     let preset = animated.evaluate(frame as f32 / 60.0);
+///     let preset = animated.evaluate(f64::from(frame) / 60.0);
 ///     let (lights, settings) = (&preset.lights, &preset.systems[0].settings);
 /// }
 /// # Ok::<(), haze_core::error::Error>(())
@@ -36,7 +36,7 @@ impl AnimatedPreset {
 
     /// The preset at a time, seconds: its settings have the values of their tracks, each within its range, and it has no
     /// tracks of its own.
-    pub fn evaluate(&mut self, time: f32) -> &Preset {
+    pub fn evaluate(&mut self, time: f64) -> &Preset {
         self.shown.time = time;
         self.fields.write(time, true, &mut self.shown);
         &self.shown
@@ -47,7 +47,7 @@ impl Preset {
     /// The preset at a time, seconds: its settings have the values of their tracks, and it has no tracks of its own. Any
     /// time can be asked for in any order. [`AnimatedPreset`] does the same frame by frame, without copies.
     #[must_use]
-    pub fn evaluate(&self, time: f32) -> Self {
+    pub fn evaluate(&self, time: f64) -> Self {
         let mut animated = AnimatedPreset::new(self);
         animated.evaluate(time);
         animated.shown
@@ -55,7 +55,7 @@ impl Preset {
 
     /// The preset with the values that its keyframes have at a time, without flicker, and with its tracks: for editors.
     #[must_use]
-    pub fn with_keyframes_at(&self, time: f32) -> Self {
+    pub fn with_keyframes_at(&self, time: f64) -> Self {
         let mut preset = self.clone();
         AnimatedFields::new(&self.animation, &mut preset).write(time, false, &mut preset);
         preset
@@ -123,7 +123,7 @@ mod tests {
             assert_eq!(at, preset.evaluate(time), "{time}");
             assert!(at.animation.is_empty() && at.time.to_bits() == time.to_bits());
             at.validate().unwrap();
-            if time.to_bits() == 2.0_f32.to_bits() {
+            if time.to_bits() == 2.0_f64.to_bits() {
                 assert_eq!(*middle.get_or_insert_with(|| at.clone()), at, "the way to a time does not matter");
             }
         }
@@ -135,9 +135,9 @@ mod tests {
         assert!(early.lights[1].color.distance(Vec3::new(1.0, 0.75, 0.5)) < 1e-6, "linear light");
         assert!(early.lights[1].direction.distance(Vec3::new(-1.0, -1.0, 0.0).normalize()) < 1e-5);
         assert_eq!(early.systems[0].settings.accumulate.scale, 3, "2.5 is rounded");
-        let share = |time: f32| preset.evaluate(time).lights[2].intensity / preset.lights[2].intensity;
-        assert!((0..50).any(|step| (share(step as f32 * 0.1) - 1.0).abs() > 0.2));
-        assert!((0..50).all(|step| (share(step as f32 * 0.1) - 1.0).abs() <= 0.5 + 1e-6));
+        let share = |time: f64| preset.evaluate(time).lights[2].intensity / preset.lights[2].intensity;
+        assert!((0..50).any(|step| (share(f64::from(step) * 0.1) - 1.0).abs() > 0.2));
+        assert!((0..50).all(|step| (share(f64::from(step) * 0.1) - 1.0).abs() <= 0.5 + 1e-6));
         // An editor sees the steady value.
         let edited = preset.with_keyframes_at(2.0);
         assert_eq!((edited.lights[2].intensity, edited.camera), (preset.lights[2].intensity, middle.camera));
@@ -152,7 +152,7 @@ mod tests {
         )
         .unwrap();
         for step in 0..40 {
-            preset.evaluate(step as f32 * 0.125).validate().unwrap();
+            preset.evaluate(f64::from(step) * 0.125).validate().unwrap();
         }
     }
 

@@ -179,9 +179,10 @@ mod tests {
         fn numbers_round_trip_to_the_last_bit(bits: u32) {
             let number = f32::from_bits(bits);
             prop_assume!(number.is_finite());
-            let preset = Preset { time: number, ..Preset::default() };
+            let lights = vec![Light { intensity: number, ..Light::default() }];
+            let preset = Preset { lights, ..Preset::default() };
             let read: Preset = json::parse(Path::new("a.json"), &preset.to_json("")).unwrap();
-            prop_assert_eq!((read.time + 0.0).to_bits(), (number + 0.0).to_bits());
+            prop_assert_eq!((read.lights[0].intensity + 0.0).to_bits(), (number + 0.0).to_bits());
         }
     }
 }

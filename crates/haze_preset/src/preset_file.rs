@@ -42,7 +42,7 @@ pub struct Preset {
     pub description: String,
     /// Time that is shown, seconds since the start of emission.
     #[serde(default)]
-    pub time: f32,
+    pub time: f64,
     /// Camera of the shot.
     #[serde(default)]
     pub camera: Camera,
@@ -115,7 +115,7 @@ impl Fields for Preset {
         visitor.integer("version", &mut self.version, PRESET_VERSION..=PRESET_VERSION, "");
         visitor.text("name", &mut self.name);
         visitor.text("description", &mut self.description);
-        visitor.number("time", &mut self.time, -MAX_TIME..=MAX_TIME, "s");
+        visitor.time("time", &mut self.time, -MAX_TIME..=MAX_TIME, "s");
         visitor.group("camera", &mut self.camera);
         visitor.group("environment", &mut self.environment);
         for (index, light) in self.lights.iter_mut().enumerate() {
@@ -280,7 +280,7 @@ pub fn with_system_context(path: &Path, index: usize, error: Error) -> Error {
 
 impl PresetSystem {
     /// Unevaluated particles of the emitter at `time`, seconds.
-    pub fn emitter_snapshot(&self, time: f32) -> EmitterSnapshot {
+    pub fn emitter_snapshot(&self, time: f64) -> EmitterSnapshot {
         let frame_rate = if self.settings.sprite.freeze_animation { 0.0 } else { self.emitter.frame_rate };
         Emitter { frame_rate, ..self.emitter }.snapshot(time)
     }

@@ -25,7 +25,7 @@ pub struct FrameInput<'a> {
     /// Multiplies all light that the smoke sends to the viewer.
     pub exposure: f32,
     /// Seconds. The noise of volumetric sprites rises with time.
-    pub time: f32,
+    pub time: f64,
     /// Up direction of the world; need not be unit length.
     pub up: Vec3,
     /// Debug view to show.

@@ -153,7 +153,7 @@ impl MeasuredSystem {
 
 /// Placed systems of a frame.
 pub struct PlacedSystems<'a> {
-    /// Visible systems with their indices in the frame, far to near.
+    /// Visible systems with their indices in the frame, in the order in which they are drawn.
     pub visible: Vec<(usize, VisibleSystem<'a>)>,
     /// Uniforms and particles of systems out of sight, which cast shadow.
     pub hidden: Vec<(SystemUniform, &'a [Particle])>,
@@ -193,6 +193,6 @@ pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<Place
             Err(uniform) => hidden.push((*uniform, system.particles)),
         }
     }
-    visible.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
+    visible.sort_by(|(_, a), (_, b)| a.setup.draw_order.compare(&b.setup.draw_order));
     Ok(PlacedSystems { visible, hidden, shadow })
 }

@@ -77,7 +77,7 @@ impl App {
             self.targets = Some(Targets::new(gpu, size, self.targets.take()));
         }
         let Some(Targets { color, depth, id, .. }) = &self.targets else { return Ok(egui::TextureId::default()) };
-        let time = self.start.elapsed().as_secs_f32();
+        let time = self.start.elapsed().as_secs_f64();
         Emitter::default().evaluate(time, &mut self.particles);
         let around =
             |angle: f32, distance: f32, height: f32| vec3(distance * angle.sin(), height, distance * angle.cos());

@@ -6,7 +6,7 @@ use haze_core::frame::{Bounds, Particle};
 use haze_core::glam::{UVec2, Vec2, Vec3};
 use haze_core::settings::{RenderPath, Technique};
 use haze_core::view_setup::{
-    LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
+    DrawOrder, LightingChoice, ParticleSpace, ResolvedSettings, ScaleChoice, SpriteProjector, SpriteTrim, SystemInput,
     SystemSetup, TexelGrid, ViewGeometry, caster_uniform, light_uniforms, system_setup,
 };
 
@@ -198,12 +198,12 @@ impl SystemState {
         self.prepared.as_ref()?.scale_choice
     }
 
-    /// Returns the view depth of the smoke's center, metres.
-    pub fn distance(&self) -> f32 {
-        self.prepared.as_ref().map_or(0.0, |prepared| prepared.setup.distance)
+    /// Returns when the system is drawn.
+    pub fn draw_order(&self) -> DrawOrder {
+        self.prepared.as_ref().map_or_else(DrawOrder::default, |prepared| prepared.setup.draw_order)
     }
 
-    /// Returns the same in the host's view space, metres.
+    /// Returns the view depth of the smoke's center in the host's view space, metres.
     pub fn lit_depth(&self) -> f32 {
         self.prepared.as_ref().map_or(0.0, |prepared| prepared.setup.lit_depth)
     }

@@ -31,7 +31,7 @@ fn out_of_range_settings_are_errors_that_name_the_field() {
     assert_eq!(field(|s| s.settings.volumetric.march_steps = 1), "volumetric.march_steps");
     assert_eq!(field(|s| s.settings.volumetric.noise_size = 0.0), "volumetric.noise_size");
     assert_eq!(field(|s| s.settings.spherical_billboard.density = f32::NAN), "spherical_billboard.density");
-    assert_eq!(field(|s| s.time = f32::INFINITY), "time");
+    assert_eq!(field(|s| s.time = f64::INFINITY), "time");
     // At scale 1 the host's depth needs a target as large as the image.
     let error = rejection(|s| {
         (s.settings.accumulate.depth_source, s.settings.accumulate.scale) = (DepthSource::Host, 1);

@@ -9,9 +9,9 @@ use super::particle_frames::{FramePair, ParticleFrames};
 
 impl ParticleFrames {
     /// Replaces `particles` with those at `time`, seconds. The same input gives the same output.
-    pub fn evaluate(&self, source: &ParticleFiles, time: f32, particles: &mut Vec<Particle>) {
+    pub fn evaluate(&self, source: &ParticleFiles, time: f64, particles: &mut Vec<Particle>) {
         particles.clear();
-        let mut frame = (f64::from(time) - f64::from(source.start)) * f64::from(source.fps);
+        let mut frame = (time - f64::from(source.start)) * f64::from(source.fps);
         if source.after == EndBehavior::Loop {
             frame = frame.rem_euclid(f64::from(self.frame_count()));
         }
@@ -28,7 +28,7 @@ impl ParticleFrames {
                 // Random rotations hide that all sprites have the same image.
                 rotation: if provided.rotation { particle.rotation } else { unit(random.x) * std::f32::consts::TAU },
                 amount: weight * if provided.amount { particle.amount } else { source.default_amount },
-                frame: unit(random.y) * 256.0 + time * source.flipbook_rate,
+                frame: unit(random.y) * 256.0 + (time * f64::from(source.flipbook_rate)) as f32,
                 age: particle.age,
                 velocity: y_up(particle.velocity) * source.units,
                 tint: if provided.color { particle.color.to_array().map(channel) } else { [255; 3] },
@@ -51,7 +51,7 @@ mod tests {
         ParticleFrames::load(&folder.path().join("#.csv"), Limits { particles: 9, bytes: 1 << 20 }).unwrap()
     }
 
-    fn at(source: &ParticleFiles, frames: &ParticleFrames, time: f32) -> Vec<Particle> {
+    fn at(source: &ParticleFiles, frames: &ParticleFrames, time: f64) -> Vec<Particle> {
         let mut particles = Vec::new();
         frames.evaluate(source, time, &mut particles);
         particles

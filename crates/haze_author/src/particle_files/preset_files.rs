@@ -120,7 +120,7 @@ fn load_each(preset: &Preset, path: &Path, folders: &AssetFolders) -> Vec<Result
 
 /// Replaces `particles` with those alive at `time`, seconds: those of `files` if the system names some and they are
 /// given; else those of its emitter.
-pub fn particles(system: &PresetSystem, files: Option<&ParticleFrames>, time: f32, particles: &mut Vec<Particle>) {
+pub fn particles(system: &PresetSystem, files: Option<&ParticleFrames>, time: f64, particles: &mut Vec<Particle>) {
     match files.filter(|_| system.cache.is_used()) {
         Some(files) => {
             let is_frozen = system.settings.sprite.freeze_animation;
@@ -132,7 +132,7 @@ pub fn particles(system: &PresetSystem, files: Option<&ParticleFrames>, time: f3
 }
 
 /// Unevaluated particles of the emitter; `None` if they come from `files`.
-pub fn emission(system: &PresetSystem, files: Option<&ParticleFrames>, time: f32) -> Option<EmitterSnapshot> {
+pub fn emission(system: &PresetSystem, files: Option<&ParticleFrames>, time: f64) -> Option<EmitterSnapshot> {
     (!system.cache.is_used() || files.is_none()).then(|| system.emitter_snapshot(time))
 }
 

@@ -71,6 +71,9 @@ pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'st
         if field == "settings.shadow.density" && preset.systems.iter().any(|system| system.settings.receives_shadow()) {
             return None;
         }
+        if field == "settings.sort_priority" && preset.systems.len() < 2 {
+            return Some("there is one system");
+        }
         let is_color = ["settings.ambient.sky_color", "settings.ambient.ground_color"].contains(&field);
         if is_color && is_lit_by_sky(&preset.environment, size) {
             return Some("the light is that of environment.sky_file");

@@ -141,9 +141,10 @@ fn settings(preset: &Preset) -> Vec<Setting> {
 
 /// Returns the preset at its own time and at those of its keyframes.
 fn moments(preset: &Preset) -> Vec<Preset> {
-    let mut times: Vec<_> = preset.animation.iter().flat_map(|track| &track.keys).map(|key| key.time).collect();
+    let keys = preset.animation.iter().flat_map(|track| &track.keys);
+    let mut times: Vec<_> = keys.map(|key| f64::from(key.time)).collect();
     times.push(preset.time);
-    times.sort_by(f32::total_cmp);
+    times.sort_by(f64::total_cmp);
     times.dedup();
     times.into_iter().map(|time| preset.evaluate(time)).collect()
 }

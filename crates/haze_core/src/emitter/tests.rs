@@ -3,7 +3,7 @@ use crate::formula::emitter::{drag_integrals, smoothstep_unit};
 use crate::frame::{SpriteExtent, particle_bounds};
 use crate::settings::Settings;
 
-fn at(emitter: &Emitter, time: f32) -> Vec<Particle> {
+fn at(emitter: &Emitter, time: f64) -> Vec<Particle> {
     let mut particles = Vec::new();
     emitter.evaluate(time, &mut particles);
     particles
@@ -112,12 +112,27 @@ fn emitters() -> impl Iterator<Item = Emitter> {
 }
 
 #[test]
+fn motion_is_as_even_after_hours_as_at_first() {
+    let emitter = Emitter { turbulence: 0.0, frame_rate: 0.0, drag: 0.0, velocity: Vec3::Y, ..Emitter::default() };
+    let emitter = Emitter { velocity_spread: 0.0, buoyancy: 0.0, wind: Vec3::ZERO, ..emitter };
+    let rise = 1.0 / 60.0;
+    let hours_in = 10_000.0;
+    for frame in 0..30 {
+        let time = hours_in + f64::from(frame) / 60.0;
+        let (before, now) = (at(&emitter, time), at(&emitter, time + 1.0 / 60.0));
+        let find = |a: &Particle| now.iter().find(|b| b.frame.to_bits() == a.frame.to_bits());
+        let moved = before.iter().find_map(|a| Some(find(a)?.position - a.position)).unwrap();
+        assert!((moved.y - rise).abs() < 0.01 * rise, "{moved} in frame {frame}");
+    }
+}
+
+#[test]
 fn velocity_is_the_change_of_position() {
     // Without turbulence, whose change from place to place does not count, between bounces, and without growth off an anchor.
     for emitter in emitters().filter(|emitter| emitter.bounce <= 0.0 && emitter.anchor <= 0.0) {
         let emitter = Emitter { turbulence: 0.0, frame_rate: 0.0, ..emitter };
-        let step = 1.0e-3;
-        let (before, now) = (at(&emitter, 0.08), at(&emitter, 0.08 + step));
+        let step = 1.0e-3_f32;
+        let (before, now) = (at(&emitter, 0.08), at(&emitter, 0.08 + f64::from(step)));
         // A still flipbook frame is another in each particle.
         let pairs =
             before.iter().filter_map(|a| Some((a, now.iter().find(|b| b.frame.to_bits() == a.frame.to_bits())?)));

@@ -103,7 +103,7 @@ pub fn validate_shadow_projections<'a>(
 /// Validates the numbers of a frame.
 pub fn validate_frame_numbers(
     exposure: f32,
-    time: f32,
+    time: f64,
     up: Vec3,
     scene_ambient: Option<Vec3>,
 ) -> Result<(), FieldError> {

@@ -72,6 +72,17 @@ pub trait FieldVisitor {
     /// Real number. `unit` is "" for a ratio.
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str);
 
+    /// Time, which f32 is too coarse for after hours. Visitors see it as f32, and change it only if they give another number.
+    fn time(&mut self, name: &'static str, value: &mut f64, range: RangeInclusive<f32>, unit: &'static str) {
+        let shown = *value as f32;
+        let mut given = shown;
+        self.number(name, &mut given, range, unit);
+        if given.to_bits() != shown.to_bits() {
+            // Digit by digit: 2.1 of f32 is 2.0999999 in f64.
+            *value = given.to_string().parse().unwrap_or_else(|_| f64::from(given));
+        }
+    }
+
     /// Whole number.
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str);
 

@@ -141,6 +141,9 @@ settings! {
         path: RenderPath = RenderPath::Auto, choice;
         /// Blend mode of forward sprites. Deferred paths have a blend of their own.
         blend_mode: BlendMode = BlendMode::Alpha, choice;
+        /// Systems of a higher priority are drawn over those of a lower one, wherever they are: sparks over the smoke
+        /// around them. Those of equal priority are drawn far to near, by the middle of their boxes.
+        sort_priority: u32 = 0, integer(0..=15, "");
         /// Technique by which sprites meet the scene: hard cut, soft fade, or volume.
         technique: Technique = Technique::Soft, choice;
         /// Lighting model of sprites: painted, or path-traced.

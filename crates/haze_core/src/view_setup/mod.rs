@@ -31,6 +31,6 @@ pub use scale_choice::ScaleChoice;
 pub use smoke_extent::SmokeExtent;
 pub use smoke_shadow::{SmokeGrid, SmokeShadow};
 pub use sprite_projector::{ProjectedSprite, SpriteProjector, SpriteTrim, TexelGrid};
-pub use system_setup::{SystemInput, SystemSetup, caster_uniform, system_setup};
+pub use system_setup::{DrawOrder, SystemInput, SystemSetup, caster_uniform, system_setup};
 pub use view_geometry::ViewGeometry;
 pub use view_lights::{light_uniforms, scene_light_uniforms};

@@ -1,5 +1,7 @@
 //! One particle system in a view: the texels of its target, and its uniforms.
 
+use std::cmp::Ordering;
+
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::optical_depth::optical_depths;
@@ -45,7 +47,7 @@ pub struct SystemInput<'a> {
     /// Multiplies light; `lights` are exposed already.
     pub exposure: f32,
     /// Seconds.
-    pub time: f32,
+    pub time: f64,
     /// Shadow of the frame's smoke; `None` if no system receives it.
     pub shadow: Option<&'a SmokeShadow>,
 }
@@ -64,10 +66,27 @@ pub struct SystemSetup {
     /// True if the transfer draws the back faces of the box: it reaches to or behind the near plane, or its sprites
     /// show through the scene.
     pub back_faces: bool,
+    /// When the system is drawn.
+    pub draw_order: DrawOrder,
+    /// View depth of the smoke's center in the host's view space, metres.
+    pub lit_depth: f32,
+}
+
+/// When a system is drawn, among those of a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DrawOrder {
+    /// [`Settings::sort_priority`].
+    pub sort_priority: u32,
     /// View depth of the smoke's center, metres.
     pub distance: f32,
-    /// The same in the host's view space, metres.
-    pub lit_depth: f32,
+}
+
+impl DrawOrder {
+    /// By priority, then far to near.
+    pub fn compare(&self, other: &Self) -> Ordering {
+        let nearer_last = other.distance.total_cmp(&self.distance);
+        self.sort_priority.cmp(&other.sort_priority).then(nearer_last)
+    }
 }
 
 impl SystemSetup {
@@ -185,7 +204,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         pixels,
         uniform,
         back_faces,
-        distance,
+        draw_order: DrawOrder { sort_priority: settings.sort_priority, distance },
         lit_depth: distance - view.depth_offset,
     })
 }
@@ -254,9 +273,9 @@ fn spherical_harmonics(
 
 /// Returns the position of the eye in the noise, which rises with time. The position is wrapped to one tile, so that
 /// f32 is precise enough after hours and far from the world's origin.
-fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f32) -> Vec3 {
+fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f64) -> Vec3 {
     let volumetric = &settings.volumetric;
-    let seconds = if settings.sprite.freeze_animation { 0.0 } else { f64::from(time) };
+    let seconds = if settings.sprite.freeze_animation { 0.0 } else { time };
     let eye = view.view_from_world.as_dmat4().inverse().w_axis.truncate();
     let place = eye - up.as_dvec3() * (f64::from(volumetric.scroll_speed) * seconds);
     let size = f64::from(volumetric.noise_size);

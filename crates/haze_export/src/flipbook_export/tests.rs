@@ -26,6 +26,15 @@ fn options(engine: Engine) -> FlipbookOptions {
     FlipbookOptions { engine, cells, loop_fade: 0, has_six_way: false, effort }
 }
 
+#[test]
+fn frames_are_as_far_apart_after_hours_as_at_first() {
+    let mut shot = shot("column");
+    shot.preset.time = 10_000.0;
+    let frames = frames(10, 60.0);
+    let times: Vec<_> = (0..10).map(|frame| frames.shot(&shot, frame).preset.time).collect();
+    assert!(times.windows(2).all(|pair| (pair[1] - pair[0] - 1.0 / 60.0).abs() < 1.0e-6), "{times:?}");
+}
+
 /// A flipbook, read back from its files.
 struct Flipbook {
     folder: tempfile::TempDir,
@@ -119,7 +128,7 @@ fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() 
     let (shot, frames) = (shot("spell"), frames(2, 8.0));
     let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
     let mut between = frames.shot(&shot, 0);
-    between.preset.time += 0.5 / frames.rate;
+    between.preset.time += 0.5 / f64::from(frames.rate);
     let between = block_on(format.render(&between, async |shot| shot.render_on_cpu())).unwrap().into_rgba8();
     for engine in ENGINES {
         let flipbook = Flipbook::new(&shot, &frames, engine, 0, false);

@@ -124,11 +124,11 @@ struct FoundTrack {
 
 impl FoundTrack {
     /// Value at a time without flicker.
-    fn value(&self, time: f32) -> Option<KeyValue> {
+    fn value(&self, time: f64) -> Option<KeyValue> {
         self.track.value(time, self.kind).or_else(|| self.own.clone())
     }
 
-    fn flicker(&self, time: f32, has_flicker: bool) -> f32 {
+    fn flicker(&self, time: f64, has_flicker: bool) -> f32 {
         if has_flicker && self.flickers { self.track.flicker_factor(time) } else { 1.0 }
     }
 }
@@ -153,13 +153,13 @@ impl AnimatedFields {
     }
 
     /// Sets the fields to their values at a time. Their ranges are kept. Needs no memory of the heap, except for choices.
-    pub(crate) fn write(&self, time: f32, has_flicker: bool, fields: &mut dyn Fields) {
+    pub(crate) fn write(&self, time: f64, has_flicker: bool, fields: &mut dyn Fields) {
         self.write_values(time, (has_flicker, true), None, fields);
     }
 
     /// Sets the fields to their values at a time, outside of their ranges too, but one field to the value of a keyframe.
     pub(super) fn write_keyframe(&self, setting: &str, key: (f32, &KeyValue), fields: &mut dyn Fields) {
-        self.write_values(key.0, (false, false), Some((setting, key.1)), fields);
+        self.write_values(f64::from(key.0), (false, false), Some((setting, key.1)), fields);
     }
 
     /// True if the setting of the first track can flicker.
@@ -178,12 +178,12 @@ impl AnimatedFields {
             })
         };
         let found = self.tracks.first();
-        times.iter().filter_map(|&time| value(found?, time)).collect()
+        times.iter().filter_map(|&time| value(found?, f64::from(time))).collect()
     }
 
     fn write_values(
         &self,
-        time: f32,
+        time: f64,
         (has_flicker, is_clamped): (bool, bool),
         instead: Option<(&str, &KeyValue)>,
         fields: &mut dyn Fields,

@@ -35,10 +35,10 @@ struct Segment<'a> {
 
 /// Value at a time. Before the first keyframe and after the last, their values. `period` above 0: the keyframes repeat.
 /// `None` without keyframes.
-pub(super) fn value(keys: &[Keyframe], period: f32, time: f32, kind: Kind) -> Option<KeyValue> {
-    let time = if period > 0.0 { time.rem_euclid(period) } else { time };
+pub(super) fn value(keys: &[Keyframe], period: f32, time: f64, kind: Kind) -> Option<KeyValue> {
+    let time = if period > 0.0 { time.rem_euclid(f64::from(period)) } else { time };
     let (first, last) = (keys.first()?, keys.last()?);
-    let next = keys.partition_point(|key| key.time <= time);
+    let next = keys.partition_point(|key| f64::from(key.time) <= time);
     if keys.len() == 1 || period <= 0.0 && next == 0 {
         return Some(first.value.clone());
     }
@@ -47,10 +47,11 @@ pub(super) fn value(keys: &[Keyframe], period: f32, time: f32, kind: Kind) -> Op
     }
     let segment = Segment::ending_at(keys, period, next as i64);
     let Segment { from, to, .. } = &segment;
-    if kind == Kind::Step || from.key.ease == Ease::Hold || time <= from.time {
+    let elapsed = (time - f64::from(from.time)) as f32;
+    if kind == Kind::Step || from.key.ease == Ease::Hold || elapsed <= 0.0 {
         return Some(from.key.value.clone());
     }
-    let progress = ((time - from.time) / (to.time - from.time)).clamp(0.0, 1.0);
+    let progress = (elapsed / (to.time - from.time)).clamp(0.0, 1.0);
     Some(match (&from.key.value, &to.key.value) {
         (KeyValue::Number(_), KeyValue::Number(_)) => KeyValue::Number(segment.component(progress, &number)),
         (KeyValue::Vector(start), KeyValue::Vector(end)) if kind == Kind::Direction => {
@@ -194,7 +195,7 @@ mod tests {
     }
 
     fn number_at(keys: &[Keyframe], period: f32, time: f32) -> f32 {
-        match value(keys, period, time, Kind::Linear) {
+        match value(keys, period, f64::from(time), Kind::Linear) {
             Some(KeyValue::Number(number)) => number,
             other => unreachable!("{other:?}"),
         }
@@ -267,7 +268,7 @@ mod tests {
         };
         let speed = |keys: [(f32, f32, f32); 3], time: f32| {
             let keys = keys.map(key);
-            let at = |time| match value(&keys, 0.0, time, Kind::Direction) {
+            let at = |time| match value(&keys, 0.0, f64::from(time), Kind::Direction) {
                 Some(KeyValue::Vector(vector)) => vector,
                 other => unreachable!("{other:?}"),
             };

@@ -56,18 +56,19 @@ impl Track {
     }
 
     /// Value at a time, without flicker. `None` without keyframes.
-    pub(super) fn value(&self, time: f32, kind: Kind) -> Option<KeyValue> {
+    pub(super) fn value(&self, time: f64, kind: Kind) -> Option<KeyValue> {
         interpolation::value(&self.keys, self.period, time, kind)
     }
 
     /// Factor of the flicker at a time.
-    pub(super) fn flicker_factor(&self, time: f32) -> f32 {
+    pub(super) fn flicker_factor(&self, time: f64) -> f32 {
         let Flicker { amount, rate, seed } = self.flicker;
         if amount > 0.0 { flicker(amount, rate, time, seed) } else { 1.0 }
     }
 
     /// Time within the period.
-    pub fn wrapped(&self, time: f32) -> f32 {
-        if self.period > 0.0 { time.rem_euclid(self.period) } else { time }
+    pub fn wrapped(&self, time: f64) -> f32 {
+        let wrapped = if self.period > 0.0 { time.rem_euclid(f64::from(self.period)) } else { time };
+        wrapped as f32
     }
 }

@@ -21,7 +21,7 @@ impl KeyframeEdit {
     /// Gives the settings of a preset the values of their keyframes at a time. `None` without keyframes.
     pub fn begin(preset: &mut Preset, time: f32) -> Option<Self> {
         preset.animation.iter().find(|track| !track.keys.is_empty())?;
-        let shown = preset.with_keyframes_at(time);
+        let shown = preset.with_keyframes_at(f64::from(time));
         Some(Self { time, before: std::mem::replace(preset, shown.clone()), shown })
     }
 
@@ -86,13 +86,13 @@ pub fn track_or_new<'a>(preset: &'a mut Preset, setting: &str) -> &'a mut Track 
 
 /// Returns the index of a track's keyframe at a time.
 pub fn key_at(track: &Track, time: f32) -> Option<usize> {
-    track.find(track.wrapped(time), REACH).ok()
+    track.find(track.wrapped(f64::from(time)), REACH).ok()
 }
 
 /// Sets the keyframe at a time, or adds one, with the ease of the one before it. Returns its time.
 pub fn set_key(preset: &mut Preset, setting: &str, time: f32, value: KeyValue) -> f32 {
     let track = track_or_new(preset, setting);
-    let wrapped = track.wrapped(time);
+    let wrapped = track.wrapped(f64::from(time));
     match track.find(wrapped, REACH) {
         Ok(index) => {
             track.keys[index].value = value;
@@ -108,7 +108,7 @@ pub fn set_key(preset: &mut Preset, setting: &str, time: f32, value: KeyValue) -
 
 /// Adds a keyframe with the value that a setting has at a time. Settings that cannot have keyframes stay as they are.
 pub fn add_key(preset: &mut Preset, setting: &str, time: f32) {
-    let values = field_values(&preset.with_keyframes_at(time));
+    let values = field_values(&preset.with_keyframes_at(f64::from(time)));
     let value = values.into_iter().find(|(path, _)| path == setting);
     if let Some(value) = value.and_then(|(_, value)| KeyValue::from_field(&value)) {
         set_key(preset, setting, time, value);
@@ -139,7 +139,7 @@ pub fn remove_track(preset: &mut Preset, setting: &str, time: f32) {
 /// Gives a setting the value that a track of it has at a time, without flicker.
 fn keep_value(preset: &mut Preset, track: Track, time: f32) {
     let others = std::mem::replace(&mut preset.animation, vec![track]);
-    *preset = preset.with_keyframes_at(time);
+    *preset = preset.with_keyframes_at(f64::from(time));
     preset.animation = others;
 }
 

@@ -98,7 +98,7 @@ fn system_row(ui: &mut Ui, session: &mut Session) {
 fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let edit = session.begin_edit();
     let mut shown = std::mem::take(&mut session.view.lights);
-    let keys = KeyMarks::new(&session.document.preset, session.playback.time);
+    let keys = KeyMarks::new(&session.document.preset, session.playback.key_time());
     let mut smoke_shown = std::mem::take(&mut session.smoke);
     if session.view.tab == Tab::Light {
         session.measure(&mut smoke_shown);

@@ -36,8 +36,9 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             .suffix(" s");
         ui.add(scrub).on_hover_text("Time since the smoke began");
         let (mut start, mut end) = (*playback.range.start(), *playback.range.end());
-        let drag =
-            |value| egui::DragValue::new(value).speed(0.05).range(-1000.0..=MAX_TIME).fixed_decimals(1).suffix(" s");
+        let drag = |value| {
+            egui::DragValue::new(value).speed(0.05).range(-1000.0..=f64::from(MAX_TIME)).fixed_decimals(1).suffix(" s")
+        };
         ui.weak("From").labelled_by(ui.add(drag(&mut start)).on_hover_text("Start of the loop").id);
         ui.weak("To").labelled_by(ui.add(drag(&mut end)).on_hover_text("End of the loop").id);
         if end > start {

@@ -397,19 +397,20 @@ impl Session {
 
     /// Gives settings the values of their keyframes at the time of the playback, until [`Session::end_edit`].
     pub fn begin_edit(&mut self) -> Option<KeyframeEdit> {
-        KeyframeEdit::begin(&mut self.document.preset, self.playback.time)
+        KeyframeEdit::begin(&mut self.document.preset, self.playback.key_time())
     }
 
     /// Turns changed values of settings with keyframes into keyframes. The playback stops at them.
     pub fn end_edit(&mut self, edit: Option<KeyframeEdit>) {
         if let Some(time) = edit.and_then(|edit| edit.end(&mut self.document.preset)) {
-            (self.playback.time, self.playback.is_playing) = (time, false);
+            self.playback.time = f64::from(time);
+            self.playback.is_playing = false;
         }
     }
 
     /// Adds a keyframe of a setting at the time of the playback, or deletes the one that is there.
     pub fn toggle_key(&mut self, setting: &str) {
-        let (preset, time) = (&mut self.document.preset, self.playback.time);
+        let (preset, time) = (&mut self.document.preset, self.playback.key_time());
         match keyframes::track(preset, setting).and_then(|track| keyframes::key_at(track, time)) {
             Some(index) => keyframes::remove_key(preset, setting, index),
             None => {
@@ -421,7 +422,7 @@ impl Session {
 
     /// Removes the track of a setting, which keeps the value that is shown.
     pub fn remove_track(&mut self, setting: &str) {
-        keyframes::remove_track(&mut self.document.preset, setting, self.playback.time);
+        keyframes::remove_track(&mut self.document.preset, setting, self.playback.key_time());
     }
 
     /// Pastes the copied keyframes into a track, from a time on.

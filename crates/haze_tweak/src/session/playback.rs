@@ -7,50 +7,55 @@ use haze_preset::Preset;
 /// Clock that can be paused, stepped and looped. Times are in seconds since the emission began.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
-    pub time: f32,
+    pub time: f64,
     pub is_playing: bool,
     /// Factor on the elapsed time; negative plays backwards.
-    pub speed: f32,
+    pub speed: f64,
     /// Range of the loop, seconds.
-    pub range: RangeInclusive<f32>,
+    pub range: RangeInclusive<f64>,
     pub is_looping: bool,
 }
 
 /// Duration of one step, seconds.
-pub const STEP: f32 = 1.0 / 30.0;
+pub const STEP: f64 = 1.0 / 30.0;
 
 /// Longest time that one frame of the window may advance the clock, seconds. After a pause of the window, the smoke
 /// does not jump.
-const MAX_STEP: f32 = 0.1;
+const MAX_STEP: f64 = 0.1;
 
 impl Playback {
     /// Returns a clock that is paused at a preset's time, with a loop that reaches to its last keyframe.
     pub fn of(preset: &Preset) -> Self {
         let clock = Self::at(preset.time);
         let keys = preset.animation.iter().filter_map(|track| track.keys.last());
-        let end = keys.fold(*clock.range.end(), |end, key| end.max(key.time));
+        let end = keys.fold(*clock.range.end(), |end, key| end.max(f64::from(key.time)));
         Self { range: 0.0..=end, ..clock }
     }
 
     /// Returns a clock that is paused at a time.
-    pub fn at(time: f32) -> Self {
+    pub fn at(time: f64) -> Self {
         Self { time, is_playing: false, speed: 1.0, range: 0.0..=(time + 6.0).max(10.0), is_looping: false }
     }
 
+    /// Time of keyframes that are set now.
+    pub fn key_time(&self) -> f32 {
+        self.time as f32
+    }
+
     /// Advances by the elapsed seconds, if it plays.
-    pub fn advance(&mut self, seconds: f32) {
+    pub fn advance(&mut self, seconds: f64) {
         if self.is_playing {
             self.move_by(seconds.clamp(0.0, MAX_STEP) * self.speed);
         }
     }
 
     /// Pauses the clock and moves it by a number of frames.
-    pub fn step(&mut self, frames: f32) {
+    pub fn step(&mut self, frames: f64) {
         self.is_playing = false;
         self.move_by(frames * STEP);
     }
 
-    fn move_by(&mut self, seconds: f32) {
+    fn move_by(&mut self, seconds: f64) {
         let (start, end) = (*self.range.start(), *self.range.end());
         self.time += seconds;
         if self.is_looping && end > start && !self.range.contains(&self.time) {

@@ -10,7 +10,7 @@ use haze_preset::{Camera, Preset, PresetSystem};
 #[derive(Default)]
 pub struct SmokeGeometry {
     /// Key of the cache: systems, particle files, and the bits of the time.
-    of: Option<(Vec<PresetSystem>, Vec<Option<ParticleFrames>>, u32)>,
+    of: Option<(Vec<PresetSystem>, Vec<Option<ParticleFrames>>, u64)>,
     pub systems: Vec<Vec<Particle>>,
     /// Bounds of each system, sprites included.
     pub bounds: Vec<Bounds>,
@@ -18,7 +18,7 @@ pub struct SmokeGeometry {
 
 impl SmokeGeometry {
     /// Returns the smoke of a preset at a time. `caches`: particles of the systems that have particle files.
-    pub fn at(&mut self, preset: &Preset, caches: Vec<Option<ParticleFrames>>, time: f32) -> &Self {
+    pub fn at(&mut self, preset: &Preset, caches: Vec<Option<ParticleFrames>>, time: f64) -> &Self {
         let is_same = self.of.as_ref().is_some_and(|(systems, its, at)| {
             *at == time.to_bits() && *systems == preset.systems && ParticleFrames::share_all_memory(its, &caches)
         });

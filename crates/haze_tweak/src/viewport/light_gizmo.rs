@@ -17,7 +17,7 @@ use crate::session::Session;
 pub struct LightGizmo {
     drag: Option<HandleDrag>,
     /// Keyframes and time of the playback before the drag.
-    before: (Vec<Track>, f32),
+    before: (Vec<Track>, f64),
     hovered: Option<Handle>,
     /// The button that started the drag is still down.
     is_busy: bool,

@@ -367,7 +367,7 @@ impl eframe::App for Window {
         let is_turning = self.session.view.lights.turn.is_some();
         self.renderer.begin_frame(is_touched || is_turning || self.session.playback.is_playing);
         self.file_actions.advance(&mut self.session, ui.ctx());
-        self.session.playback.advance(ui.input(|input| input.stable_dt));
+        self.session.playback.advance(f64::from(ui.input(|input| input.stable_dt)));
         panels::narrow::set_spacing(ui);
         self.bars(ui);
         self.settings(ui);

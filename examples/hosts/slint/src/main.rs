@@ -129,8 +129,8 @@ impl Host {
         let size = app.window().size();
         let size = UVec2::new(size.width, size.height).clamp(UVec2::ONE, UVec2::splat(4096));
         // The column is there from the start.
-        let time = 14.0 + self.start.elapsed().as_secs_f32();
-        let angle = 0.2 * time;
+        let time = 14.0 + self.start.elapsed().as_secs_f64();
+        let angle = 0.2 * time as f32;
         let view = View::new(
             rh::view::look_at_mat4(vec3(7.0 * angle.sin(), 2.4, 7.0 * angle.cos()), vec3(0.0, 1.7, 0.0), Vec3::Y),
             rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 100.0),

@@ -166,7 +166,7 @@ fn apply(session: &mut Session, setting: &str, change: Change) {
         Change::Add(time) => keyframes::add_key(preset, setting, time),
         Change::Paste(time) => session.paste_keys(setting, time),
         Change::Seek(time) => {
-            session.playback.time = time;
+            session.playback.time = f64::from(time);
             session.playback.is_playing = false;
         }
     }

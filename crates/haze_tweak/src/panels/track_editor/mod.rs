@@ -60,7 +60,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
 /// Draws the name of a track, and the mark that adds and deletes keyframes.
 fn name(ui: &mut Ui, session: &mut Session, setting: &str) {
     ui.spacing_mut().item_spacing.x = 0.0;
-    let (preset, time) = (&session.document.preset, session.playback.time);
+    let (preset, time) = (&session.document.preset, session.playback.key_time());
     let title = setting_title(preset, setting);
     let state = key_mark::KeyMarks::new(preset, time).of(setting).state;
     let is_selected = session.view.tracks.selected.as_deref() == Some(setting);

@@ -17,7 +17,7 @@ pub fn ruler(ui: &mut Ui, session: &mut Session, axis: &TimeAxis) {
     let response = ui.interact(rect, ui.scope_id().with("ruler"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Time ruler"));
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
-        session.playback.time = (axis.time(at.x) * 100.0).round() / 100.0;
+        session.playback.time = (f64::from(axis.time(at.x)) * 100.0).round() / 100.0;
         session.playback.is_playing = false;
     }
     let (painter, faint) = (ui.painter_at(rect), ui.visuals().weak_text_color());

@@ -133,7 +133,7 @@ fn a_keyframe_is_dragged_in_one_step_and_clicked_to_go_there() {
     let (last, lane) = (keyframe(&harness, 2).center(), harness.get_by_label_contains("Keyframes of Intensity").rect());
     let settled = preset(&harness).clone();
     // The axis reaches from 0 s to the end of the playback.
-    let second = (lane.width() - 16.0) / harness.state().session.playback.range.end();
+    let second = (lane.width() - 16.0) / *harness.state().session.playback.range.end() as f32;
     drag(&mut harness, last, last - Vec2::new(second, 0.0));
     let moved = times(&harness, INTENSITY)[1];
     assert!((moved - 3.0).abs() < 0.03, "{moved}");
@@ -162,7 +162,7 @@ fn menus_ease_copy_paste_and_delete() {
     assert_eq!(track(&harness, INTENSITY).unwrap().keys[0].ease, Ease::Hold);
     choose(&mut harness, first, "Copy Keyframe");
     let lane = harness.get_by_label_contains("Keyframes of Intensity").rect();
-    let second = (lane.width() - 16.0) / harness.state().session.playback.range.end();
+    let second = (lane.width() - 16.0) / *harness.state().session.playback.range.end() as f32;
     let at_two = pos2(lane.left() + 8.0 + 2.0 * second, lane.center().y);
     click_at(&mut harness, at_two, PointerButton::Secondary);
     harness.get_by_label_contains("Paste Keyframes at 2.0").click();
@@ -291,7 +291,7 @@ fn seconds_are_written_along_the_ruler_and_a_click_goes_there() {
     let place = pos2(keyframe(&harness, 2).center().x, ruler.center().y);
     click_at(&mut harness, place, PointerButton::Primary);
     assert!((harness.state().session.playback.time - 4.0).abs() < 0.02);
-    let axis = |end: f32, width: f32| {
+    let axis = |end: f64, width: f32| {
         let mut session = crate::session::Session::open(std::path::Path::new("column"), None).unwrap();
         session.playback.range = 0.0..=end;
         super::TimeAxis::new(0.0, width, &session).labels(50.0)

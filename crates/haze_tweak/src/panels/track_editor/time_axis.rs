@@ -20,9 +20,10 @@ impl TimeAxis {
     /// Axis over the range of the playback and all keyframes.
     pub fn new(left: f32, width: f32, session: &Session) -> Self {
         let keys = session.document.preset.animation.iter().flat_map(|track| &track.keys);
-        let range = keys
-            .fold(session.playback.range.clone(), |range, key| range.start().min(key.time)..=range.end().max(key.time));
-        Self { left, width, range, now: session.playback.time }
+        let playback = &session.playback;
+        let played = *playback.range.start() as f32..=*playback.range.end() as f32;
+        let range = keys.fold(played, |range, key| range.start().min(key.time)..=range.end().max(key.time));
+        Self { left, width, range, now: playback.key_time() }
     }
 
     pub fn x(&self, time: f32) -> f32 {
