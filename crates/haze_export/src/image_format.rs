@@ -54,8 +54,10 @@ fn is_always_empty(preset: &Preset) -> bool {
 }
 
 /// Color of transparent PNGs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(not(target_arch = "wasm32"), derive(clap::ValueEnum))]
+#[cfg_attr(test, derive(serde::Deserialize))]
+#[serde(rename_all = "snake_case")]
 pub enum Alpha {
     /// The smoke's own color, not multiplied by alpha.
     #[default]

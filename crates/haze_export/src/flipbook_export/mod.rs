@@ -20,6 +20,7 @@ use haze_preset::{CompressionEffort, write_file};
 use crate::backend::Backend;
 use crate::engine::Engine;
 use crate::image_export::{ExportProgress, Frames, check_cells, image_label, stopped_before_writing};
+use crate::image_format::Alpha;
 use crate::memory_check::{BYTES_PER_PIXEL, check_memory};
 use crate::png_stream::EncodedPng;
 pub use cut_smoke::CutSmoke;
@@ -34,6 +35,9 @@ pub struct FlipbookOptions {
     pub engine: Engine,
     /// Rows (`x`) and columns (`y`).
     pub cells: UVec2,
+    /// Color of `color.png`. `None`: premultiplied if a system burns in one of the frames, because straight color has no glow where
+    /// opacity is low; straight otherwise.
+    pub alpha: Option<Alpha>,
     /// Frames after the last that fade into the first ones, so that the flipbook loops. 0: none.
     pub loop_fade: u32,
     /// True for sheets of six-way light maps.
@@ -146,7 +150,8 @@ impl FlipbookExport {
             Ok(layers.mixed(&at(count + index, done + 1).await?, share))
         };
         let FlipbookOptions { engine, cells, has_six_way, effort, .. } = options;
-        let layout = SheetLayout { engine, frame: shot.size, cells, effort, folder };
+        let alpha = options.alpha.unwrap_or(if burns { Alpha::Premultiplied } else { Alpha::Straight });
+        let layout = SheetLayout { engine, frame: shot.size, cells, alpha, effort, folder };
         let mut sheets = Sheets::new(layout, burns, has_six_way)?;
         let mut place = async |layers: &FrameLayers, pair: [&Image<Vec4>; 2]| {
             progress.show("haze: encoding a frame".into(), async { sheets.place(layers, pair) }).await
@@ -180,6 +185,7 @@ impl FlipbookExport {
             rows: options.cells.x,
             frames: count,
             rate: frames.rate,
+            alpha,
             motion_scale: made.motion_scale,
             six_way_intensity: made.six_way_intensity,
         };

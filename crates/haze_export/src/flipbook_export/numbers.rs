@@ -1,5 +1,7 @@
 //! Numbers that programs need to show a flipbook.
 
+use crate::image_format::Alpha;
+
 /// Numbers of a flipbook, for programs: `flipbook.json`.
 #[derive(serde::Serialize)]
 #[cfg_attr(test, derive(serde::Deserialize))]
@@ -9,6 +11,8 @@ pub struct FlipbookNumbers {
     pub frames: u32,
     /// Frames per second.
     pub rate: f32,
+    /// Color of `color.png`.
+    pub alpha: Alpha,
     /// Way that full red or green stands for, as a share of a frame's width or height.
     pub motion_scale: f32,
     /// Intensity of a light under which the six-way maps have the brightness of the preset's smoke; absent without them.

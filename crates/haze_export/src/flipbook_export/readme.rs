@@ -3,6 +3,7 @@
 use super::numbers::FlipbookNumbers;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;
+use crate::image_format::Alpha;
 
 pub fn readme(
     engine: Engine,
@@ -10,7 +11,7 @@ pub fn readme(
     numbers: &FlipbookNumbers,
     images: impl Iterator<Item = &'static str>,
 ) -> String {
-    let FlipbookNumbers { columns, rows, frames, rate, motion_scale, six_way_intensity } = numbers;
+    let FlipbookNumbers { columns, rows, frames, rate, alpha, motion_scale, six_way_intensity } = numbers;
     let mut text = format!(
         "# {title}: flipbook\n\n{frames} frames in {columns} columns and {rows} rows, left to right, then down; {rate} frames \
          per second. `flipbook.json` has the numbers.\n\n| file | color space | content |\n|---|---|---|\n",
@@ -23,7 +24,15 @@ pub fn readme(
     let motion_down = if engine.first_row_is_at_the_top() { "down" } else { "up" };
     for name in images {
         let (space, content) = match name {
-            COLOR => ("sRGB", "light, exposed and tonemapped, **not premultiplied**; a: opacity".to_owned()),
+            COLOR => {
+                let kind = match alpha {
+                    Alpha::Straight => "**straight**: not multiplied by opacity",
+                    Alpha::Premultiplied => {
+                        "**premultiplied**: times opacity, in linear light; glow stays where opacity is low"
+                    }
+                };
+                ("sRGB", format!("light, exposed and tonemapped, {kind}; a: opacity"))
+            }
             NORMALS => ("linear", format!("n/2 + 1/2 in view space: right, {green}, to the viewer")),
             MOTION => {
                 let half = "0.5 is rest, 0 and 1 the scale below";
@@ -35,8 +44,12 @@ pub fn readme(
         };
         text += &format!("| `{name}` | {space} | {content} |\n");
     }
+    let clear = match alpha {
+        Alpha::Straight => "",
+        Alpha::Premultiplied => "; those of `color.png` are black, as premultiplied color is",
+    };
     text += &format!(
-        "\nClear texels continue the smoke beside them, so that filtered edges stay bright.\n\n**Motion**: full red or green is \
+        "\nClear texels continue the smoke beside them, so that filtered edges stay bright{clear}.\n\n**Motion**: full red or green is \
          a way of {motion_scale:.5} of a frame's width or height. Between frames n and n + 1, at a share t of the time, mix both \
          by t, the first sampled at uv − m·t and the second at uv + m·(1 − t), with m = (2·rg − 1) · {motion_scale:.5} of the \
          respective frame, in coordinates of one frame.\n\n",
@@ -52,6 +65,7 @@ pub fn readme(
 
 fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
     let FlipbookNumbers { columns, rows, frames, rate, motion_scale, .. } = numbers;
+    let blending = blending(engine, numbers.alpha);
     match engine {
         Engine::Unreal => format!(
             "## In Unreal Engine\n\n\
@@ -59,7 +73,8 @@ fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
              `Normalmap` for `normals.png`, `BC7` or `VectorDisplacementmap` for `motion.png`.\n\
              2. In Niagara, *Sub Image Size* {columns} × {rows} in the sprite renderer, *Sub UV Animation* with {frames} frames \
              at {rate} per second, *Sub UV Blending* on.\n\
-             3. In the material, *Particle Sub UV* reads `color.png`; for motion vectors the function *FlipBook\\_MotionVectors* \
+             3. In the material, {blending} and *Shading Model* `Unlit`. *Particle Sub UV* reads `color.png`: rgb is *Emissive \
+             Color*, a is *Opacity*. For motion vectors the function *FlipBook\\_MotionVectors* \
              takes `motion.png` and a strength of {motion_scale:.5}.\n",
         ),
         Engine::Unity => format!(
@@ -67,22 +82,46 @@ fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
              1. Import the sheets: *sRGB* on for `color.png` and `emission.png`, off for all others; *Alpha Is Transparency* off; \
              *Texture Type* `Normal map` for `normals.png`; no compression for `motion.png`.\n\
              2. In VFX Graph, *Uv Mode* `Flipbook Motion Blend`, *Flip Book Size* {columns} × {rows}, *Motion Vector Map* \
-             `motion.png`, *Motion Vector Scale* {motion_scale:.5}, and *Flipbook Player* at {rate} frames per second.\n\
+             `motion.png`, *Motion Vector Scale* {motion_scale:.5}, and *Flipbook Player* at {rate} frames per second; {blending}.\n\
              3. For six-way light, *Material Type* `Six Way Smoke Lit`: *Positive Axes Lightmap* `six_way_1.png`, *Negative Axes \
              Lightmap* `six_way_2.png`.\n",
         ),
         Engine::Godot => format!(
             "## In Godot 4\n\n\
-             1. Import the sheets with *Compress Mode* `Lossless` and mipmaps.\n\
-             2. In a *StandardMaterial3D*: *Transparency* `Alpha`, *Shading Mode* `Unshaded`, *Albedo* `color.png`, *Billboard \
+             1. Import the sheets with *Compress Mode* `Lossless` and mipmaps; *Fix Alpha Border* off, which would replace the \
+             colors of nearly clear texels.\n\
+             2. In a *StandardMaterial3D*: *Transparency* `Alpha`, {blending}, *Shading Mode* `Unshaded`, *Albedo* `color.png`, *Billboard \
              Mode* `Particle Billboard`, *H Frames* {columns}, *V Frames* {rows}.\n\
              3. In the process material, *Animation Speed* 1 plays all {frames} frames in a particle's life.\n\
              4. Motion vectors need a shader: the formula above, in `fragment()`.\n",
         ),
-        Engine::Wgsl => {
-            "## In WGSL\n\nUpload `color.png` as `Rgba8UnormSrgb`, the others as `Rgba8Unorm`, and sample them as \
-                         above.\n"
-                .to_owned()
+        Engine::Wgsl => format!(
+            "## In WGSL\n\nUpload `color.png` and `emission.png` as `Rgba8UnormSrgb`, the others as `Rgba8Unorm`, and sample \
+             them as above. Blend with {blending}.\n",
+        ),
+    }
+}
+
+/// Setting of an engine that blends the color.
+fn blending(engine: Engine, alpha: Alpha) -> &'static str {
+    match (engine, alpha) {
+        (Engine::Unreal, Alpha::Straight) => "*Blend Mode* `Translucent`",
+        (Engine::Unreal, Alpha::Premultiplied) => "*Blend Mode* `AlphaComposite (Premultiplied Alpha)`",
+        (Engine::Unity, Alpha::Straight) => {
+            "*Blend Mode* `Alpha`. In a particle shader of URP: *Blending Mode* `Alpha`; in a shader of your own: `Blend \
+             SrcAlpha OneMinusSrcAlpha`"
+        }
+        (Engine::Unity, Alpha::Premultiplied) => {
+            "*Blend Mode* `Alpha Premultiplied`. In a particle shader of URP: *Blending Mode* `Premultiply`; in a shader of \
+             your own: `Blend One OneMinusSrcAlpha`"
+        }
+        (Engine::Godot, Alpha::Straight) => "*Blend Mode* `Mix` (`blend_mix` in a shader)",
+        (Engine::Godot, Alpha::Premultiplied) => {
+            "*Blend Mode* `Premultiplied Alpha` (`blend_premul_alpha` in a shader)"
+        }
+        (Engine::Wgsl, Alpha::Straight) => "`BlendState::ALPHA_BLENDING`, in Bevy `AlphaMode::Blend`",
+        (Engine::Wgsl, Alpha::Premultiplied) => {
+            "`BlendState::PREMULTIPLIED_ALPHA_BLENDING`, in Bevy `AlphaMode::Premultiplied`"
         }
     }
 }

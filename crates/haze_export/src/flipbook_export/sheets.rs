@@ -16,6 +16,7 @@ use super::fill::filled;
 use super::frame_layers::FrameLayers;
 use super::motion_fit::followed;
 use crate::engine::Engine;
+use crate::image_format::Alpha;
 use crate::png_stream::{EncodedPng, PngShape, PngStream};
 
 pub const COLOR: &str = "color.png";
@@ -60,6 +61,8 @@ pub struct SheetLayout<'a> {
     pub frame: UVec2,
     /// Rows (`x`) and columns (`y`).
     pub cells: UVec2,
+    /// Of the colors.
+    pub alpha: Alpha,
     /// Of the files.
     pub effort: CompressionEffort,
     /// Folder of the files; it need not exist.
@@ -188,7 +191,8 @@ impl<T: Pod> ValueSheet<T> {
     }
 }
 
-/// Sheets of layers, divided by opacity and filled; opacity in alpha. Fire stays multiplied.
+/// Sheets of layers, divided by opacity and filled; opacity in alpha. Fire stays multiplied, and so do premultiplied colors: where
+/// they are clear, 0 is the color that filters right, and glow is kept.
 pub struct Sheets<'a> {
     layout: SheetLayout<'a>,
     /// Number of frames that have been placed.
@@ -230,7 +234,10 @@ impl<'a> Sheets<'a> {
     /// # Errors
     /// [`Error::Io`] if a row of frames cannot be written.
     pub fn place(&mut self, layers: &FrameLayers, pair: [&Image<Vec4>; 2]) -> Result<(), Error> {
-        self.place_light(&filled(&layers.light));
+        match self.layout.alpha {
+            Alpha::Straight => self.place_light(&filled(&layers.light)),
+            Alpha::Premultiplied => self.place_light(&layers.light),
+        }
         self.place_normals(&filled(&layers.normals));
         self.place_motion(&followed(&filled(&layers.motion), pair));
         if let Some(fire) = &layers.fire {

@@ -1,12 +1,13 @@
 use glam::{IVec2, Vec2, Vec3, Vec4Swizzles};
 use haze_core::assets::image::read_png;
+use haze_core::formula::color::{linear_from_srgb, srgb_from_linear};
 use haze_demo::tonemap_pass::rgba8;
 use haze_preset::{Ease, KeyValue, Keyframe, Track};
 use image::RgbaImage;
 use pollster::block_on;
 
 use super::*;
-use crate::image_format::{Background, ImageFormat};
+use crate::image_format::{Alpha, Background, ImageFormat};
 use crate::smoke_layers::SmokeLayers;
 
 const ENGINES: [Engine; 4] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl];
@@ -23,7 +24,7 @@ fn frames(count: u32, rate: f32) -> Frames {
 
 fn options(engine: Engine) -> FlipbookOptions {
     let (cells, effort) = (UVec2::splat(2), CompressionEffort::Quick);
-    FlipbookOptions { engine, cells, loop_fade: 0, has_six_way: false, effort }
+    FlipbookOptions { engine, cells, alpha: Some(Alpha::Straight), loop_fade: 0, has_six_way: false, effort }
 }
 
 #[test]
@@ -42,9 +43,8 @@ struct Flipbook {
 }
 
 impl Flipbook {
-    fn new(shot: &Shot, frames: &Frames, engine: Engine, loop_fade: u32, has_six_way: bool) -> Self {
+    fn new(shot: &Shot, frames: &Frames, options: FlipbookOptions) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let options = FlipbookOptions { loop_fade, has_six_way, ..options(engine) };
         let export = block_on(FlipbookExport::render(&Backend::Cpu, shot, frames, options, &GO_ON, folder.path()));
         let export = export.unwrap();
         export.write(folder.path()).unwrap();
@@ -91,7 +91,7 @@ fn difference(a: impl Fn(UVec2) -> Vec4, b: impl Fn(UVec2) -> Vec4) -> f32 {
 fn frames_of_the_sheets_are_those_of_the_renderer() {
     for (name, engine) in [("column", Engine::Unreal), ("campfire", Engine::Unity), ("column", Engine::Godot)] {
         let (shot, frames) = (shot(name), frames(3, 8.0));
-        let flipbook = Flipbook::new(&shot, &frames, engine, 0, false);
+        let flipbook = Flipbook::new(&shot, &frames, options(engine));
         let now = frames.shot(&shot, 2);
         let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
         let direct = block_on(format.render(&now, async |shot| shot.render_on_cpu())).unwrap().into_rgba8();
@@ -123,6 +123,75 @@ fn frames_of_the_sheets_are_those_of_the_renderer() {
 }
 
 #[test]
+fn premultiplied_flipbooks_keep_the_glow_of_fire() {
+    let (shot, frames) = (shot("campfire"), frames(2, 8.0));
+    let premultiplied = FlipbookOptions { alpha: None, ..options(Engine::Unity) };
+    let color = |options| Flipbook::new(&shot, &frames, options).frame(sheets::COLOR, 1);
+    let [kept, straight] = [premultiplied, options(Engine::Unity)].map(color);
+    let [before_black, _] = crate::smoke_alone::before_two_skies(&frames.shot(&shot, 1));
+    let before_black = haze_demo::tonemap_pass::tonemap(&before_black.render_on_cpu().unwrap(), &before_black);
+    let over_black =
+        |texel: Vec4| Vec3::from(texel.xyz().to_array().map(|code| srgb_from_linear(linear_from_srgb(code) * texel.w)));
+    let (mut clear, mut error) = (0, 0.0);
+    for at in pixels() {
+        let [found, divided] = [&kept, &straight].map(|image| image.get_pixel(at.x, at.y).0);
+        let expected = before_black.get_pixel(at.x, at.y).0;
+        assert_eq!(found[3], divided[3], "{at}");
+        // Dithering depends on the place on the sheet, and moves either value by up to a step.
+        let apart = found.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(apart <= Some(2), "{at}: {found:?}, not {expected:?}");
+        clear += u32::from(found == [0; 4]);
+        let apart = over_black(texel(&straight, at.as_ivec2())) - texel(&kept, at.as_ivec2()).xyz();
+        error += apart.length_squared() / (3 * SIDE * SIDE) as f32;
+    }
+    // 31 dB at 256 pixels.
+    assert!(clear > 200 && -10.0 * error.log10() < 40.0, "{clear} clear, {} dB", -10.0 * error.log10());
+}
+
+#[test]
+fn flipbooks_are_premultiplied_if_a_system_burns_at_any_time() {
+    let frames = frames(2, 1.0);
+    let mut fire = Shot::load("campfire", UVec2::splat(16)).unwrap();
+    fire.preset.systems.truncate(1);
+    let key = |time, intensity| Keyframe { time, value: KeyValue::Number(intensity), ease: Ease::Hold };
+    let keys = vec![key(fire.preset.time, 0.0), key(fire.preset.time + 0.5, 1.0)];
+    fire.preset.animation =
+        vec![Track { setting: "systems[0].settings.fire.intensity".into(), keys, ..Track::default() }];
+    let unset = FlipbookOptions { alpha: None, ..options(Engine::Unity) };
+    assert_eq!(Flipbook::new(&fire, &frames, unset).numbers.alpha, Alpha::Premultiplied);
+}
+
+#[test]
+fn pages_of_flipbooks_name_the_blend_mode() {
+    for (engine, straight, premultiplied) in [
+        (Engine::Unreal, "`Translucent`", "`AlphaComposite (Premultiplied Alpha)`"),
+        (Engine::Unity, "`Blend SrcAlpha OneMinusSrcAlpha`", "`Blend One OneMinusSrcAlpha`"),
+        (Engine::Godot, "`blend_mix`", "`blend_premul_alpha`"),
+        (Engine::Wgsl, "`BlendState::ALPHA_BLENDING`", "`BlendState::PREMULTIPLIED_ALPHA_BLENDING`"),
+    ] {
+        let wanted = [(Alpha::Straight, straight, premultiplied), (Alpha::Premultiplied, premultiplied, straight)];
+        for (alpha, named, other) in wanted {
+            let readme = page(engine, alpha);
+            assert!(readme.contains(named) && !readme.contains(other), "{engine:?}: {readme}");
+        }
+    }
+}
+
+/// Page of a flipbook with all files.
+fn page(engine: Engine, alpha: Alpha) -> String {
+    let numbers = FlipbookNumbers {
+        columns: 2,
+        rows: 2,
+        frames: 4,
+        rate: 24.0,
+        alpha,
+        motion_scale: 0.1,
+        six_way_intensity: Some(2.0),
+    };
+    readme::readme(engine, "Fire", &numbers, FILES[..6].iter().copied())
+}
+
+#[test]
 fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() {
     // Eight frames per second: smoke moves by some pixels.
     let (shot, frames) = (shot("spell"), frames(2, 8.0));
@@ -131,7 +200,7 @@ fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() 
     between.preset.time += 0.5 / f64::from(frames.rate);
     let between = block_on(format.render(&between, async |shot| shot.render_on_cpu())).unwrap().into_rgba8();
     for engine in ENGINES {
-        let flipbook = Flipbook::new(&shot, &frames, engine, 0, false);
+        let flipbook = Flipbook::new(&shot, &frames, options(engine));
         let [first, second] = [0, 1].map(|index| flipbook.frame(sheets::COLOR, index));
         let motions = [0, 1].map(|index| flipbook.frame(sheets::MOTION, index));
         // Texture coordinates count from the bottom in Unity.
@@ -163,7 +232,7 @@ fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() 
 fn faded_flipbooks_loop() {
     let (shot, frames) = (shot("column"), frames(4, 4.0));
     let gap = |fade: u32| {
-        let flipbook = Flipbook::new(&shot, &frames, Engine::Godot, fade, false);
+        let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { loop_fade: fade, ..options(Engine::Godot) });
         let image = |index| flipbook.frame(sheets::COLOR, index);
         let (first, last, second) = (image(0), image(3), image(2));
         let apart =
@@ -188,7 +257,7 @@ fn faded_flipbooks_loop() {
 fn six_way_maps_are_the_smoke_under_each_light() {
     for engine in [Engine::Unity, Engine::Unreal] {
         let (shot, frames) = (shot("column"), frames(1, 8.0));
-        let flipbook = Flipbook::new(&shot, &frames, engine, 0, true);
+        let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { has_six_way: true, ..options(engine) });
         let layers = block_on(SmokeLayers::new(&Backend::Cpu, &shot)).unwrap();
         let [positive, negative] = block_on(layers.six_way()).unwrap();
         let maps = sheets::SIX_WAY.map(|name| flipbook.frame(name, 0));
@@ -312,7 +381,14 @@ fn sheets_hold_one_row_of_frames() {
         for rows in [1, 5] {
             let (frame, cells) = (shot.size, UVec2::new(rows, 3));
             let effort = CompressionEffort::Quick;
-            let layout = SheetLayout { engine: Engine::Unity, frame, cells, effort, folder: folder.path() };
+            let layout = SheetLayout {
+                engine: Engine::Unity,
+                frame,
+                cells,
+                alpha: Alpha::Straight,
+                effort,
+                folder: folder.path(),
+            };
             let mut sheets = Sheets::new(layout, burns, has_six_way).unwrap();
             for _ in 0..3 * rows {
                 sheets.place(&layers, [&light, &light]).unwrap();
@@ -335,7 +411,7 @@ fn sheets_of_rows_are_those_of_whole_images() {
     };
     let layers = [at(0), at(1), at(2)];
     let light = layers.each_ref().map(|layers| encoded(&layers.light, 1.0));
-    let flipbook = Flipbook::new(&shot, &frames, Engine::Unreal, 0, true);
+    let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { has_six_way: true, ..options(Engine::Unreal) });
     let whole = |layer: &dyn Fn(usize) -> Image<Vec4>| {
         let mut sheet = Image::new(UVec2::splat(2 * SIDE), Vec4::ZERO);
         let frames: Vec<_> = (0..3).map(layer).collect();

@@ -17,7 +17,7 @@ use image::{DynamicImage, RgbImage};
 use super::value_spread::spread_values;
 use crate::document::display_names::display_name;
 use crate::platform::file_io::{CompressionEffort, write_png};
-use crate::platform::render_job::{Engine, ExportProgress, Frames, ImageFormat, SCENE};
+use crate::platform::render_job::{Alpha, Engine, EngineFlipbook, ExportProgress, Frames, ImageFormat, SCENE};
 use crate::platform::worker::{Ticket, Worker};
 use crate::platform::{IS_PAGE, file_io, render_job};
 use crate::session::Session;
@@ -98,6 +98,8 @@ pub struct ExportOptions {
     pub format: ImageFormat,
     /// Of a material, and of a flipbook for an engine.
     pub engine: Engine,
+    /// Color of a flipbook for an engine. `None`: premultiplied if a system burns.
+    pub flipbook_alpha: Option<Alpha>,
     /// System of a material. The selected one, when the export begins.
     pub system: usize,
 }
@@ -114,6 +116,7 @@ impl Default for ExportOptions {
             file: FileKind::default(),
             format: ImageFormat::default(),
             engine: Engine::default(),
+            flipbook_alpha: None,
             system: 0,
         }
     }
@@ -385,8 +388,9 @@ async fn make(
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::EngineFlipbook => {
-            let engine = (options.engine, options.cells);
-            render_job::write_engine_flipbook(backend, shot, &frames, engine, path, watch).await?;
+            let choices =
+                EngineFlipbook { engine: options.engine, cells: options.cells, alpha: options.flipbook_alpha };
+            render_job::write_engine_flipbook(backend, shot, &frames, choices, path, watch).await?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::Material => {

@@ -49,6 +49,12 @@ const ALPHAS: [(&str, Alpha, &str); 2] = [
     ("Premultiplied", Alpha::Premultiplied, "The smoke as before black: keeps the glow of fire where alpha is low"),
 ];
 
+const FLIPBOOK_ALPHAS: [(&str, Option<Alpha>, &str); 3] = [
+    ("Auto", None, "Premultiplied if a system burns, straight otherwise"),
+    (ALPHAS[0].0, Some(ALPHAS[0].1), ALPHAS[0].2),
+    (ALPHAS[1].0, Some(ALPHAS[1].1), ALPHAS[1].2),
+];
+
 const FILES: [(&str, (FileKind, BitDepth), &str); 3] = [
     ("PNG", (FileKind::Png, BitDepth::Eight), "8 bits per channel, dithered"),
     ("PNG 16", (FileKind::Png, BitDepth::Sixteen), "16 bits per channel"),
@@ -112,6 +118,7 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
         if is_for_engine {
             let about = "Conventions of normals and motion vectors; a README tells how to use the files";
             choices(ui, "Engine", &mut options.engine, &ENGINES.map(|(name, engine, _)| (name, engine, about)));
+            choices(ui, "Alpha", &mut options.flipbook_alpha, &FLIPBOOK_ALPHAS);
         }
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
             let label = ui.label(name).id;

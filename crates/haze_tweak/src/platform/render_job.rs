@@ -83,18 +83,28 @@ pub fn write_material(shot: &Shot, system: usize, engine: Engine, folder: &Path)
     export.write(folder)
 }
 
-/// Writes sheets of color, normals, motion vectors and fire into a folder. `engine`: with the rows and columns of a sheet.
+/// Choices of a flipbook for an engine, of those that the window offers.
+#[derive(Clone, Copy)]
+pub struct EngineFlipbook {
+    pub engine: Engine,
+    /// Rows (`x`) and columns (`y`).
+    pub cells: UVec2,
+    /// `None`: premultiplied if a system burns.
+    pub alpha: Option<Alpha>,
+}
+
+/// Writes sheets of color, normals, motion vectors and fire into a folder.
 #[cfg(not(target_arch = "wasm32"))]
 pub async fn write_engine_flipbook(
     backend: &Backend,
     shot: &Shot,
     frames: &Frames,
-    (engine, cells): (Engine, UVec2),
+    EngineFlipbook { engine, cells, alpha }: EngineFlipbook,
     folder: &Path,
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
     let effort = CompressionEffort::Quick;
-    let options = FlipbookOptions { engine, cells, loop_fade: 0, has_six_way: false, effort };
+    let options = FlipbookOptions { engine, cells, alpha, loop_fade: 0, has_six_way: false, effort };
     let export = FlipbookExport::render(backend, shot, frames, options, progress, folder).await?;
     make_folder(folder)?;
     export.write(folder)
@@ -106,7 +116,7 @@ pub async fn write_engine_flipbook(
     _: &Backend,
     _: &Shot,
     _: &Frames,
-    _: (Engine, UVec2),
+    _: EngineFlipbook,
     folder: &Path,
     _: &ExportProgress<'_>,
 ) -> Result<(), Error> {

@@ -11,7 +11,7 @@ use haze_export::engine::Engine;
 use haze_export::flipbook_export::{FILES, FlipbookExport, FlipbookOptions};
 use haze_export::frame_range::{parse_frames, parse_rate, parse_sheet};
 use haze_export::image_export::{ExportProgress, Frames};
-use haze_export::image_format::ImageFormat;
+use haze_export::image_format::{Alpha, ImageFormat};
 use haze_export::options::{ShotArguments, whole_number};
 use haze_export::output::{OutputFolder, check_folder, print_error, print_line};
 
@@ -35,6 +35,10 @@ pub struct Arguments {
     /// Rows and columns of the sheets.
     #[arg(long, value_name = "RxC", value_parser = parse_sheet, allow_hyphen_values = true)]
     sheet: UVec2,
+    /// Color of color.png: the smoke's own, or multiplied by alpha. Default: premultiplied if a system burns, because straight
+    /// color has no glow where alpha is low; straight otherwise.
+    #[arg(long, value_enum)]
+    alpha: Option<Alpha>,
     /// Fade as many frames after the last into the first ones, so that the flipbook loops.
     #[arg(long = "loop", value_name = "N", value_parser = whole_number(0..=1000), allow_hyphen_values = true, default_value = "0")]
     loop_fade: u32,
@@ -54,6 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let options = FlipbookOptions {
         engine: arguments.engine,
         cells: arguments.sheet,
+        alpha: arguments.alpha,
         loop_fade: arguments.loop_fade,
         has_six_way: arguments.six_way,
         effort: arguments.shot.effort(),

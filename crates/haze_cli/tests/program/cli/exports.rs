@@ -74,12 +74,15 @@ fn flipbooks_are_written_with_their_numbers() {
     }
     let numbers = std::fs::read_to_string(folder.path().join("book/flipbook.json")).unwrap();
     assert!(numbers.contains("\"columns\": 2") && numbers.contains("\"frames\": 3"), "{numbers}");
+    assert!(numbers.contains("\"alpha\": \"straight\""), "{numbers}");
     let readme = std::fs::read_to_string(folder.path().join("book/README.md")).unwrap();
     assert!(readme.contains("light from right, top, back"), "{readme}");
 
     let refused = |more: &[&str]| refusal(folder.path(), &[&FLIPBOOK[..], &["--engine", "unity"], more].concat());
     let line = refused(&["--loop", "3"]);
     assert!(line.contains("--loop: 3 is not valid; expected less than the number of frames, 3"), "{line}");
+    let line = refused(&["--alpha", "none"]);
+    assert!(line.contains("--alpha") && line.contains("straight, premultiplied"), "{line}");
     let line = refused(&["--view", "normals"]);
     assert!(line.contains("--view"), "{line}");
 }

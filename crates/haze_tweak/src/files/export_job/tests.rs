@@ -108,6 +108,21 @@ fn frames_are_written_as_sequence_flipbook_and_gif() {
 }
 
 #[test]
+fn the_alpha_of_a_flipbook_for_an_engine_is_chosen_in_the_dialog() {
+    let mut bench = bench();
+    let job = &mut bench.window.state_mut().export_job;
+    (job.options.frame_size, job.options.cells, job.options.last) = (UVec2::splat(16), UVec2::new(1, 1), 0);
+    job.product = ExportKind::EngineFlipbook;
+    job.is_open = true;
+    bench.window.run_steps(2);
+    bench.window.get_by_label("Premultiplied").click();
+    bench.window.run_steps(2);
+    let names = bench.make(ExportKind::EngineFlipbook);
+    let numbers = fs::read_to_string(bench.folder.path().join(&names[0]).join("flipbook.json")).unwrap();
+    assert!(numbers.contains("\"alpha\": \"premultiplied\""), "{numbers}");
+}
+
+#[test]
 fn files_and_alpha_are_chosen_in_the_dialog() {
     let mut bench = bench();
     bench.window.state_mut().export_job.product = ExportKind::Image;
@@ -130,7 +145,7 @@ fn files_and_alpha_are_chosen_in_the_dialog() {
     let picture = haze_core::assets::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
     assert_eq!(picture.color(), image::ColorType::Rgba16);
     let format = bench.window.state().export_job.options.format;
-    assert_eq!(format.alpha, render_job::Alpha::Premultiplied);
+    assert_eq!(format.alpha, Alpha::Premultiplied);
     choose(&mut bench, "EXR");
     assert!(bench.window.query_by_label("Premultiplied").is_none(), "EXR has no other");
     let names = bench.make(ExportKind::Image);
