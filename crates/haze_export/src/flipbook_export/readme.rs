@@ -54,6 +54,10 @@ pub fn readme(
          by t, the first sampled at uv − m·t and the second at uv + m·(1 − t), with m = (2·rg − 1) · {motion_scale:.5} of the \
          respective frame, in coordinates of one frame.\n\n",
     );
+    text += &format!(
+        "**Blending**: opacity is that of linear light. Blended as sRGB codes, thin smoke is 0.06 to 0.13 too dark. {}\n\n",
+        linear_light(engine),
+    );
     if let Some(intensity) = six_way_intensity {
         text += &format!(
             "**Six-way light**: white is {intensity:.3} of the light. Multiply by {intensity:.3}, and by the smoke's color, \
@@ -99,6 +103,24 @@ fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
             "## In WGSL\n\nUpload `color.png` and `emission.png` as `Rgba8UnormSrgb`, the others as `Rgba8Unorm`, and sample \
              them as above. Blend with {blending}.\n",
         ),
+    }
+}
+
+/// Settings with which an engine blends linear light.
+fn linear_light(engine: Engine) -> &'static str {
+    match engine {
+        Engine::Unreal => "Unreal Engine blends linear light.",
+        Engine::Unity => {
+            "Unity blends linear light if *Project Settings > Player > Color Space* is `Linear`, and codes if it is `Gamma`."
+        }
+        Engine::Godot => {
+            "Godot's renderers Forward+ and Mobile blend linear light in 3D, and in 2D with *Project Settings > Rendering > \
+             Viewport > HDR 2D*. Compatibility blends codes."
+        }
+        Engine::Wgsl => {
+            "wgpu blends linear light on targets whose format is sRGB or float, such as `Bgra8UnormSrgb` and `Rgba16Float`; on \
+             `Bgra8Unorm`, codes are blended. Bevy blends linear light."
+        }
     }
 }
 

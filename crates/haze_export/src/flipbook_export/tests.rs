@@ -163,16 +163,32 @@ fn flipbooks_are_premultiplied_if_a_system_burns_at_any_time() {
 
 #[test]
 fn pages_of_flipbooks_name_the_blend_mode() {
-    for (engine, straight, premultiplied) in [
-        (Engine::Unreal, "`Translucent`", "`AlphaComposite (Premultiplied Alpha)`"),
-        (Engine::Unity, "`Blend SrcAlpha OneMinusSrcAlpha`", "`Blend One OneMinusSrcAlpha`"),
-        (Engine::Godot, "`blend_mix`", "`blend_premul_alpha`"),
-        (Engine::Wgsl, "`BlendState::ALPHA_BLENDING`", "`BlendState::PREMULTIPLIED_ALPHA_BLENDING`"),
+    for (engine, straight, premultiplied, linear) in [
+        (
+            Engine::Unreal,
+            "`Translucent`",
+            "`AlphaComposite (Premultiplied Alpha)`",
+            "Unreal Engine blends linear light",
+        ),
+        (
+            Engine::Unity,
+            "`Blend SrcAlpha OneMinusSrcAlpha`",
+            "`Blend One OneMinusSrcAlpha`",
+            "*Project Settings > Player > Color Space* is `Linear`",
+        ),
+        (Engine::Godot, "`blend_mix`", "`blend_premul_alpha`", "Compatibility blends codes"),
+        (
+            Engine::Wgsl,
+            "`BlendState::ALPHA_BLENDING`",
+            "`BlendState::PREMULTIPLIED_ALPHA_BLENDING`",
+            "`Bgra8UnormSrgb`",
+        ),
     ] {
         let wanted = [(Alpha::Straight, straight, premultiplied), (Alpha::Premultiplied, premultiplied, straight)];
         for (alpha, named, other) in wanted {
             let readme = page(engine, alpha);
             assert!(readme.contains(named) && !readme.contains(other), "{engine:?}: {readme}");
+            assert!(readme.contains(linear), "{engine:?}: {readme}");
         }
     }
 }
