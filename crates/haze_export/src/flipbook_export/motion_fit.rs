@@ -43,6 +43,20 @@ pub fn followed(motion: &Image<Vec4>, frames: [&Image<Vec4>; 2]) -> Image<Vec4> 
     followed
 }
 
+/// Shortens vectors that lead out of the frame, beyond which a sheet has another one: from each texel, the way to either side ends
+/// half a texel inside. `motion` as in [`followed`].
+pub fn kept_inside(motion: &Image<Vec4>) -> Image<Vec4> {
+    let size = motion.size.as_vec2();
+    let mut kept = motion.clone();
+    kept.for_each(|at, way| {
+        let at = at.as_vec2();
+        // From the center of the texel to those at the borders.
+        let room = at.min(size - 1.0 - at) / size;
+        *way = way.xy().clamp(-room, room).extend(way.z).extend(way.w);
+    });
+    kept
+}
+
 /// Bilinear filter; `place` in texels, 0 at the center of the first.
 fn sample(image: &Image<Vec4>, place: Vec2) -> Vec4 {
     let (low, share) = (place.floor(), place - place.floor());

@@ -14,7 +14,7 @@ use haze_preset::CompressionEffort;
 
 use super::fill::filled;
 use super::frame_layers::FrameLayers;
-use super::motion_fit::followed;
+use super::motion_fit::{followed, kept_inside};
 use crate::engine::Engine;
 use crate::image_format::Alpha;
 use crate::png_stream::{EncodedPng, PngShape, PngStream};
@@ -239,7 +239,7 @@ impl<'a> Sheets<'a> {
             Alpha::Premultiplied => self.place_light(&layers.light),
         }
         self.place_normals(&filled(&layers.normals));
-        self.place_motion(&followed(&filled(&layers.motion), pair));
+        self.place_motion(&kept_inside(&followed(&filled(&layers.motion), pair)));
         if let Some(fire) = &layers.fire {
             self.place_fire(fire);
         }

@@ -245,6 +245,31 @@ fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() 
 }
 
 #[test]
+fn motion_vectors_stay_inside_the_frame() {
+    let (mut shot, frames) = (shot("column"), frames(2, 8.0));
+    // Smoke at the borders.
+    shot.preset.camera.fov = 20.0;
+    let flipbook = Flipbook::new(&shot, &frames, options(Engine::Unreal));
+    let scale = flipbook.numbers.motion_scale;
+    // Codes are half a step of 8 bits off; rest is between two of them.
+    let (inside, step) = (0.5 / SIDE as f32, scale / 255.0 + 1.0e-6);
+    let mut longest: f32 = 0.0;
+    for index in 0..2 {
+        let motion = flipbook.frame(sheets::MOTION, index);
+        for at in pixels() {
+            let uv = (at.as_vec2() + 0.5) / SIDE as f32;
+            let way = (texel(&motion, at.as_ivec2()).xy() * 2.0 - 1.0) * scale;
+            for end in [uv - way, uv + way] {
+                let out = (inside - end).max(end - 1.0 + inside).max_element();
+                assert!(out < step, "frame {index}, {at}: {way} leads {out} out");
+            }
+            longest = longest.max(way.abs().max_element());
+        }
+    }
+    assert!(longest * SIDE as f32 > 2.0, "{longest}");
+}
+
+#[test]
 fn faded_flipbooks_loop() {
     let (shot, frames) = (shot("column"), frames(4, 4.0));
     let gap = |fade: u32| {
@@ -446,7 +471,7 @@ fn sheets_of_rows_are_those_of_whole_images() {
     assert_eq!(file(sheets::EMISSION).into_rgb8(), image::DynamicImage::from(fire).into_rgb8());
     let motion = whole(&|index| {
         let pair = [&light[index.min(1)], &light[index.min(1) + 1]];
-        motion_fit::followed(&fill::filled(&layers[index].motion), pair)
+        motion_fit::kept_inside(&motion_fit::followed(&fill::filled(&layers[index].motion), pair))
     });
     let visible = |image: &Image<Vec4>, value: &dyn Fn(&Vec4) -> f32| {
         image.texels.iter().filter(|texel| texel.w > 0.05).map(value).fold(0.0, f32::max)
