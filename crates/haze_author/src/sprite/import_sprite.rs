@@ -26,7 +26,7 @@ choice! {
         /// a = amount, or gray if there is no alpha. Normals are those of a dome over the silhouette.
         Alpha = "alpha",
         /// Two light maps in the layout of Unity's VFX Graph: right, top, back; left, bottom, front. Alpha of the first
-        /// = amount.
+        /// = amount; alpha of the second, emission, is left out.
         SixWayUnity = "six_way_unity",
         /// Two light maps: right, left, top; bottom, back, front. Alpha of the first = amount.
         SixWayRltBbf = "six_way_rlt_bbf",
@@ -60,6 +60,9 @@ pub struct ImportedSprite {
     pub y_direction: Option<YDirection>,
     /// Description of the contents if the source should be normals but does not look like it.
     pub not_normals: Option<&'static str>,
+    /// Largest alpha of the second light map, if that is not the amount: emission in Unity's packing. It is left out, because a
+    /// sprite has no place for it.
+    pub emission: Option<u8>,
     /// The frame with the largest alpha on its border, and that alpha. Borders were cleared.
     pub border: Option<(u32, u8)>,
 }
@@ -152,6 +155,7 @@ pub fn import_sprite(
         }
         ImportSource::SixWayUnity | ImportSource::SixWayRltBbf => {}
     }
+    let emission = second.and_then(|second| emission(first, second));
     let light = source.packing().zip(second);
     let six_way = light.map(|(packing, second)| pack(&picture, second, packing));
     if let Some((packing, second)) = light {
@@ -160,7 +164,16 @@ pub fn import_sprite(
             *texel = encode((positive - negative) * strength, texel.0[3]);
         }
     }
-    Ok(ImportedSprite { picture, six_way, y_direction: found, not_normals, border })
+    Ok(ImportedSprite { picture, six_way, y_direction: found, emission, not_normals, border })
+}
+
+/// Returns the largest alpha of the second light map, unless it is the amount, or the same in all texels.
+fn emission(first: &RgbaImage, second: &RgbaImage) -> Option<u8> {
+    let largest = second.pixels().map(|texel| texel.0[3]).max()?;
+    let is_plain = second.pixels().all(|texel| texel.0[3] == largest);
+    // Tools that resize maps round alpha in each.
+    let is_amount = first.pixels().zip(second.pixels()).all(|(a, b)| a.0[3].abs_diff(b.0[3]) <= 2);
+    (!is_plain && !is_amount).then_some(largest)
 }
 
 fn value(texel: &Rgba<u8>) -> Vec4 {
@@ -244,6 +257,18 @@ mod tests {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
         assert!(off(&[sheet([x, -x, y]), sheet([-y, -z, z])], ImportSource::SixWayRltBbf, None, 1.0) < 0.02);
         assert!(off(&[sheet([x, y, -z]), sheet([-x, -y, z])], ImportSource::SixWayUnity, None, 1.0) < 0.02);
+    }
+
+    #[test]
+    fn emission_of_light_maps_is_told() {
+        let first = balls(|_, amount| [0.5, 0.5, 0.5, amount]);
+        let found = |alpha: fn(Vec3, f32) -> f32| {
+            let second = balls(|normal, amount| [0.5, 0.5, 0.5, alpha(normal, amount)]);
+            let sheets = [first.clone(), second];
+            import_sprite(Path::new("a.png"), &sheets, ImportSource::SixWayUnity, LAYOUT, None, 1.0).unwrap().emission
+        };
+        assert_eq!(found(|normal, _| 0.8 * f32::from(u8::from(normal.z > 0.5))), Some(204));
+        assert_eq!([found(|_, amount| amount), found(|_, _| 0.0), found(|_, _| 1.0)], [None; 3]);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! Layers of one frame of a flipbook.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 use haze::Error;
 use haze_core::assets::image::Image;
+use haze_core::formula::color::luminance;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::exposure;
 
@@ -21,6 +22,8 @@ pub struct FrameLayers {
     pub fire: Option<Image<Vec4>>,
     /// From right, top and front; from left, bottom and back.
     pub six_way: Option<[Image<Vec4>; 2]>,
+    /// Luminance of fire in x, not exposed, as six-way light; if a system burns and there is six-way light.
+    pub emission: Option<Image<Vec4>>,
 }
 
 impl FrameLayers {
@@ -41,10 +44,16 @@ impl FrameLayers {
             image.texels.iter_mut().for_each(|texel| *texel *= exposure);
             image
         };
+        let fire = if burns { Some(layers.fire().await?) } else { None };
+        let emission = |fire: &Image<Vec4>| {
+            let texels = fire.texels.iter().map(|fire| Vec4::new(luminance(fire.xyz()), 0.0, 0.0, fire.w));
+            Image { size: fire.size, texels: texels.collect() }
+        };
         Ok(Self {
             normals: layers.normals().await?,
             motion,
-            fire: if burns { Some(exposed(layers.fire().await?)) } else { None },
+            emission: fire.as_ref().filter(|_| has_six_way).map(emission),
+            fire: fire.map(exposed),
             six_way: if has_six_way { Some(layers.six_way().await?) } else { None },
             light: exposed(layers.light),
         })
@@ -63,6 +72,7 @@ impl FrameLayers {
             motion: mix(self.motion, &other.motion),
             fire: self.fire.zip(other.fire.as_ref()).map(|(fire, other)| mix(fire, other)),
             six_way: self.six_way.zip(other.six_way.as_ref()).map(|([a, b], [c, d])| [mix(a, c), mix(b, d)]),
+            emission: self.emission.zip(other.emission.as_ref()).map(|(emission, other)| mix(emission, other)),
         }
     }
 }

@@ -188,6 +188,7 @@ impl FlipbookExport {
             alpha,
             motion_scale: made.motion_scale,
             six_way_intensity: made.six_way_intensity,
+            six_way_emission: made.six_way_emission,
         };
         if let Some(cut_smoke) = &mut cut_smoke {
             let stopped = |_| stopped_before_writing(folder, all, all);

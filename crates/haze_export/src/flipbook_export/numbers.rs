@@ -18,4 +18,8 @@ pub struct FlipbookNumbers {
     /// Intensity of a light under which the six-way maps have the brightness of the preset's smoke; absent without them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub six_way_intensity: Option<f32>,
+    /// Luminance of fire that full alpha of `six_way_2.png` stands for, in the unit of `six_way_intensity`; absent without fire, and
+    /// where that alpha is opacity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub six_way_emission: Option<f32>,
 }

@@ -11,7 +11,8 @@ pub fn readme(
     numbers: &FlipbookNumbers,
     images: impl Iterator<Item = &'static str>,
 ) -> String {
-    let FlipbookNumbers { columns, rows, frames, rate, alpha, motion_scale, six_way_intensity } = numbers;
+    let FlipbookNumbers { columns, rows, frames, rate, alpha, motion_scale, six_way_intensity, six_way_emission } =
+        numbers;
     let mut text = format!(
         "# {title}: flipbook\n\n{frames} frames in {columns} columns and {rows} rows, left to right, then down; {rate} frames \
          per second. `flipbook.json` has the numbers.\n\n| file | color space | content |\n|---|---|---|\n",
@@ -40,7 +41,14 @@ pub fn readme(
             }
             EMISSION => ("sRGB", "light of fire alone, which is in `color.png` too; to be added".to_owned()),
             name if name == SIX_WAY[0] => ("linear", format!("light from {}; a: opacity", packing[0])),
-            _ => ("linear", format!("light from {}; a: opacity", packing[1])),
+            _ => {
+                let alpha = match (engine.six_way_packing().has_emission(), six_way_emission) {
+                    (false, _) => "opacity",
+                    (true, None) => "emission, 0 without fire",
+                    (true, Some(_)) => "emission: luminance of fire, not multiplied by opacity",
+                };
+                ("linear", format!("light from {}; a: {alpha}", packing[1]))
+            }
         };
         text += &format!("| `{name}` | {space} | {content} |\n");
     }
@@ -65,12 +73,17 @@ pub fn readme(
              for the brightness of the preset.\n\n",
         );
     }
+    if let Some(emission) = six_way_emission {
+        text +=
+            &format!("**Emission**: full alpha of `six_way_2.png` is {emission:.3}, in the unit of six-way light.\n\n");
+    }
     text + &steps(engine, numbers)
 }
 
 fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
     let FlipbookNumbers { columns, rows, frames, rate, motion_scale, .. } = numbers;
     let blending = blending(engine, numbers.alpha);
+    let emissive = if numbers.six_way_emission.is_some() { "Single Channel" } else { "None" };
     match engine {
         Engine::Unreal => format!(
             "## In Unreal Engine\n\n\
@@ -89,7 +102,8 @@ fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
              2. In VFX Graph, *Uv Mode* `Flipbook Motion Blend`, *Flip Book Size* {columns} × {rows}, *Motion Vector Map* \
              `motion.png`, *Motion Vector Scale* {motion_scale:.5}, and *Flipbook Player* at {rate} frames per second; {blending}.\n\
              3. For six-way light, *Material Type* `Six Way Smoke Lit`: *Positive Axes Lightmap* `six_way_1.png`, *Negative Axes \
-             Lightmap* `six_way_2.png`.\n",
+             Lightmap* `six_way_2.png`, *Emissive Mode* `{emissive}`. The alpha of the second map is emission: `Single Channel` \
+             colors it by a gradient.\n",
         ),
         Engine::Godot => format!(
             "## In Godot 4\n\n\

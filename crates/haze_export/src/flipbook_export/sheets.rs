@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use bytemuck::Pod;
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze::Error;
+use haze_author::sprite::six_way::Packing;
 use haze_core::assets::image::Image;
 use haze_core::formula::six_way::SixWay;
 use haze_demo::tonemap_pass::{encoded, rgba8_codes};
@@ -33,8 +34,8 @@ type Rgba = [u8; 4];
 type Rgb = [u8; 3];
 /// Way to the right and up.
 type Way = [f32; 2];
-/// Light from the positive sides, from the negative sides, opacity.
-type SixWayTexel = [f32; 7];
+/// Light from the positive sides, from the negative sides, opacity, emission.
+type SixWayTexel = [f32; 8];
 
 /// Bytes of memory per pixel of a row of frames.
 pub fn row_bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
@@ -47,7 +48,8 @@ pub fn row_bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
 /// Bytes of memory per pixel of a frame: layers of this frame and the next, three encoded frames, a layer that is filled (its
 /// texels, those of coarser levels, and the result), and the errors and means by which motion is shortened.
 pub fn frame_bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
-    let layers = 3 + u64::from(burns) + if has_six_way { SIX_WAY.len() as u64 } else { 0 };
+    let six_way = if has_six_way { SIX_WAY.len() as u64 + u64::from(burns) } else { 0 };
+    let layers = 3 + u64::from(burns) + six_way;
     let texel = size_of::<Vec4>() as u64;
     (2 * layers + 3) * texel + 4 * texel + 8 * size_of::<f32>() as u64
 }
@@ -202,6 +204,8 @@ pub struct Sheets<'a> {
     motion: ValueSheet<Way>,
     fire: Option<CodeSheet<Rgb>>,
     six_way: Option<ValueSheet<SixWayTexel>>,
+    /// Largest emission in visible smoke; `None` without fire.
+    brightest_fire: Option<f32>,
 }
 
 /// Encoded sheets, by file name.
@@ -209,6 +213,7 @@ pub struct EncodedSheets {
     pub images: Vec<(&'static str, EncodedPng)>,
     pub motion_scale: f32,
     pub six_way_intensity: Option<f32>,
+    pub six_way_emission: Option<f32>,
 }
 
 impl<'a> Sheets<'a> {
@@ -223,6 +228,7 @@ impl<'a> Sheets<'a> {
             motion: ValueSheet::new(&layout, MOTION)?,
             fire: if burns { Some(CodeSheet::new(&layout, EMISSION)?) } else { None },
             six_way: if has_six_way { Some(ValueSheet::new(&layout, SIX_WAY[0])?) } else { None },
+            brightest_fire: None,
             layout,
             placed: 0,
         })
@@ -244,7 +250,8 @@ impl<'a> Sheets<'a> {
             self.place_fire(fire);
         }
         if let Some([positive, negative]) = &layers.six_way {
-            self.place_six_way(&filled(positive), &filled(negative));
+            let emission = layers.emission.as_ref().map(filled);
+            self.place_six_way(&filled(positive), &filled(negative), emission.as_ref());
         }
         self.end_cell()
     }
@@ -255,7 +262,7 @@ impl<'a> Sheets<'a> {
         self.place_normals(&blank);
         self.place_motion(&blank);
         self.place_fire(&blank);
-        self.place_six_way(&blank, &blank);
+        self.place_six_way(&blank, &blank, None);
         self.end_cell()
     }
 
@@ -301,15 +308,20 @@ impl<'a> Sheets<'a> {
         self.motion.largest = self.motion.largest.max(largest(motion, |way| way.xy().abs().max_element()));
     }
 
-    fn place_six_way(&mut self, positive: &Image<Vec4>, negative: &Image<Vec4>) {
+    fn place_six_way(&mut self, positive: &Image<Vec4>, negative: &Image<Vec4>, emission: Option<&Image<Vec4>>) {
         let column = self.column();
         if let Some(sheet) = &mut self.six_way {
             sheet.row.place(positive, column, |p, at| {
                 let n = negative.load(at.as_ivec2());
-                [p.x, p.y, p.z, n.x, n.y, n.z, p.w]
+                let fire = emission.map_or(0.0, |emission| emission.load(at.as_ivec2()).x);
+                [p.x, p.y, p.z, n.x, n.y, n.z, p.w, fire]
             });
             for side in [positive, negative] {
                 sheet.largest = sheet.largest.max(largest(side, |light| light.xyz().max_element()));
+            }
+            if let Some(emission) = emission {
+                let brightest = self.brightest_fire.unwrap_or_default();
+                self.brightest_fire = Some(brightest.max(largest(emission, |fire| fire.x)));
             }
         }
     }
@@ -345,7 +357,7 @@ impl<'a> Sheets<'a> {
             goes_on()?;
             self.leave_blank()?;
         }
-        let Self { layout, light, normals, mut motion, fire, six_way, .. } = self;
+        let Self { layout, light, normals, mut motion, fire, six_way, brightest_fire, .. } = self;
         let mut images = vec![light.finish()?, normals.finish()?];
         let motion_scale = motion.largest.max(1.0e-4);
         // In texture coordinates, whose origin is at the top but in Unity.
@@ -359,15 +371,19 @@ impl<'a> Sheets<'a> {
             images.push(fire.finish()?);
         }
         let mut six_way_intensity = None;
+        let has_emission = layout.engine.six_way_packing().has_emission();
+        let six_way_emission = brightest_fire.filter(|_| has_emission).map(|brightest| brightest.max(1.0e-4));
         if let Some(mut six_way) = six_way {
             let brightest = six_way.largest.max(1.0e-4);
             six_way_intensity = Some(brightest);
             for (map, name) in SIX_WAY.into_iter().enumerate() {
-                let light_codes = |texel| six_way_codes(texel, map, layout.engine, 1.0 / brightest);
+                let packing = layout.engine.six_way_packing();
+                let light_codes =
+                    |texel| six_way_codes(texel, map, packing, [brightest, six_way_emission.unwrap_or(1.0)]);
                 images.push((name, six_way.encode(layout.png(name, true)?, light_codes, goes_on)?));
             }
         }
-        Ok(EncodedSheets { images, motion_scale, six_way_intensity })
+        Ok(EncodedSheets { images, motion_scale, six_way_intensity, six_way_emission })
     }
 }
 
@@ -380,8 +396,10 @@ fn codes<const N: usize>(values: [f32; N]) -> [u8; N] {
     values.map(|value| (value * 255.0).round() as u8)
 }
 
-/// A map of six-way light, linear, with opacity in alpha.
-fn six_way_codes([a, b, c, d, e, f, opacity]: SixWayTexel, map: usize, engine: Engine, scale: f32) -> Rgba {
-    let light = SixWay { positive: Vec3::new(a, b, c) * scale, negative: Vec3::new(d, e, f) * scale };
-    codes(engine.six_way_packing().texels(light)[map].extend(opacity).to_array())
+/// A map of six-way light, linear, with opacity or emission in alpha. `white`: light and emission of full codes.
+fn six_way_codes(texel: SixWayTexel, map: usize, packing: Packing, [white, white_fire]: [f32; 2]) -> Rgba {
+    let [a, b, c, d, e, f, opacity, fire] = texel;
+    let light = SixWay { positive: Vec3::new(a, b, c) / white, negative: Vec3::new(d, e, f) / white };
+    let alpha = if map == 1 && packing.has_emission() { fire / white_fire } else { opacity };
+    codes(packing.texels(light)[map].extend(alpha).to_array())
 }

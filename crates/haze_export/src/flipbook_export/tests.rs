@@ -1,6 +1,6 @@
 use glam::{IVec2, Vec2, Vec3, Vec4Swizzles};
 use haze_core::assets::image::read_png;
-use haze_core::formula::color::{linear_from_srgb, srgb_from_linear};
+use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use haze_demo::tonemap_pass::rgba8;
 use haze_preset::{Ease, KeyValue, Keyframe, Track};
 use image::RgbaImage;
@@ -203,6 +203,7 @@ fn page(engine: Engine, alpha: Alpha) -> String {
         alpha,
         motion_scale: 0.1,
         six_way_intensity: Some(2.0),
+        six_way_emission: Some(3.0),
     };
     readme::readme(engine, "Fire", &numbers, FILES[..6].iter().copied())
 }
@@ -311,8 +312,10 @@ fn six_way_maps_are_the_smoke_under_each_light() {
                 continue;
             }
             compared += 1;
-            let [first, second] = maps.each_ref().map(|map| texel(map, at).xyz());
-            let found = engine.six_way_packing().six_way(first, second);
+            let [first, second] = maps.each_ref().map(|map| texel(map, at));
+            let emission = if engine == Engine::Unity { 0.0 } else { first.w };
+            assert!(second.w.to_bits() == emission.to_bits() && (first.w - opacity).abs() < 0.003, "{engine:?} {at}");
+            let found = engine.six_way_packing().six_way(first.xyz(), second.xyz());
             let sides = [(found.positive, &positive), (found.negative, &negative)];
             for ((found, expected), mean) in sides.into_iter().zip(&mut means) {
                 let expected = expected.load(at).xyz() / opacity;
@@ -325,6 +328,33 @@ fn six_way_maps_are_the_smoke_under_each_light() {
         // Light from the viewer's side is brighter than light from behind.
         assert!(means[0].z > 1.2 * means[1].z, "{means:?}");
     }
+}
+
+#[test]
+fn emission_of_six_way_maps_is_the_luminance_of_the_fire() {
+    let (shot, frames) = (shot("campfire"), frames(1, 8.0));
+    let flipbook = |engine| Flipbook::new(&shot, &frames, FlipbookOptions { has_six_way: true, ..options(engine) });
+    let unity = flipbook(Engine::Unity);
+    let map = unity.frame(sheets::SIX_WAY[1], 0);
+    let full = unity.numbers.six_way_emission.unwrap();
+    let layers = block_on(SmokeLayers::new(&Backend::Cpu, &shot)).unwrap();
+    let fire = block_on(layers.fire()).unwrap();
+    let (mut compared, mut brightest): (u32, f32) = (0, 0.0);
+    for at in pixels().map(UVec2::as_ivec2) {
+        let opacity = layers.light.load(at).w;
+        if opacity < 0.06 {
+            continue;
+        }
+        let expected = luminance(fire.load(at).xyz()) / opacity;
+        // Half a step of 8 bits.
+        let apart = texel(&map, at).w * full - expected;
+        assert!(apart.abs() < 0.003 * full, "{at}: {apart} of {expected}");
+        compared += u32::from(expected > 0.1 * full);
+        brightest = brightest.max(texel(&map, at).w);
+    }
+    assert!(compared > 10 && brightest > 0.3, "{compared} {brightest}");
+    assert_eq!(flipbook(Engine::Unreal).numbers.six_way_emission, None);
+    assert!(page(Engine::Unity, Alpha::Straight).contains("*Emissive Mode* `Single Channel`"));
 }
 
 #[test]

@@ -11,9 +11,10 @@ use haze_core::formula::six_way::{SixWay, six_way_from_texel};
 use haze_core::settings::choice;
 
 choice! {
-    /// Assignment of sides to the red, green and blue of two light maps. Alpha of the first map is the amount.
+    /// Assignment of sides to the red, green and blue of two light maps. Alpha of the first map is the amount; alpha of the
+    /// second too, unless it is emission.
     Packing {
-        /// Unity's VFX Graph: right, top, back; left, bottom, front.
+        /// Unity's VFX Graph: right, top, back; left, bottom, front. Alpha of the second is emission.
         #[default]
         Unity = "unity",
         /// Common for Unreal and Houdini: right, left, top; bottom, back, front.
@@ -22,6 +23,11 @@ choice! {
 }
 
 impl Packing {
+    /// Returns true if alpha of the second map is emission, the luminance of fire. It is the amount otherwise.
+    pub fn has_emission(self) -> bool {
+        self == Self::Unity
+    }
+
     /// Unpacks the six sides from two texels.
     pub fn six_way(self, first: Vec3, second: Vec3) -> SixWay {
         let (a, b) = (first, second);
@@ -50,7 +56,8 @@ pub fn pack(first: &RgbaImage, second: &RgbaImage, packing: Packing) -> RgbaImag
     })
 }
 
-/// Splits a sheet into two light maps. Alpha of both is the amount.
+/// Splits a sheet into two light maps. Alpha is the amount; in the second map 0 if the packing has emission there, because a
+/// sprite does not burn.
 ///
 /// # Errors
 /// [`Error::Image`] if the sheet's height is odd or 0.
@@ -67,7 +74,8 @@ pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaI
             let [p, n] = [positive, negative].map(|texel| six_way_from_texel(decode_texel(texel)));
             let light = packing.texels(SixWay { positive: p, negative: n })[map];
             let [r, g, b] = light.to_array().map(|light| (light * 255.0).round() as u8);
-            Rgba([r, g, b, positive.0[3]])
+            let is_emission = map == 1 && packing.has_emission();
+            Rgba([r, g, b, if is_emission { 0 } else { positive.0[3] }])
         })
     }))
 }
@@ -104,6 +112,9 @@ mod tests {
             let again = pack(&first, &second, packing).into_raw();
             let apart = again.into_iter().zip(sheet.into_raw()).map(|(a, b)| a.abs_diff(b));
             assert!(apart.max().unwrap() <= 1, "{}", packing.name());
+            let is_amount = second.pixels().zip(first.pixels()).all(|(second, first)| second.0[3] == first.0[3]);
+            assert_eq!(is_amount, packing != Packing::Unity);
+            assert!(is_amount || second.pixels().all(|texel| texel.0[3] == 0));
         }
         let odd = RgbaImage::new(4, 5);
         assert!(unpack(Path::new("smoke.png"), &odd, Packing::Unity).unwrap_err().to_string().contains("two halves"));

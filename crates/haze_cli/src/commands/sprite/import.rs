@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
     };
     let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
-    let ImportedSprite { picture, six_way, y_direction, not_normals, border } =
+    let ImportedSprite { picture, six_way, y_direction, emission, not_normals, border } =
         import_sprite(path, &sheets, *source, layout, *y_down, *strength)?;
     let findings = lint_sprite(output, &picture, layout)?;
     if let Some(reason) = refusal(*source, not_normals, &findings) {
@@ -83,6 +83,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         let path = six_way_path(output);
         write_png(&path, &maps.into(), CompressionEffort::Small)?;
         print_line!("{}: the light maps, for lighting six_way", path.display())?;
+    }
+    if let Some(emission) = emission {
+        print_line!(
+            "  alpha of the second map, up to {emission}, is not the amount and was left out: a sprite has no place for \
+             emission; a system glows by its settings `fire`"
+        )?;
     }
     if let Some((frame, alpha)) = border {
         print_line!("  border: alpha up to {alpha} in frame {frame} was cleared; leave more room around the smoke")?;

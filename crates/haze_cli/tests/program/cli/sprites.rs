@@ -184,6 +184,7 @@ fn exported_six_way_maps_are_imported_with_the_same_light() {
             ],
         );
         assert!(text.contains("again.six_way.png: the light maps, for lighting six_way"), "{text}");
+        assert!(!text.contains("emission"), "{text}");
         let [first, again] = ["mine", "again"]
             .map(|name| image::open(folder.path().join(format!("{name}.six_way.png"))).unwrap().to_rgba8());
         let light = |code: u8| (f32::from(code) / 255.0).powi(2);
@@ -195,6 +196,12 @@ fn exported_six_way_maps_are_imported_with_the_same_light() {
         // The same light, within one of its steps.
         assert!(most < 1.5 / 255.0, "{packing}: {most}");
     }
+    let mut burning = image::open(folder.path().join("b.png")).unwrap().to_rgba8();
+    burning.enumerate_pixels_mut().for_each(|(x, _, texel)| texel.0[3] = 3 * x as u8);
+    burning.save(folder.path().join("b.png")).unwrap();
+    let import = ["a.png", "b.png", "--from", "six_way_rlt_bbf", "-o", "again.png", "--columns", "4", "--rows", "2"];
+    let text = stdout_of(folder.path(), &[&["sprite", "import"], &import[..]].concat());
+    assert!(text.contains("alpha of the second map, up to 189, is not the amount and was left out"), "{text}");
 }
 
 #[test]
