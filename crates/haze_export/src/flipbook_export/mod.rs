@@ -28,6 +28,18 @@ use frame_layers::FrameLayers;
 use numbers::FlipbookNumbers;
 use sheets::{SheetLayout, Sheets};
 
+/// Light of fire in the color of a flipbook. It is in `emission.png` in any case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[cfg_attr(test, derive(serde::Deserialize))]
+#[serde(rename_all = "snake_case")]
+pub enum Emission {
+    /// Part of the color, which is complete.
+    #[default]
+    Contained,
+    /// Not part of the color; to be added to it.
+    Separate,
+}
+
 /// Choices of a flipbook.
 #[derive(Clone, Copy, Debug)]
 pub struct FlipbookOptions {
@@ -35,9 +47,11 @@ pub struct FlipbookOptions {
     pub engine: Engine,
     /// Rows (`x`) and columns (`y`).
     pub cells: UVec2,
-    /// Color of `color.png`. `None`: premultiplied if a system burns in one of the frames, because straight color has no glow where
+    /// Color of `color.png`. `None`: premultiplied if it contains fire in one of the frames, because straight color has no glow where
     /// opacity is low; straight otherwise.
     pub alpha: Option<Alpha>,
+    /// Light of fire in `color.png`.
+    pub emission: Emission,
     /// Frames after the last that fade into the first ones, so that the flipbook loops. 0: none.
     pub loop_fade: u32,
     /// True for sheets of six-way light maps.
@@ -50,8 +64,8 @@ impl FlipbookOptions {
     /// Checks the choices before anything is rendered or written.
     ///
     /// # Errors
-    /// [`Error::Field`] for a fade that is longer than the flipbook, and for sheets with too few cells or too many pixels;
-    /// [`Error::Io`] for rows of frames that do not fit into memory.
+    /// [`Error::Field`] for a fade that is longer than the flipbook, for sheets with too few cells or too many pixels, and for separate
+    /// emission if no system burns; [`Error::Io`] for rows of frames that do not fit into memory.
     pub fn check(&self, shot: &Shot, frames: &Frames) -> Result<(), Error> {
         let (count, fade) = (frames.count(), self.loop_fade);
         if fade >= count {
@@ -65,6 +79,10 @@ impl FlipbookOptions {
         check_cells(shot.size, frames, self.cells)?;
         let columns = self.cells.y;
         let burns = frames.burns(shot, count + fade);
+        if self.emission == Emission::Separate && !burns {
+            let problem = "separate, but no system burns in these frames";
+            return Err(FieldError::from_problem("--emission", problem, "contained").into());
+        }
         let frame = sheets::frame_bytes_per_pixel(burns, self.has_six_way) + BYTES_PER_PIXEL;
         // Half as much again allows for the allocator's overhead.
         let row = sheets::row_bytes_per_pixel(burns, self.has_six_way) * 3 / 2;
@@ -149,9 +167,10 @@ impl FlipbookExport {
             let share = 1.0 - index as f32 / fade as f32;
             Ok(layers.mixed(&at(count + index, done + 1).await?, share))
         };
-        let FlipbookOptions { engine, cells, has_six_way, effort, .. } = options;
-        let alpha = options.alpha.unwrap_or(if burns { Alpha::Premultiplied } else { Alpha::Straight });
-        let layout = SheetLayout { engine, frame: shot.size, cells, alpha, effort, folder };
+        let FlipbookOptions { engine, cells, emission, has_six_way, effort, .. } = options;
+        let contains_fire = burns && emission == Emission::Contained;
+        let alpha = options.alpha.unwrap_or(if contains_fire { Alpha::Premultiplied } else { Alpha::Straight });
+        let layout = SheetLayout { engine, frame: shot.size, cells, alpha, emission, effort, folder };
         let mut sheets = Sheets::new(layout, burns, has_six_way)?;
         let mut place = async |layers: &FrameLayers, pair: [&Image<Vec4>; 2]| {
             progress.show("haze: encoding a frame".into(), async { sheets.place(layers, pair) }).await
@@ -186,6 +205,7 @@ impl FlipbookExport {
             frames: count,
             rate: frames.rate,
             alpha,
+            emission: burns.then_some(emission),
             motion_scale: made.motion_scale,
             six_way_intensity: made.six_way_intensity,
             six_way_emission: made.six_way_emission,

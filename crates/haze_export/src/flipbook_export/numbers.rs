@@ -1,5 +1,6 @@
 //! Numbers that programs need to show a flipbook.
 
+use super::Emission;
 use crate::image_format::Alpha;
 
 /// Numbers of a flipbook, for programs: `flipbook.json`.
@@ -13,6 +14,9 @@ pub struct FlipbookNumbers {
     pub rate: f32,
     /// Color of `color.png`.
     pub alpha: Alpha,
+    /// Light of fire in `color.png`; absent without `emission.png`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emission: Option<Emission>,
     /// Way that full red or green stands for, as a share of a frame's width or height.
     pub motion_scale: f32,
     /// Intensity of a light under which the six-way maps have the brightness of the preset's smoke; absent without them.

@@ -1,5 +1,6 @@
 //! Page that goes with a flipbook: its files, and how to use them.
 
+use super::Emission;
 use super::numbers::FlipbookNumbers;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;
@@ -11,8 +12,17 @@ pub fn readme(
     numbers: &FlipbookNumbers,
     images: impl Iterator<Item = &'static str>,
 ) -> String {
-    let FlipbookNumbers { columns, rows, frames, rate, alpha, motion_scale, six_way_intensity, six_way_emission } =
-        numbers;
+    let FlipbookNumbers {
+        columns,
+        rows,
+        frames,
+        rate,
+        alpha,
+        emission,
+        motion_scale,
+        six_way_intensity,
+        six_way_emission,
+    } = numbers;
     let mut text = format!(
         "# {title}: flipbook\n\n{frames} frames in {columns} columns and {rows} rows, left to right, then down; {rate} frames \
          per second. `flipbook.json` has the numbers.\n\n| file | color space | content |\n|---|---|---|\n",
@@ -39,7 +49,16 @@ pub fn readme(
                 let half = "0.5 is rest, 0 and 1 the scale below";
                 ("linear", format!("rg: way until the next frame, right and {motion_down}; {half}"))
             }
-            EMISSION => ("sRGB", "light of fire alone, which is in `color.png` too; to be added".to_owned()),
+            EMISSION => {
+                let use_of_it = match emission {
+                    Some(Emission::Separate) => "**not** part of `color.png`: to be added to the blended color",
+                    _ => {
+                        "part of `color.png` already: to be added only by a material without that, such as one lit by `normals.png` \
+                         or by the six-way maps"
+                    }
+                };
+                ("sRGB", format!("light of fire alone, exposed and tonemapped, **premultiplied**; {use_of_it}"))
+            }
             name if name == SIX_WAY[0] => ("linear", format!("light from {}; a: opacity", packing[0])),
             _ => {
                 let alpha = match (engine.six_way_packing().has_emission(), six_way_emission) {

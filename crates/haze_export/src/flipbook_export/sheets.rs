@@ -13,6 +13,7 @@ use haze_core::formula::six_way::SixWay;
 use haze_demo::tonemap_pass::{encoded, rgba8_codes};
 use haze_preset::CompressionEffort;
 
+use super::Emission;
 use super::fill::filled;
 use super::frame_layers::FrameLayers;
 use super::motion_fit::{followed, kept_inside};
@@ -45,13 +46,13 @@ pub fn row_bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
     (color + fire + six_way) as u64
 }
 
-/// Bytes of memory per pixel of a frame: layers of this frame and the next, three encoded frames, a layer that is filled (its
-/// texels, those of coarser levels, and the result), and the errors and means by which motion is shortened.
+/// Bytes of memory per pixel of a frame: layers of this frame and the next, three encoded frames, a layer that is filled (light
+/// without fire, its texels, those of coarser levels, and the result), and the errors and means by which motion is shortened.
 pub fn frame_bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
     let six_way = if has_six_way { SIX_WAY.len() as u64 + u64::from(burns) } else { 0 };
     let layers = 3 + u64::from(burns) + six_way;
     let texel = size_of::<Vec4>() as u64;
-    (2 * layers + 3) * texel + 4 * texel + 8 * size_of::<f32>() as u64
+    (2 * layers + 3) * texel + 5 * texel + 8 * size_of::<f32>() as u64
 }
 
 /// Layout that all sheets share.
@@ -65,6 +66,8 @@ pub struct SheetLayout<'a> {
     pub cells: UVec2,
     /// Of the colors.
     pub alpha: Alpha,
+    /// Of the colors.
+    pub emission: Emission,
     /// Of the files.
     pub effort: CompressionEffort,
     /// Folder of the files; it need not exist.
@@ -240,9 +243,13 @@ impl<'a> Sheets<'a> {
     /// # Errors
     /// [`Error::Io`] if a row of frames cannot be written.
     pub fn place(&mut self, layers: &FrameLayers, pair: [&Image<Vec4>; 2]) -> Result<(), Error> {
+        let light = match (self.layout.emission, &layers.fire) {
+            (Emission::Separate, Some(fire)) => &without(&layers.light, fire),
+            _ => &layers.light,
+        };
         match self.layout.alpha {
-            Alpha::Straight => self.place_light(&filled(&layers.light)),
-            Alpha::Premultiplied => self.place_light(&layers.light),
+            Alpha::Straight => self.place_light(&filled(light)),
+            Alpha::Premultiplied => self.place_light(light),
         }
         self.place_normals(&filled(&layers.normals));
         self.place_motion(&kept_inside(&followed(&filled(&layers.motion), pair)));
@@ -385,6 +392,12 @@ impl<'a> Sheets<'a> {
         }
         Ok(EncodedSheets { images, motion_scale, six_way_intensity, six_way_emission })
     }
+}
+
+/// Light without that of fire.
+fn without(light: &Image<Vec4>, fire: &Image<Vec4>) -> Image<Vec4> {
+    let rest = |(light, fire): (&Vec4, &Vec4)| (light.xyz() - fire.xyz()).max(Vec3::ZERO).extend(light.w);
+    Image { size: light.size, texels: light.texels.iter().zip(&fire.texels).map(rest).collect() }
 }
 
 /// Largest value in visible smoke.

@@ -24,7 +24,15 @@ fn frames(count: u32, rate: f32) -> Frames {
 
 fn options(engine: Engine) -> FlipbookOptions {
     let (cells, effort) = (UVec2::splat(2), CompressionEffort::Quick);
-    FlipbookOptions { engine, cells, alpha: Some(Alpha::Straight), loop_fade: 0, has_six_way: false, effort }
+    FlipbookOptions {
+        engine,
+        cells,
+        alpha: Some(Alpha::Straight),
+        emission: Emission::Contained,
+        loop_fade: 0,
+        has_six_way: false,
+        effort,
+    }
 }
 
 #[test]
@@ -201,11 +209,48 @@ fn page(engine: Engine, alpha: Alpha) -> String {
         frames: 4,
         rate: 24.0,
         alpha,
+        emission: Some(Emission::Contained),
         motion_scale: 0.1,
         six_way_intensity: Some(2.0),
         six_way_emission: Some(3.0),
     };
     readme::readme(engine, "Fire", &numbers, FILES[..6].iter().copied())
+}
+
+#[test]
+fn separate_emission_is_the_part_that_the_color_lacks() {
+    let (shot, frames) = (shot("campfire"), frames(1, 8.0));
+    let separate = FlipbookOptions { emission: Emission::Separate, alpha: None, ..options(Engine::Godot) };
+    let whole = FlipbookOptions { alpha: Some(Alpha::Premultiplied), ..options(Engine::Godot) };
+    let layers = block_on(SmokeLayers::new(&Backend::Cpu, &shot)).unwrap();
+    let fire = block_on(layers.fire()).unwrap();
+    let exposure = haze_demo::tonemap_pass::exposure(&shot);
+    let burning = pixels().filter(|at| fire.load(at.as_ivec2()).x * exposure > 0.5).count();
+    let [part, whole] = [separate, whole].map(|options| Flipbook::new(&shot, &frames, options));
+    // Without the glow, straight color keeps all.
+    assert_eq!((part.numbers.alpha, part.numbers.emission), (Alpha::Straight, Some(Emission::Separate)));
+    assert_eq!(whole.numbers.emission, Some(Emission::Contained));
+    let [part_color, color] = [&part, &whole].map(|flipbook| flipbook.frame(sheets::COLOR, 0));
+    let emission = part.frame(sheets::EMISSION, 0);
+    let same =
+        pixels().all(|at| emission.get_pixel(at.x, at.y) == whole.frame(sheets::EMISSION, 0).get_pixel(at.x, at.y));
+    assert!(same && burning > 10, "{burning}");
+    for at in pixels().map(UVec2::as_ivec2) {
+        let (light, fire) = (layers.light.load(at), fire.load(at));
+        let rest = (light.xyz() - fire.xyz()).max(Vec3::ZERO).extend(light.w);
+        if light.w > 0.05 {
+            let rest = Image { size: UVec2::ONE, texels: vec![(rest.xyz() / rest.w).extend(rest.w)] };
+            let apart = (encoded(&rest, exposure).load(IVec2::ZERO) - texel(&part_color, at)).abs().max_element();
+            // Half a step of 8 bits, and dithering by up to a step.
+            assert!(apart < 1.6 / 255.0, "{at}: {apart}");
+        }
+        if fire.x * exposure > 0.5 {
+            assert!(texel(&part_color, at).x * light.w < texel(&color, at).x, "{at}");
+        }
+    }
+    let none = FlipbookOptions { emission: Emission::Separate, ..options(Engine::Godot) };
+    let refused = none.check(&self::shot("column"), &frames).unwrap_err().to_string();
+    assert_eq!(refused, "--emission: separate, but no system burns in these frames; expected contained");
 }
 
 #[test]
@@ -457,6 +502,7 @@ fn sheets_hold_one_row_of_frames() {
                 frame,
                 cells,
                 alpha: Alpha::Straight,
+                emission: Emission::Contained,
                 effort,
                 folder: folder.path(),
             };

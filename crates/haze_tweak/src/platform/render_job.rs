@@ -12,7 +12,7 @@ use haze_export::backend::Backend;
 #[cfg(not(target_arch = "wasm32"))]
 use haze_export::exr_export::{self, ExrOptions};
 #[cfg(not(target_arch = "wasm32"))]
-use haze_export::flipbook_export::{FlipbookExport, FlipbookOptions};
+use haze_export::flipbook_export::{Emission, FlipbookExport, FlipbookOptions};
 #[cfg(not(target_arch = "wasm32"))]
 use haze_export::material_export::MaterialExport;
 #[cfg(target_arch = "wasm32")]
@@ -104,7 +104,8 @@ pub async fn write_engine_flipbook(
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
     let effort = CompressionEffort::Quick;
-    let options = FlipbookOptions { engine, cells, alpha, loop_fade: 0, has_six_way: false, effort };
+    let emission = Emission::Contained;
+    let options = FlipbookOptions { engine, cells, alpha, emission, loop_fade: 0, has_six_way: false, effort };
     let export = FlipbookExport::render(backend, shot, frames, options, progress, folder).await?;
     make_folder(folder)?;
     export.write(folder)

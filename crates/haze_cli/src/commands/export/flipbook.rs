@@ -8,7 +8,7 @@ use haze::Error;
 use pollster::block_on;
 
 use haze_export::engine::Engine;
-use haze_export::flipbook_export::{FILES, FlipbookExport, FlipbookOptions};
+use haze_export::flipbook_export::{Emission, FILES, FlipbookExport, FlipbookOptions};
 use haze_export::frame_range::{parse_frames, parse_rate, parse_sheet};
 use haze_export::image_export::{ExportProgress, Frames};
 use haze_export::image_format::{Alpha, ImageFormat};
@@ -35,10 +35,13 @@ pub struct Arguments {
     /// Rows and columns of the sheets.
     #[arg(long, value_name = "RxC", value_parser = parse_sheet, allow_hyphen_values = true)]
     sheet: UVec2,
-    /// Color of color.png: the smoke's own, or multiplied by alpha. Default: premultiplied if a system burns, because straight
+    /// Color of color.png: the smoke's own, or multiplied by alpha. Default: premultiplied if it contains fire, because straight
     /// color has no glow where alpha is low; straight otherwise.
     #[arg(long, value_enum)]
     alpha: Option<Alpha>,
+    /// Light of fire: part of color.png, or in emission.png alone, to be added.
+    #[arg(long, value_enum, default_value_t)]
+    emission: Emission,
     /// Fade as many frames after the last into the first ones, so that the flipbook loops.
     #[arg(long = "loop", value_name = "N", value_parser = whole_number(0..=1000), allow_hyphen_values = true, default_value = "0")]
     loop_fade: u32,
@@ -59,6 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         engine: arguments.engine,
         cells: arguments.sheet,
         alpha: arguments.alpha,
+        emission: arguments.emission,
         loop_fade: arguments.loop_fade,
         has_six_way: arguments.six_way,
         effort: arguments.shot.effort(),
