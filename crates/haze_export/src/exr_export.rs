@@ -54,7 +54,7 @@ impl ExrOptions {
 /// | `amount.Y` | accumulated amount |
 /// | `normal.X`, `.Y`, `.Z` | mean normal in view space |
 /// | `depth.Z` | mean view depth, metres |
-/// | `motion.X`, `.Y` | mean way until the next frame, pixels: right, up |
+/// | `motion.X`, `.Y`, `.Z` | mean way until the next frame, pixels: right, up; 0 |
 /// | `emission.R`, `.G`, `.B` | light of fire alone, premultiplied; if a system burns, in one of the frames of a sequence |
 pub async fn write(backend: &Backend, shot: &Shot, options: ExrOptions, path: &Path) -> Result<(), Error> {
     let channels = channels(backend, shot, options).await?;
@@ -106,6 +106,8 @@ async fn channels(backend: &Backend, shot: &Shot, options: ExrOptions) -> Result
     for (name, scalar) in scalars {
         add(&mut channels, &[name], &layers.scalar(scalar).await?, Vec4::splat);
     }
+    // Blender reads a pass of two channels as 0.
+    add(&mut channels, &["motion.Z"], &Image::new(shot.size, 0.0), Vec4::splat);
     if has_fire {
         add(&mut channels, &["emission.R", "emission.G", "emission.B"], &layers.fire().await?, lit);
     }
@@ -184,7 +186,7 @@ mod tests {
     fn layers_are_read_back() {
         let channels = written("column");
         let names: Vec<_> = channels.iter().map(|(name, _)| name.as_str()).collect();
-        let expected = ["A", "B", "G", "R", "amount.Y", "depth.Z", "motion.X", "motion.Y"];
+        let expected = ["A", "B", "G", "R", "amount.Y", "depth.Z", "motion.X", "motion.Y", "motion.Z"];
         assert_eq!(names, [&expected[..], &["normal.X", "normal.Y", "normal.Z"]].concat());
         let values = |wanted: &str| &channels.iter().find(|(name, _)| name == wanted).unwrap().1;
         let (alpha, normal_z, depth) = (values("A"), values("normal.Z"), values("depth.Z"));
@@ -197,6 +199,7 @@ mod tests {
         for (a, depth) in alpha.iter().zip(depth) {
             assert!(if *a > 0.01 { (away * 0.5..away * 2.0).contains(depth) } else { *a > 0.0 || *depth == 0.0 });
         }
+        assert!(values("motion.Z").iter().all(|way| *way == 0.0));
         // The smoke rises.
         let mean_rise =
             values("motion.Y").iter().sum::<f32>() / depth.iter().filter(|depth| **depth > 0.0).count() as f32;
