@@ -3,8 +3,10 @@
 use haze_author::sprite::six_way::Packing;
 
 /// Engine to export for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(not(target_arch = "wasm32"), derive(clap::ValueEnum))]
+#[cfg_attr(test, derive(serde::Deserialize))]
+#[serde(rename_all = "snake_case")]
 pub enum Engine {
     /// Unreal Engine.
     #[default]

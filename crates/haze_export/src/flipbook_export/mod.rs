@@ -25,7 +25,7 @@ use crate::memory_check::{BYTES_PER_PIXEL, check_memory};
 use crate::png_stream::EncodedPng;
 pub use cut_smoke::CutSmoke;
 use frame_layers::FrameLayers;
-use numbers::FlipbookNumbers;
+use numbers::{FlipbookNumbers, Scales};
 use sheets::{SheetLayout, Sheets};
 
 /// Light of fire in the color of a flipbook. It is in `emission.png` in any case.
@@ -199,24 +199,19 @@ impl FlipbookExport {
             || if progress.goes_on(all, all) { Ok(()) } else { Err(stopped_before_writing(folder, all, all)) };
         goes_on()?;
         let made = progress.show("haze: encoding the sheets".into(), async { sheets.encode(&goes_on) }).await?;
-        let numbers = FlipbookNumbers {
-            columns: options.cells.y,
-            rows: options.cells.x,
-            frames: count,
-            rate: frames.rate,
-            alpha,
-            emission: burns.then_some(emission),
-            motion_scale: made.motion_scale,
+        let scales = Scales {
+            motion: made.motion_scale,
             six_way_intensity: made.six_way_intensity,
             six_way_emission: made.six_way_emission,
         };
+        let names = made.images.iter().map(|(name, _)| *name);
+        let numbers = FlipbookNumbers::new(&options, alpha, shot.size, (count, frames.rate), &scales, names);
         if let Some(cut_smoke) = &mut cut_smoke {
             let stopped = |_| stopped_before_writing(folder, all, all);
             cut_smoke.fitting_fov = cut_smoke::fitting_fov(backend, shot, frames, all, progress, stopped).await?;
             cut_smoke.has_keyframes = cut_smoke::has_keyframes(shot);
         }
-        let mut readme =
-            readme::readme(options.engine, &shot.preset.name, &numbers, made.images.iter().map(|(name, _)| *name));
+        let mut readme = readme::readme(options.engine, &shot.preset.name, &numbers);
         if let Some(cut_smoke) = &cut_smoke {
             readme += &format!("\nBeware: {cut_smoke}.\n");
         }

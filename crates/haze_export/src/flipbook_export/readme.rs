@@ -6,23 +6,9 @@ use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;
 use crate::image_format::Alpha;
 
-pub fn readme(
-    engine: Engine,
-    title: &str,
-    numbers: &FlipbookNumbers,
-    images: impl Iterator<Item = &'static str>,
-) -> String {
-    let FlipbookNumbers {
-        columns,
-        rows,
-        frames,
-        rate,
-        alpha,
-        emission,
-        motion_scale,
-        six_way_intensity,
-        six_way_emission,
-    } = numbers;
+pub fn readme(engine: Engine, title: &str, numbers: &FlipbookNumbers) -> String {
+    let FlipbookNumbers { columns, rows, frames, rate, alpha, emission, motion_scale, .. } = numbers;
+    let FlipbookNumbers { six_way_intensity, six_way_emission, .. } = numbers;
     let mut text = format!(
         "# {title}: flipbook\n\n{frames} frames in {columns} columns and {rows} rows, left to right, then down; {rate} frames \
          per second. `flipbook.json` has the numbers.\n\n| file | color space | content |\n|---|---|---|\n",
@@ -33,7 +19,7 @@ pub fn readme(
     };
     let green = if engine.normals_point_up() { "up (OpenGL)" } else { "down (DirectX)" };
     let motion_down = if engine.first_row_is_at_the_top() { "down" } else { "up" };
-    for name in images {
+    for name in numbers.files.iter().map(|file| file.name.as_str()) {
         let (space, content) = match name {
             COLOR => {
                 let kind = match alpha {

@@ -203,18 +203,64 @@ fn pages_of_flipbooks_name_the_blend_mode() {
 
 /// Page of a flipbook with all files.
 fn page(engine: Engine, alpha: Alpha) -> String {
-    let numbers = FlipbookNumbers {
-        columns: 2,
-        rows: 2,
-        frames: 4,
-        rate: 24.0,
-        alpha,
-        emission: Some(Emission::Contained),
-        motion_scale: 0.1,
-        six_way_intensity: Some(2.0),
-        six_way_emission: Some(3.0),
+    let scales = Scales { motion: 0.1, six_way_intensity: Some(2.0), six_way_emission: Some(3.0) };
+    let images = FILES[..6].iter().copied();
+    let numbers = FlipbookNumbers::new(&options(engine), alpha, UVec2::splat(SIDE), (4, 24.0), &scales, images);
+    readme::readme(engine, "Fire", &numbers)
+}
+
+/// Rows of the table of `flipbook.json` in the documentation: key, type, content.
+fn documented_keys() -> Vec<[String; 3]> {
+    let text = include_str!("../../../../docs/export.md");
+    let table = text.split("| key | type | content |").nth(1).unwrap();
+    let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
+    let row = |line: &str| {
+        let mut cells = line.trim_matches('|').splitn(3, '|').map(|cell| cell.trim().to_owned());
+        [(); 3].map(|()| cells.next().unwrap())
     };
-    readme::readme(engine, "Fire", &numbers, FILES[..6].iter().copied())
+    rows.map(row).map(|[key, kind, content]| [key.trim_matches('`').to_owned(), kind, content]).collect()
+}
+
+#[test]
+fn flipbook_json_is_as_documented() {
+    let (shot, frames) = (Shot::load("campfire", UVec2::splat(16)).unwrap(), frames(2, 12.5));
+    let documented = documented_keys();
+    for engine in ENGINES {
+        let options = FlipbookOptions { alpha: None, loop_fade: 1, has_six_way: true, ..options(engine) };
+        let flipbook = Flipbook::new(&shot, &frames, options);
+        let text = std::fs::read_to_string(flipbook.folder.path().join(NUMBERS)).unwrap();
+        let numbers: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let all = numbers.as_object().unwrap();
+        let files = numbers["files"].as_array().unwrap().iter().flat_map(|file| file.as_object().unwrap());
+        let of_files = files.map(|(key, value)| (format!("files[].{key}"), value));
+        let mut seen = Vec::new();
+        for (key, value) in all.iter().map(|(key, value)| (key.clone(), value)).chain(of_files) {
+            let [_, kind, content] =
+                documented.iter().find(|[name, ..]| *name == key).unwrap_or_else(|| panic!("{key}"));
+            let is_kind = match kind.as_str() {
+                "integer" => value.is_u64(),
+                "number" => value.is_number(),
+                "boolean" => value.is_boolean(),
+                "array" => value.is_array(),
+                _ => value.as_str().is_some_and(|value| content.contains(&format!("`{value}`"))),
+            };
+            assert!(is_kind, "{engine:?}: {key} is {value}, not {kind}: {content}");
+            seen.push(key);
+        }
+        let missing = documented.iter().map(|[key, ..]| key).find(|key| !seen.contains(key));
+        let expected = if engine == Engine::Unity { None } else { Some("six_way_emission") };
+        assert_eq!(missing.map(String::as_str), expected, "{engine:?}");
+        let FlipbookNumbers { version, frame_width, rate, is_loop, normal_green, motion_green, .. } = flipbook.numbers;
+        assert!(version == 1 && frame_width == 16 && rate.to_bits() == 12.5_f32.to_bits() && is_loop);
+        let [up, down] = [numbers::Direction::Up, numbers::Direction::Down];
+        assert_eq!(normal_green, if engine == Engine::Unreal { down } else { up });
+        assert_eq!(motion_green, if engine == Engine::Unity { up } else { down });
+        // The images are those of the files, in the same order, and have alpha where it is told.
+        for file in numbers["files"].as_array().unwrap() {
+            let picture = read_png(&flipbook.folder.path().join(file["name"].as_str().unwrap())).unwrap();
+            assert_eq!(picture.color().has_alpha(), file["alpha"] != "none", "{file}");
+        }
+    }
 }
 
 #[test]
