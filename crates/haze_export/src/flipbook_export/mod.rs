@@ -7,6 +7,7 @@ mod motion_fit;
 mod numbers;
 mod readme;
 mod sheets;
+mod sprite_sheet;
 
 use std::path::Path;
 
@@ -112,11 +113,12 @@ pub struct FlipbookExport {
     pub numbers: FlipbookNumbers,
     /// Smoke that the borders of frames cut off; `None` if there is none.
     pub cut_smoke: Option<CutSmoke>,
+    sprite_sheet: String,
     readme: String,
 }
 
 /// Names of all files that a flipbook may have.
-pub const FILES: [&str; 8] = [
+pub const FILES: [&str; 9] = [
     sheets::COLOR,
     sheets::NORMALS,
     sheets::MOTION,
@@ -124,11 +126,13 @@ pub const FILES: [&str; 8] = [
     sheets::SIX_WAY[0],
     sheets::SIX_WAY[1],
     NUMBERS,
+    SPRITE_SHEET,
     README,
 ];
 
 const NUMBERS: &str = "flipbook.json";
 const README: &str = "README.md";
+const SPRITE_SHEET: &str = "color.json";
 
 impl FlipbookExport {
     /// Renders a flipbook. `folder`: the one to be written into. It need not exist; until [`FlipbookExport::write`], sheets are in
@@ -215,7 +219,8 @@ impl FlipbookExport {
         if let Some(cut_smoke) = &cut_smoke {
             readme += &format!("\nBeware: {cut_smoke}.\n");
         }
-        Ok(Self { images: made.images, numbers, cut_smoke, readme })
+        let sprite_sheet = sprite_sheet::sprite_sheet(&shot.preset.name, &numbers);
+        Ok(Self { images: made.images, numbers, cut_smoke, sprite_sheet, readme })
     }
 
     /// Writes the files into the folder, which must exist now.
@@ -227,12 +232,13 @@ impl FlipbookExport {
         // Numbers and strings always become JSON.
         let numbers = serde_json::to_string_pretty(&self.numbers).unwrap_or_default() + "\n";
         write_file(&folder.join(NUMBERS), numbers.as_bytes())?;
+        write_file(&folder.join(SPRITE_SHEET), self.sprite_sheet.as_bytes())?;
         write_file(&folder.join(README), self.readme.as_bytes())
     }
 
     /// Returns the names of the files that are written.
     pub fn files(&self) -> impl Iterator<Item = &'static str> {
-        self.images.iter().map(|(name, _)| *name).chain([NUMBERS, README])
+        self.images.iter().map(|(name, _)| *name).chain([NUMBERS, SPRITE_SHEET, README])
     }
 }
 

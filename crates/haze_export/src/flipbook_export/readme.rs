@@ -11,7 +11,7 @@ pub fn readme(engine: Engine, title: &str, numbers: &FlipbookNumbers) -> String 
     let FlipbookNumbers { six_way_intensity, six_way_emission, .. } = numbers;
     let mut text = format!(
         "# {title}: flipbook\n\n{frames} frames in {columns} columns and {rows} rows, left to right, then down; {rate} frames \
-         per second. `flipbook.json` has the numbers.\n\n| file | color space | content |\n|---|---|---|\n",
+         per second. `flipbook.json` has the numbers, `color.json` the frames by name, as PixiJS and Phaser read them.\n\n| file | color space | content |\n|---|---|---|\n",
     );
     let packing = match engine {
         Engine::Unity => ["right, top, back", "left, bottom, front"],

@@ -362,6 +362,24 @@ fn motion_vectors_stay_inside_the_frame() {
 }
 
 #[test]
+fn sprite_sheets_have_the_place_of_each_frame() {
+    let numbers = |columns| {
+        let options = FlipbookOptions { cells: UVec2::new(2, columns), ..options(Engine::Wgsl) };
+        let scales = Scales { motion: 0.1, six_way_intensity: None, six_way_emission: None };
+        FlipbookNumbers::new(&options, Alpha::Straight, UVec2::new(32, 16), (5, 24.0), &scales, FILES.into_iter())
+    };
+    let text = sprite_sheet::sprite_sheet("Camp Fire", &numbers(3));
+    let sheet: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let frame = &sheet["frames"]["camp_fire_0004"];
+    assert_eq!(frame["frame"], serde_json::json!({ "x": 32, "y": 16, "w": 32, "h": 16 }));
+    assert_eq!(frame["sourceSize"], serde_json::json!({ "w": 32, "h": 16 }));
+    assert_eq!(sheet["frames"].as_object().unwrap().len(), 5);
+    assert_eq!(sheet["animations"]["camp_fire"][4], "camp_fire_0004");
+    let meta = &sheet["meta"];
+    assert!(meta["image"] == "color.png" && meta["size"] == serde_json::json!({ "w": 96, "h": 32 }), "{meta}");
+}
+
+#[test]
 fn faded_flipbooks_loop() {
     let (shot, frames) = (shot("column"), frames(4, 4.0));
     let gap = |fade: u32| {
