@@ -1,5 +1,5 @@
 // Opens what haze has exported in engines that run in a browser. scripts/test_engines prepares the folder that it runs in:
-// `flipbook_NAME` with `frame_NAME_N.png` of the same times, and `material_NAME` for Godot.
+// `flipbook_NAME` with `frame_NAME_N.png` at its times and halfway between, and `material_NAME` for Godot.
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
@@ -10,6 +10,10 @@ const SIDE = 128;
 // Eight bits a channel, in the sheet and in the image: a rounding error each, 56 dB if they were independent. Most texels are the
 // same in both.
 const LEAST_PSNR = 55;
+// Squared error between two frames with motion vectors, as a share of that without. Not where a cross-fade is as good as this, in
+// decibels: frames that are so alike differ by less than the filter of a texture that is moved by a fraction of a texel.
+const MOST_OF_A_FADE = 0.9;
+const ALIKE = 40;
 const failures = [];
 function check(what, isRight, seen) {
     console.log(`${isRight ? 'ok    ' : 'FAILED'} ${what}: ${seen}`);
@@ -43,24 +47,27 @@ const toLinear = code => (code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.0
 const toCode = light => (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
 
 // Image over a background, in linear light; codes from 0 to 255.
-function over(image, background, isPremultiplied) {
+function over({ data, isStraight }, background) {
     const codes = [];
-    for (let at = 0; at < image.data.length; at += 4) {
-        const alpha = image.data[at + 3] / 255;
+    for (let at = 0; at < data.length; at += 4) {
+        const alpha = data[at + 3] / 255;
         for (let channel = 0; channel < 3; channel++) {
-            const light = toLinear(image.data[at + channel] / 255) * (isPremultiplied ? 1 : alpha);
+            const light = toLinear(data[at + channel] / 255) * (isStraight ? alpha : 1);
             codes.push(255 * toCode(Math.min(light + background * (1 - alpha), 1)));
         }
     }
     return codes;
 }
 
-function psnr(a, b) {
-    const squares = a.reduce((sum, value, index) => sum + (value - b[index]) ** 2, 0);
-    return 10 * Math.log10((255 * 255 * a.length) / squares);
+function squaredError(a, b) {
+    return a.reduce((sum, value, index) => sum + (value - b[index]) ** 2, 0);
 }
 
-// three.js: frames of a sheet, blended as three.js blends, in a target of linear light.
+function psnr(a, b) {
+    return 10 * Math.log10((255 * 255 * a.length) / squaredError(a, b));
+}
+
+// three.js: the module that goes with a flipbook, in a target of linear light.
 async function testThree() {
     fs.writeFileSync('three.html', `<script type="importmap">{"imports": {"three": "./node_modules/three/build/three.module.js"}}</script>
 <script type="module">import * as three from 'three'; window.three = three;</script>`);
@@ -69,56 +76,67 @@ async function testThree() {
     await page.waitForFunction('window.three');
     for (const folder of folders('flipbook_')) {
         const name = folder.slice('flipbook_'.length);
-        const { columns, rows, frames } = JSON.parse(fs.readFileSync(`${folder}/flipbook.json`));
+        const { frames, rate, alpha } = JSON.parse(fs.readFileSync(`${folder}/flipbook.json`));
+        // One at each frame, and one between two.
+        const images = Array.from({ length: 2 * frames - 1 }, (_, index) => {
+            const { data } = PNG.sync.read(fs.readFileSync(`frame_${name}_${index}.png`));
+            return { data, isStraight: alpha === 'straight' };
+        });
+        const draw = (background, seconds, hasMotion) =>
+            page.evaluate(drawFlipbook, { url: `/${folder}/`, background, seconds, hasMotion, side: SIDE });
         for (const background of [0, 0.2, 1]) {
-            const shown = await page.evaluate(drawFrames, { url: `/${folder}/color.png`, columns, rows, frames, background, side: SIDE });
-            shown.forEach((codes, frame) => {
-                const image = PNG.sync.read(fs.readFileSync(`frame_${name}_${frame}.png`));
-                const decibels = psnr(codes, over(image, background, false));
+            for (let frame = 0; frame < frames; frame++) {
+                const codes = await draw(background, frame / rate, true);
+                const decibels = psnr(codes, over(images[2 * frame], background));
                 check(`three.js, ${name}, frame ${frame} over ${background}`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
-            });
+            }
+            let moved = 0;
+            let faded = 0;
+            for (let frame = 0; frame + 1 < frames; frame++) {
+                const expected = over(images[2 * frame + 1], background);
+                moved += squaredError(await draw(background, (frame + 0.5) / rate, true), expected);
+                faded += squaredError(await draw(background, (frame + 0.5) / rate, false), expected);
+            }
+            const share = moved / faded;
+            const decibels = 10 * Math.log10((255 * 255 * 3 * SIDE * SIDE * (frames - 1)) / faded);
+            const seen = `${share.toFixed(3)} of the squared error of a cross-fade of ${decibels.toFixed(1)} dB`;
+            check(`three.js, ${name}, between frames over ${background}`, share <= MOST_OF_A_FADE || decibels > ALIKE, seen);
         }
     }
     await page.close();
 }
 
 // Runs in the page.
-async function drawFrames({ url, columns, rows, frames, background, side }) {
+async function drawFlipbook({ url, background, seconds, hasMotion, side }) {
     const three = window.three;
-    const renderer = new three.WebGLRenderer();
-    renderer.toneMapping = three.NoToneMapping;
-    const texture = await new three.TextureLoader().loadAsync(url);
-    texture.colorSpace = three.SRGBColorSpace;
-    texture.minFilter = three.NearestFilter;
-    texture.magFilter = three.NearestFilter;
-    texture.repeat.set(1 / columns, 1 / rows);
-    const material = new three.MeshBasicMaterial({ map: texture, transparent: true });
+    const { HazeFlipbook } = await import(`${url}haze_flipbook.js`);
+    window.loaded ??= {};
+    const smoke = (window.loaded[url] ??= await HazeFlipbook.load());
+    const scale = hasMotion ? smoke.numbers.motion_scale : 0;
+    smoke.material.uniforms.hazeMotionScale.value.set(scale, scale);
+    smoke.scale.set(2, 2, 1);
+    smoke.update(seconds);
+    window.renderer ??= new three.WebGLRenderer();
     const scene = new three.Scene();
     scene.background = new three.Color(background, background, background);
-    scene.add(new three.Mesh(new three.PlaneGeometry(2, 2), material));
-    const camera = new three.OrthographicCamera(-1, 1, 1, -1, 0, 1);
+    scene.add(smoke);
+    const camera = new three.OrthographicCamera(-1, 1, 1, -1, -1, 1);
     const target = new three.WebGLRenderTarget(side, side, { type: three.FloatType });
+    window.renderer.setRenderTarget(target);
+    window.renderer.render(scene, camera);
+    const texels = new Float32Array(4 * side * side);
+    window.renderer.readRenderTargetPixels(target, 0, 0, side, side, texels);
+    target.dispose();
     const encoded = light => (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
-    const shown = [];
-    for (let frame = 0; frame < frames; frame++) {
-        const row = Math.floor(frame / columns);
-        texture.offset.set((frame % columns) / columns, 1 - (row + 1) / rows);
-        renderer.setRenderTarget(target);
-        renderer.render(scene, camera);
-        const texels = new Float32Array(4 * side * side);
-        renderer.readRenderTargetPixels(target, 0, 0, side, side, texels);
-        const codes = [];
-        for (let y = side - 1; y >= 0; y--) {
-            for (let x = 0; x < side; x++) {
-                for (let channel = 0; channel < 3; channel++) {
-                    codes.push(255 * encoded(Math.min(texels[4 * (y * side + x) + channel], 1)));
-                }
+    const codes = [];
+    for (let y = side - 1; y >= 0; y--) {
+        for (let x = 0; x < side; x++) {
+            for (let channel = 0; channel < 3; channel++) {
+                codes.push(255 * encoded(Math.min(texels[4 * (y * side + x) + channel], 1)));
             }
         }
-        shown.push(codes);
     }
-    renderer.dispose();
-    return shown;
+    return codes;
 }
 
 // Godot: its own compiler takes the material of every preset.

@@ -17,6 +17,8 @@ pub enum Engine {
     Godot,
     /// WGSL, for wgpu and Bevy.
     Wgsl,
+    /// three.js. Flipbooks alone.
+    Three,
 }
 
 impl Engine {
@@ -39,7 +41,7 @@ impl Engine {
     pub fn six_way_packing(self) -> Packing {
         match self {
             Self::Unity => Packing::Unity,
-            Self::Unreal | Self::Godot | Self::Wgsl => Packing::RltBbf,
+            Self::Unreal | Self::Godot | Self::Wgsl | Self::Three => Packing::RltBbf,
         }
     }
 }

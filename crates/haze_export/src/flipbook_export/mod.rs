@@ -118,7 +118,7 @@ pub struct FlipbookExport {
 }
 
 /// Names of all files that a flipbook may have.
-pub const FILES: [&str; 9] = [
+pub const FILES: [&str; 10] = [
     sheets::COLOR,
     sheets::NORMALS,
     sheets::MOTION,
@@ -127,12 +127,16 @@ pub const FILES: [&str; 9] = [
     sheets::SIX_WAY[1],
     NUMBERS,
     SPRITE_SHEET,
+    MODULE,
     README,
 ];
 
 const NUMBERS: &str = "flipbook.json";
 const README: &str = "README.md";
 const SPRITE_SHEET: &str = "color.json";
+const MODULE: &str = "haze_flipbook.js";
+/// Plays a flipbook in three.js.
+const MODULE_SOURCE: &str = include_str!("haze_flipbook.js");
 
 impl FlipbookExport {
     /// Renders a flipbook. `folder`: the one to be written into. It need not exist; until [`FlipbookExport::write`], sheets are in
@@ -233,12 +237,20 @@ impl FlipbookExport {
         let numbers = serde_json::to_string_pretty(&self.numbers).unwrap_or_default() + "\n";
         write_file(&folder.join(NUMBERS), numbers.as_bytes())?;
         write_file(&folder.join(SPRITE_SHEET), self.sprite_sheet.as_bytes())?;
+        if self.has_module() {
+            write_file(&folder.join(MODULE), MODULE_SOURCE.as_bytes())?;
+        }
         write_file(&folder.join(README), self.readme.as_bytes())
     }
 
     /// Returns the names of the files that are written.
     pub fn files(&self) -> impl Iterator<Item = &'static str> {
-        self.images.iter().map(|(name, _)| *name).chain([NUMBERS, SPRITE_SHEET, README])
+        let module = self.has_module().then_some(MODULE);
+        self.images.iter().map(|(name, _)| *name).chain([NUMBERS, SPRITE_SHEET]).chain(module).chain([README])
+    }
+
+    fn has_module(&self) -> bool {
+        self.numbers.engine == Engine::Three
     }
 }
 

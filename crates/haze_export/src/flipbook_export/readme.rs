@@ -119,6 +119,17 @@ fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
              3. In the process material, *Animation Speed* 1 plays all {frames} frames in a particle's life.\n\
              4. Motion vectors need a shader: the formula above, in `fragment()`.\n",
         ),
+        Engine::Three => "## In three.js\n\n\
+             `haze_flipbook.js` shows the flipbook on a square that faces the camera, with motion vectors, the blend mode of its color, \
+             and without the frames beside. It needs `three` as an import, and the files of this folder beside it.\n\n\
+             ```js\n\
+             import { HazeFlipbook } from './haze_flipbook.js';\n\n\
+             const smoke = await HazeFlipbook.load();\n\
+             scene.add(smoke);\n\
+             // Before each frame; any time, in any order.\n\
+             smoke.update(clock.getElapsedTime());\n\
+             ```\n"
+            .into(),
         Engine::Wgsl => format!(
             "## In WGSL\n\nUpload `color.png` and `emission.png` as `Rgba8UnormSrgb`, the others as `Rgba8Unorm`, and sample \
              them as above. Blend with {blending}.\n",
@@ -136,6 +147,10 @@ fn linear_light(engine: Engine) -> &'static str {
         Engine::Godot => {
             "Godot's renderers Forward+ and Mobile blend linear light in 3D, and in 2D with *Project Settings > Rendering > \
              Viewport > HDR 2D*. Compatibility blends codes."
+        }
+        Engine::Three => {
+            "three.js blends codes on a canvas, and linear light in the half floats of an `EffectComposer`, with `OutputPass` as its last \
+             pass."
         }
         Engine::Wgsl => {
             "wgpu blends linear light on targets whose format is sRGB or float, such as `Bgra8UnormSrgb` and `Rgba16Float`; on \
@@ -161,6 +176,8 @@ fn blending(engine: Engine, alpha: Alpha) -> &'static str {
         (Engine::Godot, Alpha::Premultiplied) => {
             "*Blend Mode* `Premultiplied Alpha` (`blend_premul_alpha` in a shader)"
         }
+        (Engine::Three, Alpha::Straight) => "`NormalBlending`",
+        (Engine::Three, Alpha::Premultiplied) => "`CustomBlending` of `OneFactor` and `OneMinusSrcAlphaFactor`",
         (Engine::Wgsl, Alpha::Straight) => "`BlendState::ALPHA_BLENDING`, in Bevy `AlphaMode::Blend`",
         (Engine::Wgsl, Alpha::Premultiplied) => {
             "`BlendState::PREMULTIPLIED_ALPHA_BLENDING`, in Bevy `AlphaMode::Premultiplied`"

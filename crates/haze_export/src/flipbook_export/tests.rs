@@ -10,7 +10,7 @@ use super::*;
 use crate::image_format::{Alpha, Background, ImageFormat};
 use crate::smoke_layers::SmokeLayers;
 
-const ENGINES: [Engine; 4] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl];
+const ENGINES: [Engine; 5] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl, Engine::Three];
 const SIDE: u32 = 64;
 const GO_ON: ExportProgress<'_> = ExportProgress::Callback(&|_, _| true);
 
@@ -42,6 +42,17 @@ fn frames_are_as_far_apart_after_hours_as_at_first() {
     let frames = frames(10, 60.0);
     let times: Vec<_> = (0..10).map(|frame| frames.shot(&shot, frame).preset.time).collect();
     assert!(times.windows(2).all(|pair| (pair[1] - pair[0] - 1.0 / 60.0).abs() < 1.0e-6), "{times:?}");
+}
+
+#[test]
+fn three_js_gets_a_module_that_plays_the_flipbook() {
+    let flipbook = |engine| Flipbook::new(&shot("column"), &frames(2, 24.0), options(engine));
+    let three = flipbook(Engine::Three);
+    let module = std::fs::read_to_string(three.folder.path().join(MODULE)).unwrap();
+    assert!(module.len() <= 15_000 && module.contains("export class HazeFlipbook"));
+    let readme = std::fs::read_to_string(three.folder.path().join(README)).unwrap();
+    assert!(readme.contains("HazeFlipbook.load()"), "{readme}");
+    assert!(!flipbook(Engine::Godot).folder.path().join(MODULE).exists());
 }
 
 /// A flipbook, read back from its files.
@@ -162,7 +173,8 @@ fn flipbooks_are_premultiplied_if_a_system_burns_at_any_time() {
     let mut fire = Shot::load("campfire", UVec2::splat(16)).unwrap();
     fire.preset.systems.truncate(1);
     let key = |time, intensity| Keyframe { time, value: KeyValue::Number(intensity), ease: Ease::Hold };
-    let keys = vec![key(fire.preset.time, 0.0), key(fire.preset.time + 0.5, 1.0)];
+    let start = fire.preset.time as f32;
+    let keys = vec![key(start, 0.0), key(start + 0.5, 1.0)];
     fire.preset.animation =
         vec![Track { setting: "systems[0].settings.fire.intensity".into(), keys, ..Track::default() }];
     let unset = FlipbookOptions { alpha: None, ..options(Engine::Unity) };

@@ -99,7 +99,7 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
             names("the texture of ", "haze_"),
             if burns { "; the age is the place in the heat ramp" } else { "" },
         ),
-        Engine::Wgsl => format!(
+        Engine::Wgsl | Engine::Three => format!(
             "## In WGSL\n\n\
              Put `haze_material.wgsl` before your own shader: it declares functions and constants alone, no bindings. Bind {} \
              as `texture_2d<f32>` of a format such as `Rgba8UnormSrgb`, with a linear sampler.\n\n\

@@ -1,6 +1,6 @@
 //! Source files of a material, in the language of each engine.
 
-use haze::Error;
+use haze::{Error, FieldError};
 
 use crate::engine::Engine;
 
@@ -12,6 +12,10 @@ use super::translation::{glsl_functions, hlsl_functions};
 /// Returns the names and texts of an engine's files.
 pub fn sources(engine: Engine, snippet: &Snippet) -> Result<Vec<(&'static str, String)>, Error> {
     Ok(match engine {
+        Engine::Three => {
+            let expected = "unreal, unity, godot or wgsl; for three.js, `haze export flipbook`";
+            return Err(FieldError::new("--engine", "three", expected).into());
+        }
         Engine::Wgsl => vec![("haze_material.wgsl", format!("{NOTE}\n{}", snippet.wgsl))],
         Engine::Unreal => {
             let functions = hlsl_functions(&snippet.wgsl)?;

@@ -449,6 +449,17 @@ fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
 }
 
 #[test]
+fn a_material_for_three_js_is_refused_because_it_has_flipbooks_alone() {
+    let preset = Preset::load("column").unwrap();
+    let made = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets(), Engine::Three);
+    let said = made.err().unwrap().to_string();
+    assert_eq!(
+        said,
+        "--engine: three is not valid; expected unreal, unity, godot or wgsl; for three.js, `haze export flipbook`"
+    );
+}
+
+#[test]
 fn light_that_comes_from_no_ramp_is_refused() {
     let mut preset = Preset::load("column").unwrap();
     let assets = assets();

@@ -72,6 +72,9 @@ const ENGINES: [(&str, Engine, &str); 4] = [
     ("WGSL", Engine::Wgsl, "Ramps, and functions for wgpu and Bevy"),
 ];
 
+/// Of flipbooks alone.
+const THREE: (&str, Engine, &str) = ("three.js", Engine::Three, "With a module that plays the flipbook");
+
 /// Draws a row of choices.
 fn choices<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, choices: &[(&str, T, &str)]) {
     ui.label(name);
@@ -112,12 +115,17 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     let is_moving = has_cells || matches!(product, ExportKind::Sequence | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
         if *product == ExportKind::Material {
+            if options.engine == Engine::Three {
+                options.engine = Engine::default();
+            }
             choices(ui, "Engine", &mut options.engine, &ENGINES);
             return;
         }
         if is_for_engine {
             let about = "Conventions of normals and motion vectors; a README tells how to use the files";
-            choices(ui, "Engine", &mut options.engine, &ENGINES.map(|(name, engine, _)| (name, engine, about)));
+            let engines: Vec<_> =
+                ENGINES.iter().map(|(name, engine, _)| (*name, *engine, about)).chain([THREE]).collect();
+            choices(ui, "Engine", &mut options.engine, &engines);
             choices(ui, "Alpha", &mut options.flipbook_alpha, &FLIPBOOK_ALPHAS);
         }
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
