@@ -170,6 +170,9 @@ fn surface_weights(fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     return upsample_weights(UPSAMPLE_BILINEAR, fraction, depths, depth) * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
 }
 
+// Share of a value by which carried_value() may lead it out of the range of the texels before it is clamped.
+const SMALL_CHANGE: f32 = 0.05;
+
 // Mean of four texels, in columns, each carried along its slope to the pixel's depth, as far as all channels stay within the
 // range of the texels. A texel's slope is depth_slope().
 fn carried_value(weights: vec4f, values: mat4x4f, slopes: mat4x4f, depths: vec4f, depth: f32, fade: f32) -> vec4f {
@@ -182,9 +185,10 @@ fn carried_value(weights: vec4f, values: mat4x4f, slopes: mat4x4f, depths: vec4f
     let mean = clamp(values * weights / total, low, high);
     let change = slopes * (weights * way) / total;
     // All channels stop where the first one leaves the range. Each by itself would leave light without amount, or the reverse.
-    let room = select(low, high, change > vec4f(0.0)) - mean;
-    let steps = select(vec4f(1.0), room / change, abs(change) > abs(room));
-    return mean + change * min(min(steps.x, steps.y), min(steps.z, steps.w));
+    // A channel at the end of its range, such as full opacity, does not stop the others by a change that is small.
+    let room = abs(select(low, high, change > vec4f(0.0)) - mean) + mean * SMALL_CHANGE;
+    let steps = select(vec4f(1.0), room / abs(change), abs(change) > room);
+    return clamp(mean + change * min(min(steps.x, steps.y), min(steps.z, steps.w)), low, high);
 }
 
 // Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of

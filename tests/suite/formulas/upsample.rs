@@ -235,6 +235,7 @@ fn carried() -> Vec<Formula> {
                 ("change * min(min(steps.x, steps.y), min(steps.z, steps.w))", "change"),
                 ("change * min(min(steps.x, steps.y), min(steps.z, steps.w))", "change * steps"),
                 ("select(low, high, change > vec4f(0.0))", "low"),
+                ("+ mean * SMALL_CHANGE", ""),
                 ("slopes * (weights * way)", "slopes * way"),
                 ("/ (SLOPE_LENGTH * fade);\n    let total", "/ SLOPE_LENGTH;\n    let total"),
             ],

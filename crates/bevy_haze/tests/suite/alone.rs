@@ -98,7 +98,7 @@ pub fn draw(host: &Host, frames: u32) -> (Picture, Vec<Duration>) {
     let ambient = glam::Vec3::splat(AMBIENT * EXPOSURE.exposure());
     let ambient = Ambient { intensity: 1.0, sky_color: ambient, ground_color: ambient };
     let settings = Settings { ambient, ..preset.systems[0].settings };
-    let snapshot = preset.systems[0].emitter_snapshot(SECONDS as f32);
+    let snapshot = preset.systems[0].emitter_snapshot(SECONDS);
     let size = glam::UVec2::new(SIZE.x, SIZE.y);
     let frame = FrameInput {
         lights: &lights(),

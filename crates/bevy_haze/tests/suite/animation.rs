@@ -41,7 +41,7 @@ fn settings_have_the_values_of_their_tracks_at_every_time() {
         let clock = SmokeClock::paused_at(seconds);
         host.app.world_mut().entity_mut(smoke).insert((animated.clone(), clock));
         let with_tracks = host.picture();
-        let still = preset.evaluate(seconds as f32).systems.into_iter().zip(images.clone());
+        let still = preset.evaluate(seconds).systems.into_iter().zip(images.clone());
         let systems = still.map(|(preset, images)| SmokeSystem { preset, images }).collect();
         let still = add(&mut host, SmokeAsset { systems, animation: Vec::new() });
         host.app.world_mut().entity_mut(smoke).insert(still);

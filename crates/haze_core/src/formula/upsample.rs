@@ -198,6 +198,9 @@ pub fn surface_weights(fraction: Vec2, depths: Vec4, depth: f32) -> Vec4 {
     upsample_weights(Upsample::Bilinear, fraction, depths, depth) * (gaussian + 1.0e-4)
 }
 
+/// Share of a value by which [`carried_value`] may lead it out of the range of the texels before it is clamped.
+const SMALL_CHANGE: f32 = 0.05;
+
 /// Mean of four texels, in columns, each carried along its slope to the pixel's depth, as far as all channels stay within the
 /// range of the texels. A texel's slope is [`depth_slope`].
 pub fn carried_value(weights: Vec4, values: Mat4, slopes: Mat4, depths: Vec4, depth: f32, fade: f32) -> Vec4 {
@@ -208,9 +211,10 @@ pub fn carried_value(weights: Vec4, values: Mat4, slopes: Mat4, depths: Vec4, de
     let mean = (values * weights / total).clamp(low, high);
     let change = slopes * (weights * way) / total;
     // All channels stop where the first one leaves the range. Each by itself would leave light without amount, or the reverse.
-    let room = Vec4::select(change.cmpgt(Vec4::ZERO), high, low) - mean;
-    let steps = Vec4::select(change.abs().cmpgt(room.abs()), room / change, Vec4::ONE);
-    mean + change * steps.min_element()
+    // A channel at the end of its range, such as full opacity, does not stop the others by a change that is small.
+    let room = (Vec4::select(change.cmpgt(Vec4::ZERO), high, low) - mean).abs() + mean * SMALL_CHANGE;
+    let steps = Vec4::select(change.abs().cmpgt(room), room / change.abs(), Vec4::ONE);
+    (mean + change * steps.min_element()).clamp(low, high)
 }
 
 /// Share of the mean over the four texels around a pixel in its value; the rest is a mean over sixteen. `seen`: sum of
@@ -234,6 +238,19 @@ mod tests {
         let depths = Vec4::new(4.0, 4.0, 4.0, 6.0);
         let carried = carried_value(Vec4::splat(0.25), values, slopes, depths, 6.0, 1.0);
         // Channel by channel, light would fall to 0.08 and the amount rise to 0.9: black smoke.
-        assert!((carried.w - 0.9).abs() < 1e-6 && (carried.x - 0.24).abs() < 1e-6, "{carried}");
+        assert!((carried.w - 0.9).abs() < 1e-6 && (carried.x - 0.23).abs() < 1e-6, "{carried}");
+    }
+
+    #[test]
+    fn light_of_opaque_smoke_is_carried() {
+        let lights = [0.2, 0.8, 0.4, 0.4];
+        let texels = lights.map(|light| Vec4::new(light, light, light, 1.0));
+        let values = Mat4::from_cols(texels[0], texels[1], texels[2], texels[3]);
+        // Noise of the opacity, which is full on all sides.
+        let slope = Vec4::new(0.01, 0.01, 0.01, 0.001);
+        let slopes = Mat4::from_cols(slope, slope, slope, slope);
+        let depths = Vec4::new(4.0, 4.0, 4.0, 6.0);
+        let carried = carried_value(Vec4::splat(0.25), values, slopes, depths, 6.0, 1.0);
+        assert!((carried.x - 0.75).abs() < 1e-5 && (carried.w - 1.0).abs() < 1e-6, "{carried}");
     }
 }

@@ -3,8 +3,9 @@
 use glam::UVec2;
 use haze_author::sprite::six_way::Packing;
 
+use super::emission::Emission;
+use super::options::FlipbookOptions;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
-use super::{Emission, FlipbookOptions};
 use crate::engine::Engine;
 use crate::image_format::Alpha;
 

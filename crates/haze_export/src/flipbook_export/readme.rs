@@ -1,6 +1,6 @@
 //! Page that goes with a flipbook: its files, and how to use them.
 
-use super::Emission;
+use super::emission::Emission;
 use super::numbers::FlipbookNumbers;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;

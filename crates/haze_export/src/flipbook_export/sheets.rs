@@ -13,7 +13,7 @@ use haze_core::formula::six_way::SixWay;
 use haze_demo::tonemap_pass::{encoded, rgba8_codes};
 use haze_preset::CompressionEffort;
 
-use super::Emission;
+use super::emission::Emission;
 use super::fill::filled;
 use super::frame_layers::FrameLayers;
 use super::motion_fit::{followed, kept_inside};

@@ -1,8 +1,8 @@
-use glam::{IVec2, Vec2, Vec3, Vec4Swizzles};
+use glam::{IVec2, UVec2, Vec2, Vec3, Vec4Swizzles};
 use haze_core::assets::image::read_png;
 use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use haze_demo::tonemap_pass::rgba8;
-use haze_preset::{Ease, KeyValue, Keyframe, Track};
+use haze_preset::{CompressionEffort, Ease, KeyValue, Keyframe, Track};
 use image::RgbaImage;
 use pollster::block_on;
 
