@@ -1,4 +1,4 @@
-//! Where the light of fire is.
+//! Place of the light of fire in a flipbook.
 
 /// Light of fire in the color of a flipbook. It is in `emission.png` in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
