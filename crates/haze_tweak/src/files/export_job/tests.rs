@@ -114,7 +114,8 @@ fn the_alpha_of_a_flipbook_for_an_engine_is_chosen_in_the_dialog() {
     (job.options.frame_size, job.options.cells, job.options.last) = (UVec2::splat(16), UVec2::new(1, 1), 0);
     job.product = ExportKind::EngineFlipbook;
     job.is_open = true;
-    bench.window.run_steps(2);
+    // The dialog moves until it fits into the window.
+    bench.window.run_steps(4);
     bench.window.get_by_label("Premultiplied").click();
     bench.window.run_steps(2);
     let names = bench.make(ExportKind::EngineFlipbook);
