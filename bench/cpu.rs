@@ -17,7 +17,7 @@ use haze_demo::shot::Shot;
 const COUNTS: [u32; 3] = [1_000, 10_000, 100_000];
 
 /// Returns an emitter and a time, in seconds, at which `count` particles are alive.
-fn emitter(count: u32) -> (Emitter, f32) {
+fn emitter(count: u32) -> (Emitter, f64) {
     let emitter = Emitter { rate: count as f32, duration: 1.0, lifetime: 100.0, ..Emitter::default() };
     // They stay where the camera of `column` sees them.
     let place = Vec3::new(-3.0, 1.5, 0.5);

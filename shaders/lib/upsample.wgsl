@@ -170,7 +170,8 @@ fn surface_weights(fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     return upsample_weights(UPSAMPLE_BILINEAR, fraction, depths, depth) * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
 }
 
-// Share of a value by which carried_value() may lead it out of the range of the texels before it is clamped.
+// Share of a value by which carried_value() may lead it out of the range of the texels before it is clamped. At 0, a channel at the
+// end of its range would stop all others; light and amount are apart by at most this share.
 const SMALL_CHANGE: f32 = 0.05;
 
 // Mean of four texels, in columns, each carried along its slope to the pixel's depth, as far as all channels stay within the
@@ -184,7 +185,7 @@ fn carried_value(weights: vec4f, values: mat4x4f, slopes: mat4x4f, depths: vec4f
     let high = max(max(values[0], values[1]), max(values[2], values[3]));
     let mean = clamp(values * weights / total, low, high);
     let change = slopes * (weights * way) / total;
-    // All channels stop where the first one leaves the range. Each by itself would leave light without amount, or the reverse.
+    // All channels stop where the first one leaves the range. One by one, they would leave light without amount, or the reverse.
     // A channel at the end of its range, such as full opacity, does not stop the others by a change that is small.
     let room = abs(select(low, high, change > vec4f(0.0)) - mean) + mean * SMALL_CHANGE;
     let steps = select(vec4f(1.0), room / abs(change), abs(change) > room);

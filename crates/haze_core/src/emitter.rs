@@ -298,7 +298,8 @@ impl Emitter {
         if self.rate <= 0.0 {
             return (0, 0);
         }
-        let (time, rate, longest) = (time, f64::from(self.rate), self.longest());
+        let rate = f64::from(self.rate);
+        let longest = self.longest();
         if let Some(Pulses { births, period }) = self.pulses() {
             let index = |time: f64, more: i64| {
                 let pulse = (time / period).floor();

@@ -198,7 +198,8 @@ pub fn surface_weights(fraction: Vec2, depths: Vec4, depth: f32) -> Vec4 {
     upsample_weights(Upsample::Bilinear, fraction, depths, depth) * (gaussian + 1.0e-4)
 }
 
-/// Share of a value by which [`carried_value`] may lead it out of the range of the texels before it is clamped.
+/// Share of a value by which [`carried_value`] may lead it out of the range of the texels before it is clamped. At 0, a channel at the
+/// end of its range would stop all others; light and amount are apart by at most this share.
 const SMALL_CHANGE: f32 = 0.05;
 
 /// Mean of four texels, in columns, each carried along its slope to the pixel's depth, as far as all channels stay within the
@@ -210,7 +211,7 @@ pub fn carried_value(weights: Vec4, values: Mat4, slopes: Mat4, depths: Vec4, de
     let high = values.x_axis.max(values.y_axis).max(values.z_axis.max(values.w_axis));
     let mean = (values * weights / total).clamp(low, high);
     let change = slopes * (weights * way) / total;
-    // All channels stop where the first one leaves the range. Each by itself would leave light without amount, or the reverse.
+    // All channels stop where the first one leaves the range. One by one, they would leave light without amount, or the reverse.
     // A channel at the end of its range, such as full opacity, does not stop the others by a change that is small.
     let room = (Vec4::select(change.cmpgt(Vec4::ZERO), high, low) - mean).abs() + mean * SMALL_CHANGE;
     let steps = Vec4::select(change.abs().cmpgt(room), room / change.abs(), Vec4::ONE);

@@ -86,6 +86,9 @@ export class HazeFlipbook extends Mesh {
         if (numbers.version !== 1 || numbers.motion_green !== 'down') {
             throw new Error(`${response.url}: expected version 1, exported with --engine three`);
         }
+        if (numbers.emission === 'separate') {
+            console.warn(`${response.url}: emission.png is not shown; with --emission contained, color.png has the fire`);
+        }
         const loader = new TextureLoader();
         const sheet = async name => {
             const texture = await loader.loadAsync(new URL(name, folder).href);

@@ -111,7 +111,9 @@ fn frames_are_written_as_sequence_flipbook_and_gif() {
 fn the_alpha_of_a_flipbook_for_an_engine_is_chosen_in_the_dialog() {
     let mut bench = bench();
     let job = &mut bench.window.state_mut().export_job;
-    (job.options.frame_size, job.options.cells, job.options.last) = (UVec2::splat(16), UVec2::new(1, 1), 0);
+    job.options.frame_size = UVec2::splat(16);
+    job.options.cells = UVec2::ONE;
+    job.options.last = 0;
     job.product = ExportKind::EngineFlipbook;
     job.is_open = true;
     // The dialog moves until it fits into the window.
