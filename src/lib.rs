@@ -102,8 +102,8 @@ pub use haze_core::formula::ambient::hemisphere_light;
 pub use haze_core::formula::shadow_map::MAX_SHADOW_LAYERS;
 #[doc(inline)]
 pub use haze_core::frame::{
-    Bounds, EmitterSnapshot, Light, LightKind, LightRole, MAX_LIGHTS, MAX_MAGNITUDE, Particle, ShadowProjection,
-    SpriteExtent, View, particle_bounds,
+    Bounds, EmitterPaths, EmitterSnapshot, Light, LightKind, LightRole, MAX_LIGHTS, MAX_MAGNITUDE, Particle,
+    ShadowProjection, SpriteExtent, View, particle_bounds,
 };
 #[doc(inline)]
 pub use haze_core::settings::Settings;

@@ -1,7 +1,7 @@
 // Particles of an emitter, each a function of seed, birth index and time.
 
 #import "lib/curve.wgsl"
-#import "lib/gradient_noise.wgsl"
+#import "lib/swirl_noise.wgsl"
 
 // An emitter at a time. Mirrors EmitterUniform in crates/haze_core/src/formula/uniforms.rs; crates/haze_core/src/emitter.rs documents the settings.
 struct Emitter {
@@ -24,16 +24,19 @@ struct Emitter {
     drag: f32,
     // Acceleration by buoyancy.
     rise: vec3f,
-    turbulence: f32,
+    // Speed of the largest swirls, meters per second, root mean square along an axis.
+    swirl_strength: f32,
     wind: vec3f,
-    turbulence_scale: f32,
+    // Simplices per meter of the largest swirls.
+    swirl_frequency: f32,
     // Axes of the disc.
     disc_x: vec3f,
     radius_start: f32,
     disc_z: vec3f,
     radius_end: f32,
-    // Phase of the turbulence: (cos, sin).
-    phase: vec2f,
+    // Angle of the swirls at this time, radians, and how fast it grows, radians per second.
+    swirl_turn: f32,
+    swirl_turn_rate: f32,
     radius_spread: f32,
     spin: f32,
     amount: f32,
@@ -66,6 +69,16 @@ struct Emitter {
     rotation_spread: f32,
     // 0 if all births happen.
     has_rate_curve: u32,
+    // Strength of each octave of the swirls, as a share of the one before.
+    swirl_detail: f32,
+    // Velocity of the swirls as a whole.
+    swirl_travel: vec3f,
+    padding_1: f32,
+    // How far they have come at this time, in simplex coordinates: a part of a simplex, and whole ones.
+    swirl_offset: vec3f,
+    padding_2: f32,
+    swirl_first: vec3i,
+    padding_3: f32,
 }
 
 const EMITTER_SHAPE_SPHERE: u32 = 0u;
@@ -181,6 +194,98 @@ fn bouncing_flight(emitter: Emitter, start: vec3f, velocity: vec3f, seconds: f32
     return now;
 }
 
+// Each octave of the swirls has half the size of the one before.
+const SWIRL_OCTAVES: u32 = 3u;
+
+// Velocity of the swirls at a position, at so many seconds after the emitter's time.
+fn swirl(emitter: Emitter, position: vec3f, later: f32) -> vec3f {
+    let angle = emitter.swirl_turn + emitter.swirl_turn_rate * later;
+    let phase = vec2f(cos(angle), sin(angle));
+    let in_plume = position - emitter.swirl_travel * later;
+    var at = skewed(in_plume * emitter.swirl_frequency) + emitter.swirl_offset;
+    var first = emitter.swirl_first;
+    var strength = emitter.swirl_strength;
+    var sum = vec3f(0.0);
+    for (var octave = 0u; octave < SWIRL_OCTAVES; octave++) {
+        sum += swirl_noise(at, first, phase, emitter.seed * 977u + octave) * strength;
+        at *= 2.0;
+        first += first;
+        strength *= emitter.swirl_detail;
+    }
+    return sum;
+}
+
+// Steps of the way through the swirls, over a life.
+const SWIRL_STEPS: u32 = 32u;
+// Share of the life over which the swirls take hold: smoke leaves the source smooth and breaks up later.
+const SWIRL_ONSET: f32 = 0.15;
+
+// A particle between its birth and its death.
+struct Flying {
+    // At birth.
+    start: Flight,
+    // Seconds from birth to death, and to now.
+    lifetime: f32,
+    seconds: f32,
+}
+
+// Way of a particle through the swirls, from the beginning of a step to its end: where they have moved it to, and their
+// velocity there.
+struct SwirlStep {
+    moved: Flight,
+    next: Flight,
+}
+
+// Velocity of the swirls at the beginning of a step, for a particle that they have moved by `offset`.
+fn swirl_at_step(emitter: Emitter, flying: Flying, number: u32, offset: vec3f) -> vec3f {
+    let age = f32(number) / f32(SWIRL_STEPS);
+    var speed = 1.0;
+    var flown = age * flying.lifetime;
+    if emitter.has_curves != 0u {
+        speed = curve_value(emitter.speed_curve, age);
+        flown = flying.lifetime * curve_integral(emitter.speed_curve, age);
+    }
+    let path = bouncing_flight(emitter, flying.start.position, flying.start.velocity, flown);
+    let hold = smoothstep_unit(age / SWIRL_ONSET);
+    return swirl(emitter, path.position + offset, age * flying.lifetime - flying.seconds) * (speed * hold);
+}
+
+// Goes on to step `number` of the way through the swirls: the integral of swirl() along the path. (Adams and Bashforth,
+// second order)
+fn advance_swirl_step(emitter: Emitter, flying: Flying, last: SwirlStep, number: u32) -> SwirlStep {
+    let step = flying.lifetime / f32(SWIRL_STEPS);
+    let moved = last.next;
+    let position = moved.position + (moved.velocity * 1.5 - last.moved.velocity * 0.5) * step;
+    let velocity = swirl_at_step(emitter, flying, number + 1u, position);
+    return SwirlStep(moved, Flight(position, velocity));
+}
+
+// Way and velocity that the swirls add to the flight of a particle, in steps that begin at its birth, with a cubic within
+// each.
+fn carried_by_swirls(emitter: Emitter, flying: Flying) -> Flight {
+    if emitter.swirl_strength <= 0.0 {
+        return Flight();
+    }
+    let step = flying.lifetime / f32(SWIRL_STEPS);
+    let steps = flying.seconds / step;
+    let number = min(u32(steps), SWIRL_STEPS - 1u);
+    // Nothing holds at birth, so that the first step ends where it begins.
+    var reached = SwirlStep(Flight(), Flight(vec3f(0.0), swirl_at_step(emitter, flying, 1u, vec3f(0.0))));
+    for (var i = 1u; i <= number; i++) {
+        reached = advance_swirl_step(emitter, flying, reached, i);
+    }
+    let moved = reached.moved;
+    let next = reached.next;
+    let x = steps - f32(number);
+    let rest = 1.0 - x;
+    let slope = (next.position - moved.position) / step;
+    return Flight(
+        mix(moved.position, next.position, x * x * (3.0 - 2.0 * x))
+            + (moved.velocity * rest - next.velocity * x) * (x * rest * step),
+        slope * (6.0 * x * rest) + moved.velocity * (rest * (1.0 - 3.0 * x)) + next.velocity * (x * (3.0 * x - 2.0)),
+    );
+}
+
 // Seconds from the interval of the first birth to that of another.
 fn birth_delay(emitter: Emitter, number: u32) -> f32 {
     let place = emitter.first_in_pulse + number;
@@ -241,17 +346,14 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
         share = curve_value(emitter.amount_curve, age);
         flown = lifetime * curve_integral(emitter.speed_curve, age);
     }
-    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, flown);
-    let base = moved.position;
+    let start = Flight(emitter.position + offset, velocity);
+    let moved = bouncing_flight(emitter, start.position, velocity, flown);
+    let carried = carried_by_swirls(emitter, Flying(start, lifetime, seconds));
 
-    // Turbulence grows with age: smoke leaves the source smoothly and breaks up later.
-    let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, emitter.seed * 977u);
-    let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, emitter.seed * 977u + 5u);
-    let swirl = (large + small * 0.4) * emitter.turbulence;
     // Growth like diffusion: fast at first.
     let mean_radius = size * (emitter.radius_start + (emitter.radius_end - emitter.radius_start) * sqrt(age));
     let radius = mean_radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0));
-    let position = base + swirl * age + emitter.up * (emitter.anchor * radius);
+    let position = moved.position + carried.position + emitter.up * (emitter.anchor * radius);
     let fade_in = smoothstep_unit(age / max(emitter.fade_in, 1.0e-4));
     // Drag slows the spin.
     let turned = drag_integrals(emitter.drag, seconds).x;
@@ -264,8 +366,7 @@ fn emitted_particle(emitter: Emitter, number: u32) -> EmittedParticle {
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
-        // Of a swirl that grows, too.
-        moved.velocity * speed + swirl / lifetime,
+        moved.velocity * speed + carried.velocity,
         pack4x8unorm(vec4f(mix(emitter.tint, emitter.other_tint, color.x), 1.0 - emitter.heat_spread * color.y)),
     );
 }

@@ -219,11 +219,13 @@ const SAME: [&str; 10] = [
 
 /// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
-const NOT_ALWAYS: [&str; 30] = [
+const NOT_ALWAYS: [&str; 31] = [
     "lights[0].role",
     // Particles may be white, and those of files may rest.
     "systems[0].settings.sprite.tint",
     "systems[0].settings.sprite.stretch",
+    // No particle may be so fast.
+    "systems[0].settings.sprite.stretch_limit",
     // There may be fewer lights.
     "systems[0].settings.shadow.lights",
     // As in `SAME`.

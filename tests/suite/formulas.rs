@@ -14,7 +14,7 @@ mod diffuse_bake;
 mod emitter;
 mod fire;
 mod fixture;
-mod gradient_noise;
+
 mod grain;
 mod hash;
 mod inputs;
@@ -34,6 +34,7 @@ mod sprite;
 mod sprite_fragment;
 mod sprite_vertex;
 mod stretch;
+mod swirl_noise;
 mod technique;
 mod testable;
 mod tile_sprite;
@@ -81,7 +82,6 @@ formula_tests!(
     diffuse_bake,
     emitter,
     fire,
-    gradient_noise,
     grain,
     hash,
     lighting,
@@ -100,6 +100,7 @@ formula_tests!(
     sprite_fragment,
     sprite_vertex,
     stretch,
+    swirl_noise,
     technique,
     tile_sprite,
     tiles,
@@ -290,6 +291,10 @@ const INDIRECT: &[(&str, &str)] = &[
     ("clean_texel", "sprite_texel covers it"),
     ("blend_and_erosion", "packed_blend covers it"),
     ("load_particle", "reads the particles of the pass"),
+    ("unpack_signed", "swirl_noise covers it"),
+    ("corner_curl", "swirl_noise covers it"),
+    ("swirl_at_step", "carried_by_swirls covers it"),
+    ("advance_swirl_step", "carried_by_swirls covers it"),
     ("values_of", "reads a buffer; tests of the tiled path with shadow cover it"),
 ];
 

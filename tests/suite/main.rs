@@ -21,6 +21,7 @@ mod gpu;
 mod hosts;
 mod import_graph;
 mod lighting;
+mod motion;
 mod moving_sprites;
 mod mutants;
 mod outlines;

@@ -75,7 +75,9 @@ impl<'a> FrameTimer<'a> {
     /// Those of the renderer.
     pub fn new(backend: &'a Backend) -> Result<Self, Error> {
         Ok(match backend {
-            Backend::Gpu(gpu) => Self::Gpu(Box::new(OffscreenRenderer::new(&gpu.context, false)?), &gpu.headless),
+            Backend::Gpu(gpu) => {
+                Self::Gpu(Box::new(OffscreenRenderer::new(&gpu.context, false)?.with_kept_paths()), &gpu.headless)
+            }
             Backend::Cpu => Self::Cpu,
         })
     }

@@ -1,14 +1,16 @@
-//! Seekable emitter: every particle is a closed-form function of (seed, birth index, time).
+//! Seekable emitter: every particle is a function of (seed, birth index, time).
 //!
-//! There is no simulation state, so time can be scrubbed, frames can be rendered in any order, and two images can be
-//! compared. The arithmetic is integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs,
+//! A flow carries the particles: each path is integrated from its birth, in a fixed number of steps. There is no simulation
+//! state, so time can be scrubbed, frames can be rendered in any order, and two images can be compared. The arithmetic is integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs,
 //! `shaders/lib/emitter.wgsl`.
 
 use std::f32::consts::TAU;
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{DVec3, Quat, Vec3};
 
 use crate::error::FieldError;
+use crate::formula::curve::curve_integral;
+use crate::formula::emitter::flight;
 use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{EmitterSnapshot, Particle};
 use crate::settings::{Curve, choice, settings, validate};
@@ -89,11 +91,18 @@ settings! {
         #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
         speed_curve: Curve = Curve::constant(1.0), curve(0.0..=10.0);
         "turbulence":
-        /// Distance by which curl noise moves a particle off its path by the end of its life. Higher: tears the smoke
-        /// apart.
+        /// Distance that swirls of the air carry a particle in its life, about. Higher: billows, and smoke that tears apart. More
+        /// than 1.2 times `turbulence_scale` does no more; with much `turbulence_detail`, somewhat less.
         turbulence: f32 = 0.5, number(0.0..=100.0, "m");
-        /// Size of the swirls. Lower: frays the smoke. Higher: bends all of it.
+        /// Size of the largest swirls; there are some of half and of a quarter of it. Lower: frays the smoke. Higher: bends all
+        /// of it.
         turbulence_scale: f32 = 1.5, number(0.01..=1.0e3, "m");
+        /// Strength of swirls of half the size, as a share of the strength of the larger ones. Higher: wisps. 0: only large
+        /// billows.
+        turbulence_detail: f32 = 0.6, number(0.0..=1.0, "");
+        /// Share of the smoke's mean velocity with which the swirls travel. 1: they ride with the smoke, whose shapes last. 0:
+        /// they stand, and the smoke passes through them.
+        turbulence_travel: f32 = 1.0, number(0.0..=1.0, "");
         /// Turns of the swirls per second. Higher: restless smoke.
         turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");
         "size":
@@ -139,6 +148,16 @@ settings! {
         heat_spread: f32 = 0.0, number(0.0..=1.0, "");
     }
 }
+
+/// Way through swirls per `turbulence`, as a root mean square along an axis: less than this is left of it at the end,
+/// because swirls carry smoke to and fro.
+const SWIRL_WAY: f32 = 2.0;
+/// Simplices of the noise per `turbulence_scale`: the flow turns around within one.
+const SWIRL_SIMPLICES: f32 = 0.57;
+
+/// Most strain of the smoke in its life, in `turbulence` per `turbulence_scale` of one octave: beyond it a path depends on the
+/// last bits of its beginning, and would jump from frame to frame.
+const MAX_SWIRL_STRAIN: f32 = 2.0;
 
 /// An emission that repeats.
 #[derive(Clone, Copy)]
@@ -209,13 +228,16 @@ impl Emitter {
     }
 
     /// Replaces `displacements` with the way of each particle of [`evaluate`](Self::evaluate) in the next `seconds`, in metres
-    /// and in the same order: for motion vectors. The swirls of turbulence that a particle crosses are in it, and not in
-    /// [`Particle::velocity`](Particle). Particles that die before are taken to fly on.
+    /// and in the same order: for motion vectors, which [`Particle::velocity`](Particle) gives for a moment only. Particles
+    /// that die before are taken to fly on.
     pub fn displacements(&self, time: f64, seconds: f32, displacements: &mut Vec<Vec3>) {
         let now = self.snapshot(time);
         let mut later = now.uniform;
         later.since_first += seconds;
-        later.phase = self.snapshot(time + f64::from(seconds)).uniform.phase;
+        let swirls = self.snapshot(time + f64::from(seconds)).uniform;
+        later.swirl_turn = swirls.swirl_turn;
+        later.swirl_offset = swirls.swirl_offset;
+        later.swirl_first = swirls.swirl_first;
         displacements.clear();
         displacements.extend(now.displacements(&later, seconds));
     }
@@ -237,7 +259,11 @@ impl Emitter {
         let up = self.up.normalize_or(Vec3::Y);
         let disc = Quat::from_rotation_arc(Vec3::Y, up);
         let turn = (time * f64::from(self.turbulence_speed)).rem_euclid(1.0);
-        let uniform = EmitterUniform {
+        // Three octaves, whose strengths and strains add up as variances.
+        let octaves = |ratio: f32| (1.0 + ratio.powi(2) + ratio.powi(4)).sqrt();
+        let most = MAX_SWIRL_STRAIN * self.turbulence_scale / octaves(2.0 * self.turbulence_detail);
+        let strength = SWIRL_WAY * (self.turbulence / octaves(self.turbulence_detail)).min(most);
+        let mut uniform = EmitterUniform {
             first: first as u32,
             count: (last - first) as u32,
             seed: self.seed,
@@ -254,14 +280,15 @@ impl Emitter {
             velocity: self.velocity,
             drag: self.drag,
             rise: up * self.buoyancy,
-            turbulence: self.turbulence,
+            swirl_strength: strength / self.lifetime,
             wind: self.wind,
-            turbulence_scale: self.turbulence_scale,
+            swirl_frequency: SWIRL_SIMPLICES / self.turbulence_scale,
             disc_x: disc * Vec3::X,
             radius_start: self.radius_start,
             disc_z: disc * Vec3::Z,
             radius_end: self.radius_end,
-            phase: Vec2::from_angle(turn as f32 * TAU),
+            swirl_turn: turn as f32 * TAU,
+            swirl_turn_rate: self.turbulence_speed * TAU,
             radius_spread: self.radius_spread,
             spin: self.spin,
             amount: self.amount,
@@ -285,11 +312,25 @@ impl Emitter {
             anchor: self.anchor,
             rotation_spread: self.rotation_spread,
             has_rate_curve: u32::from(self.rate_curve != Curve::constant(1.0) && self.duration > 0.0),
-            padding: 0.0,
+            swirl_detail: self.turbulence_detail,
+            ..EmitterUniform::default()
         };
+        uniform.swirl_travel = self.turbulence_travel * self.mean_velocity(&uniform);
+        // f64, because smoke that has blown for hours is many swirls away.
+        let way = uniform.swirl_travel.as_dvec3() * (time * f64::from(uniform.swirl_frequency));
+        let skewed = way + DVec3::splat(way.element_sum() / 3.0);
+        let cell = (-skewed).floor();
+        uniform.swirl_first = cell.as_ivec3();
+        uniform.swirl_offset = (-skewed - cell).as_vec3();
         let step = (self.max_alive() / SAMPLE).ceil().max(1.0) as u32;
         let first_sample = (-first).rem_euclid(i64::from(step)) as u32;
         EmitterSnapshot { uniform, step, first_sample }
+    }
+
+    /// Velocity of a particle that is not scattered, on average over its life.
+    fn mean_velocity(&self, uniform: &EmitterUniform) -> Vec3 {
+        let flown = self.lifetime * curve_integral(&uniform.speed_curve, 1.0);
+        flight(uniform, Vec3::ZERO, self.velocity, flown).position / self.lifetime
     }
 
     /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate, in pulses at so much after the

@@ -7,7 +7,7 @@ use glam::{UVec2, Vec3};
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::error::Error;
 use haze_core::fire::FireLight;
-use haze_core::frame::{EmitterSnapshot, Light, MAX_LIGHTS, Particle};
+use haze_core::frame::{EmitterPaths, EmitterSnapshot, Light, MAX_LIGHTS, Particle};
 use haze_core::settings::{DebugView, Settings};
 use haze_preset::{AssetFolders, Preset, PresetSystem};
 
@@ -143,10 +143,21 @@ impl Shot {
 
     /// Returns the lights of the preset, followed by those of its fires.
     pub fn lights(&self) -> Vec<Light> {
+        self.lights_along(&mut self.paths())
+    }
+
+    /// Returns new paths of the particles, one for each system.
+    pub(super) fn paths(&self) -> Vec<EmitterPaths> {
+        vec![EmitterPaths::default(); self.preset.systems.len()]
+    }
+
+    /// [`lights`](Self::lights) for frame after frame, along the paths of the sampled particles of each system.
+    pub(super) fn lights_along(&self, paths: &mut [EmitterPaths]) -> Vec<Light> {
         let mut lights = self.preset.lights.clone();
         let time = self.preset.time;
         let fires =
-            (0..).zip(self.preset.systems.iter().zip(&self.materials)).filter_map(|(index, (system, assets))| {
+            self.preset.systems.iter().zip(&self.materials).zip(paths).enumerate().filter_map(|(index, of_system)| {
+                let ((system, assets), paths) = of_system;
                 let settings = &system.settings;
                 if !settings.burns() {
                     return None;
@@ -155,7 +166,7 @@ impl Shot {
                 let mut particles = Vec::new();
                 let step = match particle_files::emission(system, files, time) {
                     Some(emission) => {
-                        emission.sample(&mut particles);
+                        emission.sample_along(paths, &mut particles);
                         emission.step
                     }
                     None => {
@@ -177,30 +188,38 @@ impl Shot {
 
     /// Evaluates the particles and settings of every system, in order.
     pub(super) fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
-        self.each_system(|system, cache| {
+        self.each_system(&mut self.paths(), |system, cache, paths| {
             let mut particles = Vec::new();
-            self.evaluate(system, cache, &mut particles);
+            self.evaluate(system, cache, paths, &mut particles);
             particles
         })
     }
 
     /// Returns particles and settings of every system for the GPU renderer. Emitters with many particles are not
-    /// evaluated here but on the GPU.
-    pub(super) fn sources(&self) -> Vec<(ParticleSource, Settings)> {
-        self.each_system(|system, cache| match particle_files::emission(system, cache, self.preset.time) {
-            Some(emission) if emission.count() > MAX_CPU_BIRTHS && self.shown_scalar.is_none() => {
-                ParticleSource::EmitterSnapshot(Box::new(emission))
-            }
-            _ => {
-                let mut particles = Vec::new();
-                self.evaluate(system, cache, &mut particles);
-                ParticleSource::Particles(particles)
+    /// evaluated here but on the GPU. `paths`: those of the particles of each system.
+    pub(super) fn sources(&self, paths: &mut [EmitterPaths]) -> Vec<(ParticleSource, Settings)> {
+        self.each_system(paths, |system, cache, paths| {
+            match particle_files::emission(system, cache, self.preset.time) {
+                Some(emission) if emission.count() > MAX_CPU_BIRTHS && self.shown_scalar.is_none() => {
+                    ParticleSource::EmitterSnapshot(Box::new(emission))
+                }
+                _ => {
+                    let mut particles = Vec::new();
+                    self.evaluate(system, cache, paths, &mut particles);
+                    ParticleSource::Particles(particles)
+                }
             }
         })
     }
 
-    fn evaluate(&self, system: &PresetSystem, cache: Option<&ParticleFrames>, particles: &mut Vec<Particle>) {
-        particle_files::particles(system, cache, self.preset.time, particles);
+    fn evaluate(
+        &self,
+        system: &PresetSystem,
+        cache: Option<&ParticleFrames>,
+        paths: &mut EmitterPaths,
+        particles: &mut Vec<Particle>,
+    ) {
+        particle_files::particles_along(system, cache, self.preset.time, paths, particles);
         if let Some(shown) = &self.shown_scalar {
             let displacements = self.displacements(system, cache, particles, shown.scalar.seconds());
             shown.apply(particles, &displacements, &self.preset.camera.view(self.size));
@@ -223,11 +242,16 @@ impl Shot {
         displacements
     }
 
-    fn each_system<T>(&self, source: impl Fn(&PresetSystem, Option<&ParticleFrames>) -> T) -> Vec<(T, Settings)> {
-        let system = |(index, system): (usize, &PresetSystem)| {
+    fn each_system<T>(
+        &self,
+        paths: &mut [EmitterPaths],
+        source: impl Fn(&PresetSystem, Option<&ParticleFrames>, &mut EmitterPaths) -> T,
+    ) -> Vec<(T, Settings)> {
+        let systems = self.preset.systems.iter().zip(paths).enumerate();
+        let source = |(index, (system, paths)): (usize, (&PresetSystem, &mut EmitterPaths))| {
             let cache = self.caches.get(index).and_then(Option::as_ref);
-            (source(system, cache), system.settings)
+            (source(system, cache, paths), system.settings)
         };
-        self.preset.systems.iter().enumerate().map(system).collect()
+        systems.map(source).collect()
     }
 }

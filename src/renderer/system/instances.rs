@@ -1,6 +1,6 @@
 //! Instance buffer of a system whose particles are in CPU memory.
 
-use haze_core::frame::Particle;
+use haze_core::frame::{EmitterPaths, Particle};
 use haze_core::settings::{BlendOrder, Settings};
 use haze_core::view_setup::{DrawingOrder, ParticleSpace};
 
@@ -30,6 +30,7 @@ pub(crate) struct Instances {
     idle: IdleCounter,
     /// Particles of an emitter, evaluated on the CPU.
     evaluated: Vec<Particle>,
+    paths: EmitterPaths,
 }
 
 impl Instances {
@@ -53,7 +54,7 @@ impl Instances {
             }
             Particles::Slice(particles) => particles,
             Particles::Emitter(emission) => {
-                emission.evaluate(&mut self.evaluated);
+                emission.evaluate_along(&mut self.paths, &mut self.evaluated);
                 order.read(space, &self.evaluated);
                 &self.evaluated
             }

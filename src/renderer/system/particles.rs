@@ -1,6 +1,6 @@
 //! Particles of one system: measured on the CPU, uploaded, evaluated or sorted.
 
-use haze_core::frame::{Particle, SpriteExtent};
+use haze_core::frame::{EmitterPaths, Particle, SpriteExtent};
 use haze_core::settings::{BlendOrder, RenderPath, Settings};
 use haze_core::view_setup::{ParticleMeasures, ParticleSpace, SystemBoxes, ViewGeometry};
 
@@ -31,6 +31,7 @@ pub(crate) struct SystemParticles {
     pub measures: ParticleMeasures,
     /// Sample of the particles, for estimates; of an emitter, also for measures.
     sample: Vec<Particle>,
+    sample_paths: EmitterPaths,
     /// Number of particles that each of the sample represents.
     particles_per_sample: u32,
     instances: Instances,
@@ -70,7 +71,7 @@ impl SystemParticles {
     fn take_sample(&mut self, particles: Particles<'_>) {
         match particles {
             Particles::Emitter(emission) => {
-                emission.sample(&mut self.sample);
+                emission.sample_along(&mut self.sample_paths, &mut self.sample);
                 self.particles_per_sample = emission.step;
             }
             Particles::Slice(particles) => {

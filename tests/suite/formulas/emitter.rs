@@ -1,9 +1,9 @@
 //! Formula tests of `shaders/lib/emitter.wgsl`.
 
-use glam::{Vec3, vec2, vec3, vec4};
+use glam::{IVec3, Vec3, vec2, vec3, vec4};
 use haze_core::emitter::EmitterShape;
 use haze_core::formula::curve::{self, CurvePoints};
-use haze_core::formula::emitter;
+use haze_core::formula::emitter::{self, Flight, Flying, SwirlStep};
 use haze_core::formula::uniforms::EmitterUniform;
 use haze_core::settings::Curve;
 
@@ -28,14 +28,15 @@ fn test_emitter(x: &[f32]) -> EmitterUniform {
         velocity: vec3(0.1, 0.6, 0.0),
         drag: 0.6,
         rise: vec3(0.0, 0.5, 0.1),
-        turbulence: 0.5,
+        swirl_strength: 0.2,
         wind: vec3(0.3, 0.0, -0.2),
-        turbulence_scale: 1.5,
+        swirl_frequency: 0.4,
         disc_x: vec3(0.6, 0.8, 0.0),
         radius_start: 0.25,
         disc_z: Vec3::Z,
         radius_end: 1.5,
-        phase: vec2(0.6, 0.8),
+        swirl_turn: 0.6,
+        swirl_turn_rate: 0.3,
         radius_spread: 0.25,
         spin: 0.5,
         amount: 0.5,
@@ -59,7 +60,11 @@ fn test_emitter(x: &[f32]) -> EmitterUniform {
         anchor: 0.7,
         rotation_spread: 0.4,
         has_rate_curve: 1,
-        padding: 0.0,
+        swirl_detail: 0.7,
+        swirl_travel: vec3(0.2, 0.5, -0.1),
+        swirl_offset: vec3(0.3, 0.9, 0.1),
+        swirl_first: IVec3::new(-9, 7, 100_000),
+        ..EmitterUniform::default()
     }
 }
 
@@ -76,14 +81,14 @@ macro_rules! wgsl_emitter {
     ($call:literal) => {
         concat!(
             "var e = Emitter(4294967195u, 330u, 3u, u32(x(0)), 8.0, 40.0, 6.0, 0.4, vec3f(1.0, 2.0, 3.0), 0.7, \
-             vec3f(0.5, 0.25, 0.75), 0.5, vec3f(0.1, 0.6, 0.0), 0.6, vec3f(0.0, 0.5, 0.1), 0.5, vec3f(0.3, 0.0, -0.2), \
-             1.5, vec3f(0.6, 0.8, 0.0), 0.25, vec3f(0.0, 0.0, 1.0), 1.5, vec2f(0.6, 0.8), 0.25, 0.5, 0.5, 0.25, 0.5, 4.0, \
+             vec3f(0.5, 0.25, 0.75), 0.5, vec3f(0.1, 0.6, 0.0), 0.6, vec3f(0.0, 0.5, 0.1), 0.2, vec3f(0.3, 0.0, -0.2), \
+             0.4, vec3f(0.6, 0.8, 0.0), 0.25, vec3f(0.0, 0.0, 1.0), 1.5, 0.6, 0.3, 0.25, 0.5, 0.5, 0.25, 0.5, 4.0, \
              vec3f(0.9, 0.2, 0.4), 0.6, vec3f(0.3, 0.8, 1.0), 0.0, vec3f(0.0, 1.0, 0.0), 1.8, 13u, 5u, 0.34, 1u, \
              Curve(array(vec4f(0.0, 1.5, 0.4, 0.6), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1), vec4f(0.9, 1.1, 0.9, 1.1))), \
              Curve(array(vec4f(0.1, 0.2, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4), vec4f(0.7, 1.4, 0.7, 1.4))), \
              Curve(array(vec4f(0.0, 0.3, 0.2, 1.0), vec4f(0.5, 0.4, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8))), \
              Curve(array(vec4f(0.0, 1.0, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5))), \
-             0.7, 0.4, 1u); ",
+             0.7, 0.4, 1u, 0.7, vec3f(0.2, 0.5, -0.1), 0.0, vec3f(0.3, 0.9, 0.1), 0.0, vec3i(-9, 7, 100000), 0.0); ",
             $call
         )
     };
@@ -99,6 +104,11 @@ const WGSL_FLIGHT: &str = wgsl_emitter!(
 const WGSL_BOUNCING: &str = wgsl_emitter!(
     "e.bounce = 0.7; e.rise = vec3f(0.0, -9.0, 0.0); \
      let f = bouncing_flight(e, vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), x(6)); \
+     y3(0, f.position); y3(3, f.velocity);"
+);
+
+const WGSL_CARRIED: &str = wgsl_emitter!(
+    "let f = carried_by_swirls(e, Flying(Flight(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))), 6.0, x(6))); \
      y3(0, f.position); y3(3, f.velocity);"
 );
 
@@ -197,6 +207,49 @@ fn flights() -> Vec<Formula> {
                 ("left -= above", "left -= below * 0.5"),
                 ("const MAX_BOUNCES: u32 = 3u", "const MAX_BOUNCES: u32 = 2u"),
                 ("const IMPACT_STEPS: u32 = 20u", "const IMPACT_STEPS: u32 = 6u"),
+            ],
+        },
+        Formula {
+            name: "swirl",
+            file: "lib/emitter.wgsl",
+            wgsl: wgsl_emitter!("y3(0, swirl(e, vec3f(x(0), x(1), x(2)), x(3)));"),
+            reference: |x| emitter::swirl(&test_emitter(&[0.0]), v3(x), x[3]).to_array().to_vec(),
+            cases: random(60, &[(-3.0, 3.0), (-3.0, 3.0), (-3.0, 3.0), (-6.0, 0.2)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("emitter.swirl_turn_rate * later", "0.0"),
+                ("position - emitter.swirl_travel * later", "position"),
+                ("emitter.swirl_frequency) + emitter.swirl_offset", "emitter.swirl_frequency)"),
+                ("SWIRL_OCTAVES: u32 = 3u", "SWIRL_OCTAVES: u32 = 2u"),
+                ("emitter.seed * 977u + octave", "emitter.seed * 977u"),
+                ("at *= 2.0", "at *= 2.1"),
+                ("first += first", "first += vec3i(1i)"),
+                ("strength *= emitter.swirl_detail", "strength *= 0.5"),
+            ],
+        },
+        Formula {
+            name: "carried_by_swirls",
+            file: "lib/emitter.wgsl",
+            wgsl: WGSL_CARRIED,
+            reference: |x| {
+                let start = Flight { position: v3(x), velocity: v3(&x[3..]) };
+                let flying = Flying { start, lifetime: 6.0, seconds: x[6] };
+                let carried = emitter::carried_by_swirls(&test_emitter(&[0.0]), &flying, &mut SwirlStep::default());
+                [carried.position.to_array(), carried.velocity.to_array()].concat()
+            },
+            cases: random(60, &[CASES[0], CASES[1], CASES[2], CASES[3], CASES[4], CASES[5], (0.0, 5.99)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("SWIRL_STEPS: u32 = 32u", "SWIRL_STEPS: u32 = 31u"),
+                ("SWIRL_ONSET: f32 = 0.15", "SWIRL_ONSET: f32 = 0.2"),
+                ("path.position + offset", "path.position"),
+                ("age * flying.lifetime - flying.seconds)", "0.0)"),
+                ("* (speed * hold)", "* hold"),
+                ("moved.velocity * 1.5 - last.moved.velocity * 0.5", "moved.velocity"),
+                ("(moved.velocity * rest - next", "(moved.velocity * rest + next"),
+                ("(6.0 * x * rest)", "(x * rest)"),
+                ("rest * (1.0 - 3.0 * x)", "rest"),
+                ("x * (3.0 * x - 2.0)", "x"),
             ],
         },
         Formula {
@@ -336,9 +389,8 @@ fn births() -> Vec<Formula> {
             },
             // 40 births per second over the last 8 seconds: some particles are dead.
             cases: with_choices(count(EmitterShape::ALL), &[(0.0, 330.0)]),
-            // Errors of the driver's sin and sqrt are amplified by the curl noise, which changes by 10 over one
-            // turbulence_scale.
-            tolerance: TRANSCENDENTAL,
+            // The swirls amplify errors of the driver's exp, sin and sqrt along the path, here to 2.1e-4.
+            tolerance: 2.0 * TRANSCENDENTAL,
             mutants: &[
                 (" - life.y / emitter.rate", ""),
                 ("seconds < lifetime", "true"),
@@ -346,18 +398,16 @@ fn births() -> Vec<Formula> {
                 ("2.0 * life.x - 1.0", "life.x"),
                 ("outward * emitter.burst", "vec3f(0.0)"),
                 ("emitter.velocity_spread * life.z", "emitter.velocity_spread"),
-                ("2.3 / emitter.turbulence_scale", "2.0 / emitter.turbulence_scale"),
-                ("base + swirl * age", "base + swirl"),
-                ("swirl / lifetime", "swirl"),
+                ("moved.position + carried.position", "moved.position"),
+                ("speed + carried.velocity", "speed"),
                 ("mix(emitter.tint, emitter.other_tint, color.x)", "emitter.tint"),
                 ("emitter.heat_spread * color.y", "emitter.heat_spread"),
                 ("birth_random(index, 4u", "birth_random(index, 3u"),
-                ("emitter.seed * 977u + 5u", "emitter.seed * 977u"),
                 ("* sqrt(age)", "* age"),
                 ("2.0 * look.x - 1.0", "look.x"),
                 ("(2.0 * look.z - 1.0) * turned", "(2.0 * look.z - 1.0) * seconds"),
                 ("fade_in * fade_out", "fade_in"),
-                ("lifetime * curve_integral", "curve_integral"),
+                ("flown = lifetime * curve_integral", "flown = curve_integral"),
                 ("curve_value(emitter.size_curve, age)", "curve_value(emitter.speed_curve, age)"),
                 ("share * fade_in", "fade_in"),
                 ("moved.velocity * speed", "moved.velocity"),

@@ -20,7 +20,8 @@ pub use parse_error::ParseError;
 pub use particle_frame::{FileParticle, ParticleFrame, ProvidedAttributes};
 pub use particle_frames::{FramePair, Limits, MAX_FILE_BYTES, ParticleFrames, parse};
 pub use preset_files::{
-    MAX_PARTICLE_FILE_BYTES, check_particle_files, emission, load_particle_files, particles, unused_columns,
+    MAX_PARTICLE_FILE_BYTES, check_particle_files, emission, load_particle_files, particles, particles_along,
+    unused_columns,
 };
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use haze_core::emitter::MAX_PARTICLES;
 use haze_core::error::{Error, FieldError, one_line};
-use haze_core::frame::{EmitterSnapshot, Particle};
+use haze_core::frame::{EmitterPaths, EmitterSnapshot, Particle};
 use haze_preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};
 
 use super::particle_frames::{Limits, ParticleFrames};
@@ -121,13 +121,24 @@ fn load_each(preset: &Preset, path: &Path, folders: &AssetFolders) -> Vec<Result
 /// Replaces `particles` with those alive at `time`, seconds: those of `files` if the system names some and they are
 /// given; else those of its emitter.
 pub fn particles(system: &PresetSystem, files: Option<&ParticleFrames>, time: f64, particles: &mut Vec<Particle>) {
+    particles_along(system, files, time, &mut EmitterPaths::default(), particles);
+}
+
+/// [`particles`] for frame after frame: those of the emitter are evaluated along `paths`.
+pub fn particles_along(
+    system: &PresetSystem,
+    files: Option<&ParticleFrames>,
+    time: f64,
+    paths: &mut EmitterPaths,
+    particles: &mut Vec<Particle>,
+) {
     match files.filter(|_| system.cache.is_used()) {
         Some(files) => {
             let is_frozen = system.settings.sprite.freeze_animation;
             let flipbook_rate = if is_frozen { 0.0 } else { system.cache.flipbook_rate };
             files.evaluate(&ParticleFiles { flipbook_rate, ..system.cache.clone() }, time, particles);
         }
-        None => system.emitter_snapshot(time).evaluate(particles),
+        None => system.emitter_snapshot(time).evaluate_along(paths, particles),
     }
 }
 

@@ -1,11 +1,11 @@
-//! Particles of an emitter, each a closed-form function of seed, birth and time. WGSL: `shaders/lib/emitter.wgsl`.
+//! Particles of an emitter, each a function of seed, birth and time alone. WGSL: `shaders/lib/emitter.wgsl`.
 
 use glam::{UVec3, Vec2, Vec3, Vec3Swizzles, Vec4};
 
 use super::curve::{curve_integral, curve_value};
-use super::gradient_noise::curl_noise;
 use super::hash::{pcg3d, unit};
 use super::saturate;
+use super::swirl_noise::{skewed, swirl_noise};
 use super::uniforms::EmitterUniform;
 
 /// Numbers of the birth shapes. Any other number is a sphere.
@@ -63,12 +63,23 @@ pub fn birth_offset(emitter: &EmitterUniform, random: Vec3) -> Vec3 {
 }
 
 /// Position and velocity at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flight {
     /// World space, metres.
     pub position: Vec3,
     /// Metres per second.
     pub velocity: Vec3,
+}
+
+/// A particle between its birth and its death.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flying {
+    /// At birth.
+    pub start: Flight,
+    /// Seconds from birth to death.
+    pub lifetime: f32,
+    /// Seconds from birth to now.
+    pub seconds: f32,
 }
 
 /// Solution of v' = drag·(wind − v) + buoyancy: position and velocity approach their limits as 1 − e^(−drag·t).
@@ -115,6 +126,99 @@ pub fn bouncing_flight(emitter: &EmitterUniform, start: Vec3, velocity: Vec3, se
     if is_below(now.position) { Flight { velocity: Vec3::ZERO, ..last } } else { now }
 }
 
+/// Each octave of the swirls has half the size of the one before.
+const SWIRL_OCTAVES: u32 = 3;
+
+/// Velocity of the swirls at a position, at so many seconds after the emitter's time.
+pub fn swirl(emitter: &EmitterUniform, position: Vec3, later: f32) -> Vec3 {
+    let phase = Vec2::from_angle(emitter.swirl_turn + emitter.swirl_turn_rate * later);
+    let in_plume = position - emitter.swirl_travel * later;
+    let mut at = skewed(in_plume * emitter.swirl_frequency) + emitter.swirl_offset;
+    let mut first = emitter.swirl_first;
+    let mut strength = emitter.swirl_strength;
+    let mut sum = Vec3::ZERO;
+    for octave in 0..SWIRL_OCTAVES {
+        let seed = emitter.seed.wrapping_mul(977).wrapping_add(octave);
+        sum += swirl_noise(at, first, phase, seed) * strength;
+        at *= 2.0;
+        first = first.wrapping_add(first);
+        strength *= emitter.swirl_detail;
+    }
+    sum
+}
+
+/// Steps of the way through the swirls, over a life.
+const SWIRL_STEPS: u32 = 32;
+/// Share of the life over which the swirls take hold: smoke leaves the source smooth and breaks up later.
+const SWIRL_ONSET: f32 = 0.15;
+
+/// Way of a particle through the swirls, from the beginning of a step to its end: where they have moved it to, and their
+/// velocity there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SwirlStep {
+    /// Number of the step, 0 at birth.
+    pub number: u32,
+    /// At the beginning.
+    pub moved: Flight,
+    /// At the end.
+    pub next: Flight,
+}
+
+/// Velocity of the swirls at the beginning of a step, for a particle of a given age in seconds that they have moved by
+/// `offset`.
+pub fn swirl_at_step(emitter: &EmitterUniform, flying: &Flying, number: u32, offset: Vec3) -> Vec3 {
+    let age = number as f32 / SWIRL_STEPS as f32;
+    let mut speed = 1.0;
+    let mut flown = age * flying.lifetime;
+    if emitter.has_curves != 0 {
+        speed = curve_value(&emitter.speed_curve, age);
+        flown = flying.lifetime * curve_integral(&emitter.speed_curve, age);
+    }
+    let path = bouncing_flight(emitter, flying.start.position, flying.start.velocity, flown);
+    let hold = smoothstep_unit(age / SWIRL_ONSET);
+    swirl(emitter, path.position + offset, age * flying.lifetime - flying.seconds) * (speed * hold)
+}
+
+/// Goes on to step `number` of the way through the swirls: the integral of [`swirl`] along the path. (Adams and Bashforth,
+/// second order)
+pub fn advance_swirl_step(emitter: &EmitterUniform, flying: &Flying, last: SwirlStep, number: u32) -> SwirlStep {
+    let step = flying.lifetime / SWIRL_STEPS as f32;
+    let moved = last.next;
+    let position = moved.position + (moved.velocity * 1.5 - last.moved.velocity * 0.5) * step;
+    let velocity = swirl_at_step(emitter, flying, number + 1, position);
+    SwirlStep { number, moved, next: Flight { position, velocity } }
+}
+
+/// Way and velocity that the swirls add to the flight of a particle, in steps that begin at its birth, with a cubic within
+/// each. `reached` is the step of an earlier time, or a default one; it is left at that of now.
+pub fn carried_by_swirls(emitter: &EmitterUniform, flying: &Flying, reached: &mut SwirlStep) -> Flight {
+    if emitter.swirl_strength <= 0.0 {
+        return Flight::default();
+    }
+    let step = flying.lifetime / SWIRL_STEPS as f32;
+    let steps = flying.seconds / step;
+    let number = (steps as u32).min(SWIRL_STEPS - 1);
+    // Nothing holds at birth, so that the first step ends where it begins.
+    if reached.number > number || reached.number == 0 {
+        let velocity = swirl_at_step(emitter, flying, 1, Vec3::ZERO);
+        *reached = SwirlStep { next: Flight { position: Vec3::ZERO, velocity }, ..SwirlStep::default() };
+    }
+    for i in reached.number + 1..=number {
+        *reached = advance_swirl_step(emitter, flying, *reached, i);
+    }
+    let SwirlStep { moved, next, .. } = *reached;
+    let x = steps - number as f32;
+    let rest = 1.0 - x;
+    let slope = (next.position - moved.position) / step;
+    Flight {
+        position: moved.position.lerp(next.position, x * x * (3.0 - 2.0 * x))
+            + (moved.velocity * rest - next.velocity * x) * (x * rest * step),
+        velocity: slope * (6.0 * x * rest)
+            + moved.velocity * (rest * (1.0 - 3.0 * x))
+            + next.velocity * (x * (3.0 * x - 2.0)),
+    }
+}
+
 /// Seconds from the interval of the first birth to that of another.
 pub fn birth_delay(emitter: &EmitterUniform, number: u32) -> f32 {
     let place = emitter.first_in_pulse + number;
@@ -146,6 +250,11 @@ pub fn rotation_at_birth(spread: f32, random: f32) -> f32 {
 
 /// Particle of birth `number`, counted from the emitter's first. Its amount is 0 if it is not alive.
 pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticle {
+    emitted_particle_on(emitter, number, &mut SwirlStep::default())
+}
+
+/// [`emitted_particle`] that goes on from the step of its way through the swirls that it has reached at an earlier time.
+pub fn emitted_particle_on(emitter: &EmitterUniform, number: u32, reached: &mut SwirlStep) -> EmittedParticle {
     let index = emitter.first.wrapping_add(number);
     let random = |salt| birth_random(index, salt, emitter.seed);
     let (life, place, motion, look, color) = (random(0), random(1), random(2), random(3), random(4));
@@ -168,18 +277,14 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
             [emitter.speed_curve, emitter.size_curve, emitter.amount_curve].map(|c| curve_value(&c, age));
         flown = lifetime * curve_integral(&emitter.speed_curve, age);
     }
-    let moved = bouncing_flight(emitter, emitter.position + offset, velocity, flown);
-    let base = moved.position;
+    let start = Flight { position: emitter.position + offset, velocity };
+    let moved = bouncing_flight(emitter, start.position, velocity, flown);
+    let carried = carried_by_swirls(emitter, &Flying { start, lifetime, seconds }, reached);
 
-    // Swirls grow with age: smoke leaves the source smooth and breaks up later.
-    let seed = emitter.seed.wrapping_mul(977);
-    let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, seed);
-    let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, seed.wrapping_add(5));
-    let swirl = (large + small * 0.4) * emitter.turbulence;
     // Grows with the square root of age, like diffusion.
     let mean_radius = size * (emitter.radius_start + (emitter.radius_end - emitter.radius_start) * age.sqrt());
     let radius = mean_radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0));
-    let position = base + swirl * age + emitter.up * (emitter.anchor * radius);
+    let position = moved.position + carried.position + emitter.up * (emitter.anchor * radius);
     let fade_in = smoothstep_unit(age / emitter.fade_in.max(1.0e-4));
     // Drag slows the spin.
     let turned = drag_integrals(emitter.drag, seconds).x;
@@ -192,8 +297,7 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
             place.x * 256.0 + seconds * emitter.frame_rate,
             age,
         ),
-        // Of a swirl that grows, too.
-        velocity: moved.velocity * speed + swirl / lifetime,
+        velocity: moved.velocity * speed + carried.velocity,
         tint_heat: unorm8(emitter.tint.lerp(emitter.other_tint, color.x).extend(1.0 - emitter.heat_spread * color.y)),
     }
 }

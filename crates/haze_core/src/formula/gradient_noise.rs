@@ -1,5 +1,4 @@
-//! Gradient noise from integer hashes and plain f32 arithmetic, which WGSL can reproduce. WGSL:
-//! `shaders/lib/gradient_noise.wgsl`.
+//! Gradient noise from integer hashes and plain f32 arithmetic, for what is baked: the same on every machine.
 
 use glam::{IVec3, UVec3, Vec2, Vec3};
 

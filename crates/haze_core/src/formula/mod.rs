@@ -30,6 +30,7 @@ pub mod smoke_tiles;
 pub mod soft_fade;
 pub mod sprite;
 pub mod stretch;
+pub mod swirl_noise;
 pub mod technique;
 pub mod texture;
 pub mod tile_sprite;

@@ -2,7 +2,7 @@
 //! offsets and sizes.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{IVec3, Mat4, Vec2, Vec3, Vec4};
 
 /// Field of a uniform struct: name, offset and size in bytes.
 pub type UniformField = (&'static str, usize, usize);
@@ -250,14 +250,15 @@ uniform! {
         velocity: Vec3,
         drag: f32,
         rise: Vec3,
-        turbulence: f32,
+        swirl_strength: f32,
         wind: Vec3,
-        turbulence_scale: f32,
+        swirl_frequency: f32,
         disc_x: Vec3,
         radius_start: f32,
         disc_z: Vec3,
         radius_end: f32,
-        phase: Vec2,
+        swirl_turn: f32,
+        swirl_turn_rate: f32,
         radius_spread: f32,
         spin: f32,
         amount: f32,
@@ -281,6 +282,12 @@ uniform! {
         anchor: f32,
         rotation_spread: f32,
         has_rate_curve: u32,
-        padding: f32,
+        swirl_detail: f32,
+        swirl_travel: Vec3,
+        padding_1: f32,
+        swirl_offset: Vec3,
+        padding_2: f32,
+        swirl_first: IVec3,
+        padding_3: f32,
     }
 }

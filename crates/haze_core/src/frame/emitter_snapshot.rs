@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::bounds::Bounds;
+use super::emitter_paths::EmitterPaths;
 use super::particle::Particle;
 use super::sprite_extent::SpriteExtent;
 use crate::formula::curve::{CurvePoints, curve_point};
@@ -23,9 +24,9 @@ pub struct EmitterSnapshot {
     pub first_sample: u32,
 }
 
-/// Bound on the displacement by turbulence along an axis, in units of `turbulence`: more than at any point that the
-/// test below samples.
-const TURBULENCE_BOUND: f32 = 5.0;
+/// Bound on the speed of a particle in the swirls, in units of their strength: more than at any point that the test below
+/// samples.
+const SWIRL_SPEED_BOUND: f32 = 25.0;
 /// Number of intervals of age for which the box is computed.
 const AGE_INTERVALS: u32 = 16;
 
@@ -37,29 +38,26 @@ impl EmitterSnapshot {
 
     /// Replaces `particles` with those that are alive.
     pub fn evaluate(&self, particles: &mut Vec<Particle>) {
-        self.write(0, 1, particles);
+        self.evaluate_along(&mut EmitterPaths::default(), particles);
+    }
+
+    /// [`evaluate`](Self::evaluate) in a fraction of the time, for frame after frame: goes on from where the particles were
+    /// when `paths` was used last, at any time. What earlier frames have rounded stays in the positions: a tenth of a
+    /// millimetre or so.
+    pub fn evaluate_along(&self, paths: &mut EmitterPaths, particles: &mut Vec<Particle>) {
+        paths.write(&self.uniform, 0, 1, particles);
     }
 
     /// Replaces `particles` with a sample, each of which stands for `step` particles. The sample has the same particles
     /// in every frame.
     pub fn sample(&self, particles: &mut Vec<Particle>) {
-        self.write(self.first_sample, self.step, particles);
+        self.sample_along(&mut EmitterPaths::default(), particles);
     }
 
-    fn write(&self, first: u32, step: u32, particles: &mut Vec<Particle>) {
-        let alive = |number| {
-            let emitted = emitted_particle(&self.uniform, number);
-            let [rotation, amount, frame, age] = emitted.rotation_amount_frame_age.to_array();
-            let radius = emitted.position_radius.w;
-            let position = emitted.position_radius.truncate();
-            // Particles that are not alive have an amount of 0 and no position. They are dropped, as are those that
-            // have faded out.
-            let [r, g, b, heat] = emitted.tint_heat;
-            let (velocity, tint) = (emitted.velocity, [r, g, b]);
-            (amount > 0.0).then_some(Particle { position, radius, rotation, amount, frame, age, velocity, tint, heat })
-        };
-        particles.clear();
-        particles.extend((first..self.uniform.count).step_by(step as usize).filter_map(alive));
+    /// [`sample`](Self::sample) in a fraction of the time, as [`evaluate_along`](Self::evaluate_along) is of
+    /// [`evaluate`](Self::evaluate).
+    pub fn sample_along(&self, paths: &mut EmitterPaths, particles: &mut Vec<Particle>) {
+        paths.write(&self.uniform, self.first_sample, self.step, particles);
     }
 
     /// Way of each particle of [`evaluate`](Self::evaluate) to where the snapshot `later`, by so many seconds, has it.
@@ -107,15 +105,14 @@ impl EmitterSnapshot {
                 (low + from.min(to), high + from.max(to))
             });
             let age = (late / shortest).min(1.0);
-            let scattered =
-                (e.burst.abs() + e.velocity_spread) * reached_late.x + TURBULENCE_BOUND * e.turbulence * age;
+            let scattered = (e.burst.abs() + e.velocity_spread) * reached_late.x + swirl_way_bound(e, flown);
             let radius = largest * e.radius_start.max(e.radius_start + (e.radius_end - e.radius_start) * age.sqrt());
             let kept = if lags { 1.0 } else { 1.0 - e.drag * reached_early.x };
             let speed = fastest
                 * ((e.velocity.length() + e.burst.abs() + e.velocity_spread) * kept
                     + e.wind.length()
                     + e.rise.length() * reached_late.x)
-                + TURBULENCE_BOUND * 3.0_f32.sqrt() * e.turbulence / shortest;
+                + SWIRL_SPEED_BOUND * fastest * e.swirl_strength;
             let radius = radius * (1.0 + e.radius_spread);
             let margin = scattered + e.anchor * radius + extent.radius(radius, speed);
             bounds.include(low - born, margin);
@@ -125,25 +122,49 @@ impl EmitterSnapshot {
     }
 }
 
+/// Bound on the way along an axis by which the swirls carry a particle in so many seconds: more than any that the test below
+/// samples. Large swirls carry it straight on; among small ones it wanders, and gets as far as the square root.
+fn swirl_way_bound(emitter: &EmitterUniform, seconds: f32) -> f32 {
+    let way = emitter.swirl_strength * seconds;
+    7.5 * way / (1.0 + 3.5 * way * emitter.swirl_frequency).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::{UVec3, Vec2};
+    use glam::UVec3;
 
     use super::*;
-    use crate::formula::gradient_noise::curl_noise;
+    use crate::emitter::Emitter;
+    use crate::formula::emitter::{Flight, Flying, SwirlStep, carried_by_swirls};
     use crate::formula::hash::{pcg3d, unit};
 
     #[test]
-    fn turbulence_stays_within_its_bound() {
+    fn swirls_stay_within_their_bounds() {
         let mut farthest = 0.0_f32;
-        for index in 0..400_000 {
-            let [place, turn] = [0, 1].map(|salt| pcg3d(UVec3::new(index, salt, 5)));
-            let place = Vec3::new(unit(place.x), unit(place.y), unit(place.z)) * 1000.0;
-            let phase = Vec2::from_angle(unit(turn.x) * std::f32::consts::TAU);
-            let swirl = curl_noise(place, phase, 977) + curl_noise(place * 2.3, phase, 982) * 0.4;
-            farthest = farthest.max(swirl.abs().max_element());
+        let mut fastest = 0.0_f32;
+        for (index, scale) in [0.1, 0.3, 1.0, 3.0, 10.0, 100.0].into_iter().enumerate() {
+            for (wind, detail, turbulence_travel) in [(0.0, 0.6, 1.0), (2.0, 1.0, 0.3), (30.0, 0.0, 1.0)] {
+                let emitter =
+                    Emitter { turbulence: 1.0, turbulence_scale: scale, turbulence_travel, ..Emitter::default() };
+                let emitter = Emitter { turbulence_detail: detail, wind: Vec3::X * wind, ..emitter };
+                let uniform = emitter.snapshot(100.0).uniform;
+                for particle in 0..8000 {
+                    let random = pcg3d(UVec3::new(particle, index as u32, 5));
+                    let random = Vec3::new(unit(random.x), unit(random.y), unit(random.z));
+                    let start = Flight { position: random * 100.0, velocity: (random - 0.5) * 2.0 };
+                    for age in [0.1, 0.3, 0.6, 0.99] {
+                        let seconds = emitter.lifetime * age;
+                        let flying = Flying { start, lifetime: emitter.lifetime, seconds };
+                        let carried = carried_by_swirls(&uniform, &flying, &mut SwirlStep::default());
+                        let way = carried.position.abs().max_element();
+                        farthest = farthest.max(way / swirl_way_bound(&uniform, seconds));
+                        fastest = fastest.max(carried.velocity.length() / uniform.swirl_strength);
+                    }
+                }
+            }
         }
-        println!("{farthest}");
-        assert!((0.5 * TURBULENCE_BOUND..0.98 * TURBULENCE_BOUND).contains(&farthest), "{farthest}");
+        println!("{farthest} {fastest}");
+        assert!((0.5..0.98).contains(&farthest), "{farthest}");
+        assert!((0.5..0.98).contains(&(fastest / SWIRL_SPEED_BOUND)), "{fastest}");
     }
 }

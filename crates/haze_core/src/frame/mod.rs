@@ -1,6 +1,7 @@
 //! Input of a frame that both renderers read.
 
 mod bounds;
+mod emitter_paths;
 mod emitter_snapshot;
 mod light;
 mod particle;
@@ -10,6 +11,7 @@ pub mod validate_input;
 mod view;
 
 pub use bounds::Bounds;
+pub use emitter_paths::EmitterPaths;
 pub use emitter_snapshot::EmitterSnapshot;
 pub use light::{Light, LightKind, LightRole, MAX_LIGHTS};
 pub use particle::{MAX_MAGNITUDE, Particle, particle_bounds};

@@ -48,7 +48,7 @@ pub struct CachedRender {
 impl CachedRender {
     pub fn new(context: &OffscreenContext) -> Result<Self, Error> {
         Ok(Self {
-            offscreen: OffscreenRenderer::new(context, false)?,
+            offscreen: OffscreenRenderer::new(context, false)?.with_kept_paths(),
             shot: None,
             error: None,
             tonemap_bindings: Default::default(),

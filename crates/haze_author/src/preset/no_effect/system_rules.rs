@@ -360,7 +360,12 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "only at a turbulence above 0",
         |s, _| s.emitter.turbulence <= 0.0,
-        &["emitter.turbulence_scale", "emitter.turbulence_speed"],
+        &[
+            "emitter.turbulence_scale",
+            "emitter.turbulence_detail",
+            "emitter.turbulence_travel",
+            "emitter.turbulence_speed",
+        ],
     ),
     rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
     rule("only with buoyancy, bounce, anchor, or shape disc", ignores_up, &["emitter.up"]),
