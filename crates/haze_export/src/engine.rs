@@ -17,7 +17,7 @@ pub enum Engine {
     Godot,
     /// WGSL, for wgpu and Bevy.
     Wgsl,
-    /// three.js. Flipbooks alone.
+    /// three.js.
     Three,
 }
 
@@ -34,7 +34,12 @@ impl Engine {
 
     /// Returns true if the shader of a material gets the age of each particle.
     pub fn knows_age(self) -> bool {
-        self == Self::Godot
+        matches!(self, Self::Godot | Self::Three)
+    }
+
+    /// Returns true if a material comes with the sprite.
+    pub fn takes_sprite(self) -> bool {
+        self == Self::Three
     }
 
     /// Order of the sides in two maps of six-way light.

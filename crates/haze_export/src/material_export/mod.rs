@@ -6,6 +6,8 @@ mod readme;
 mod snippet;
 mod sources;
 mod spatial_shader;
+mod sprite_texture;
+mod three_js;
 mod translation;
 
 use std::path::Path;
@@ -16,17 +18,21 @@ use haze_core::assets::ramp::Ramp;
 use haze_core::formula::color::srgb_from_linear;
 use haze_core::settings::DiffuseMode;
 use haze_preset::{CompressionEffort, PresetSystem, write_file, write_png};
-use image::{Rgb, RgbImage};
+use image::{DynamicImage, Rgb, RgbImage};
 
 use crate::engine::Engine;
-use snippet::Snippet;
+use snippet::{Snippet, UsedRamp};
+use sprite_texture::SpriteTexture;
+
+/// File of the sprite.
+const SPRITE: &str = "sprite.png";
 
 /// Files of a material.
 pub struct MaterialExport {
     /// File names and texts.
     pub texts: Vec<(&'static str, String)>,
-    /// File names and images, in sRGB.
-    pub textures: Vec<(String, RgbImage)>,
+    /// File names and images: ramps in sRGB, for some engines followed by the sprite.
+    pub textures: Vec<(String, DynamicImage)>,
 }
 
 impl MaterialExport {
@@ -54,13 +60,16 @@ impl MaterialExport {
             return refuse("diffuse.mode", "painted_motif", expected);
         }
         let snippet = Snippet::new(settings, engine)?;
-        let mut texts = sources::sources(engine, &snippet)?;
+        let sprite = SpriteTexture::new(&assets.sprite);
+        let mut texts = sources::sources(engine, settings, &snippet, &sprite)?;
         texts.push(("README.md", readme::readme(engine, title, system, &snippet)));
-        let textures = snippet
-            .ramps
-            .iter()
-            .map(|ramp| (ramp.file(), picture((ramp.of)(assets), engine.first_row_is_at_the_top())));
-        Ok(Self { texts, textures: textures.collect() })
+        let first_row_is_at_the_top = engine.first_row_is_at_the_top();
+        let ramp = |ramp: &UsedRamp| (ramp.file(), picture((ramp.of)(assets), first_row_is_at_the_top).into());
+        let mut textures: Vec<(_, DynamicImage)> = snippet.ramps.iter().map(ramp).collect();
+        if engine.takes_sprite() {
+            textures.push((SPRITE.to_owned(), sprite.image.into()));
+        }
+        Ok(Self { texts, textures })
     }
 
     /// Returns the names of all files.
@@ -77,7 +86,7 @@ impl MaterialExport {
             write_file(&folder.join(name), text.as_bytes())?;
         }
         for (name, texture) in &self.textures {
-            write_png(&folder.join(name), &texture.clone().into(), CompressionEffort::Small)?;
+            write_png(&folder.join(name), texture, CompressionEffort::Small)?;
         }
         Ok(())
     }

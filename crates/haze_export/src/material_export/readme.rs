@@ -23,11 +23,19 @@ fn textures(engine: Engine, system: &PresetSystem, snippet: &Snippet) -> String 
     for ramp in &snippet.ramps {
         text += &format!("| `{}` | {} |\n", ramp.file(), ramp.axes);
     }
+    if engine.takes_sprite() {
+        text +=
+            "| `sprite.png` | frames of the sprite: rgb is n/2 + 1/2 (right, up, to the viewer), a is the amount |\n";
+    }
     let row = if engine.first_row_is_at_the_top() { "first (top)" } else { "bottom" };
     let filter = match system.settings.ramp_filter {
         RampFilter::Bilinear => "linear",
         RampFilter::Nearest => "nearest",
     };
+    if engine == Engine::Three {
+        return text
+            + "\nRamps are **sRGB**, 8 bits, the sprite is not; rows count from the first (top). The modules load them so.\n\n";
+    }
     text + &format!(
         "\nColor is **sRGB**, 8 bits. Rows count from the {row} row of the image. Import without mipmaps, without lossy \
          compression, without resizing; filter {filter}; the edges are clamped by the formula itself.\n\n"
@@ -99,7 +107,34 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
             names("the texture of ", "haze_"),
             if burns { "; the age is the place in the heat ramp" } else { "" },
         ),
-        Engine::Wgsl | Engine::Three => format!(
+        Engine::Three => {
+            let heat = if burns { "; the age is the place in the heat ramp" } else { "" };
+            let scale = if burns { ", `material.numbers.heat.value` their heat" } else { "" };
+            format!(
+                "## In three.js\n\n\
+                 `haze_material.js` is for `WebGLRenderer` and imports `three`; `haze_material_webgpu.js` is for `WebGPURenderer`, with and \
+                 without WebGPU, and imports `three/webgpu` and `three/tsl`: `HazeNodeMaterial` there is `HazeMaterial` here. Both need the files \
+                 of this folder beside them.\n\n\
+                 ```js\n\
+                 import {{ HazeMaterial }} from './haze_material.js';\n\n\
+                 const material = await HazeMaterial.load();\n\
+                 const smoke = new THREE.InstancedMesh(new THREE.PlaneGeometry(), material, count);\n\
+                 // Of each particle: angle, age, frame and amount; all but the angle are 0 to 1.\n\
+                 const particles = new THREE.InstancedBufferAttribute(new Float32Array(4 * count), 4);\n\
+                 smoke.geometry.setAttribute('hazeParticle', particles);\n\
+                 scene.add(smoke);\n\
+                 ```\n\n\
+                 Squares turn towards the camera; their matrices set center and size. Without the attribute, as on a mesh of its own, a \
+                 square shows the first frame with all of its amount{heat}. `material.numbers.amount.value` multiplies the amount of all{scale}, \
+                 `material.numbers.frame.value` is their first frame. Sort instances from back to front.\n\n\
+                 Directional, point and spot lights of the scene light the smoke, as they light a white Lambert surface that faces them: \
+                 intensity π is 1 in haze. Fog, tonemapping and, with `receiveShadow`, shadows of the scene apply. The smoke casts \
+                 no shadow, and ambient, hemisphere and area lights, light probes and environments do not light it.\n\n\
+                 Opacity is that of linear light: render into half floats, as `EffectComposer` does, with `OutputPass` as its last pass. On a \
+                 canvas, three.js blends codes, and thin smoke is too dark.\n",
+            )
+        }
+        Engine::Wgsl => format!(
             "## In WGSL\n\n\
              Put `haze_material.wgsl` before your own shader: it declares functions and constants alone, no bindings. Bind {} \
              as `texture_2d<f32>` of a format such as `Rgba8UnormSrgb`, with a linear sampler.\n\n\

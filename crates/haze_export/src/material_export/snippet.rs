@@ -61,7 +61,7 @@ impl Snippet {
         let own: String = functions.iter().map(Function::wgsl).collect();
         let library = shader::compose(LIBRARY).map_err(|reason| untranslated("WGSL", &reason))?;
         let chosen = [("BACKLIGHT", settings.diffuse.backlight.index()), ("RAMP_FILTER", settings.ramp_filter.index())];
-        let items = items(&with_chosen(&library, &chosen));
+        let items = items(&with_chosen(&library, &chosen), declared_name);
         let wgsl = with_prefixes(&items, &(constants + &used_items(&items, &own) + &own));
         Ok(Self { ramps, functions, wgsl: wgsl.trim_end().to_owned() + "\n" })
     }
@@ -232,7 +232,7 @@ struct Item {
 }
 
 /// Splits a library into its declarations.
-fn items(library: &str) -> Vec<Item> {
+fn items(library: &str, declared_name: impl Fn(&str) -> Option<&str>) -> Vec<Item> {
     let (mut items, mut text) = (Vec::new(), String::new());
     let mut name = None;
     for line in library.lines() {
@@ -258,6 +258,16 @@ fn items(library: &str) -> Vec<Item> {
 fn declared_name(line: &str) -> Option<&str> {
     let rest = ["fn ", "const ", "struct "].iter().find_map(|keyword| line.strip_prefix(keyword))?;
     words(rest).next()
+}
+
+/// Name that a line of GLSL declares: that of a function, or of a constant.
+fn declared_in_glsl(line: &str) -> Option<&str> {
+    words(line.strip_prefix("const ").unwrap_or(line)).nth(1)
+}
+
+/// Returns the declarations of some GLSL that the functions of these names use, and those functions.
+pub fn used_glsl(glsl: &str, names: &[&str]) -> String {
+    used_items(&items(glsl, declared_in_glsl), &names.join(" ")).trim().to_owned() + "\n"
 }
 
 /// Gives all names of the library a prefix: an engine has names of its own, such as `BACKLIGHT`.

@@ -1,20 +1,33 @@
 //! Source files of a material, in the language of each engine.
 
-use haze::{Error, FieldError};
+use haze::Error;
+use haze_core::settings::Settings;
 
 use crate::engine::Engine;
 
 use super::calls::{Calls, HEAT, NOTE, call};
 use super::snippet::Snippet;
 use super::spatial_shader::spatial_shader;
+use super::sprite_texture::SpriteTexture;
+use super::three_js;
 use super::translation::{glsl_functions, hlsl_functions};
 
 /// Returns the names and texts of an engine's files.
-pub fn sources(engine: Engine, snippet: &Snippet) -> Result<Vec<(&'static str, String)>, Error> {
+pub fn sources(
+    engine: Engine,
+    settings: &Settings,
+    snippet: &Snippet,
+    sprite: &SpriteTexture,
+) -> Result<Vec<(&'static str, String)>, Error> {
+    let names: Vec<_> = snippet.functions.iter().map(|function| function.name).collect();
     Ok(match engine {
         Engine::Three => {
-            let expected = "unreal, unity, godot or wgsl; for three.js, `haze export flipbook`";
-            return Err(FieldError::new("--engine", "three", expected).into());
+            let functions = glsl_functions(&snippet.wgsl, &names)?;
+            vec![
+                (three_js::WEBGL_FILE, three_js::webgl_module(snippet, &functions)),
+                (three_js::WEBGPU_FILE, three_js::webgpu_module(settings)),
+                (three_js::TEXTURES_FILE, three_js::textures_module(snippet, sprite)),
+            ]
         }
         Engine::Wgsl => vec![("haze_material.wgsl", format!("{NOTE}\n{}", snippet.wgsl))],
         Engine::Unreal => {
@@ -25,7 +38,9 @@ pub fn sources(engine: Engine, snippet: &Snippet) -> Result<Vec<(&'static str, S
             ]
         }
         Engine::Unity => vec![("haze_material.hlsl", custom_function(snippet, &hlsl_functions(&snippet.wgsl)?))],
-        Engine::Godot => vec![("haze_material.gdshader", spatial_shader(snippet, &glsl_functions(&snippet.wgsl)?))],
+        Engine::Godot => {
+            vec![("haze_material.gdshader", spatial_shader(snippet, &glsl_functions(&snippet.wgsl, &names)?))]
+        }
     })
 }
 

@@ -14,7 +14,7 @@ use haze_preset::{ImageSource, Preset};
 
 use super::*;
 
-const ENGINES: [Engine; 4] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl];
+const ENGINES: [Engine; 5] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl, Engine::Three];
 
 /// Settings that use every ramp, as far as they choose, with numbers that differ from each other.
 fn settings(has_ramps: bool, ramp_filter: RampFilter) -> Settings {
@@ -323,10 +323,15 @@ fn shader_around(file: &str, text: &str, snippet: &Snippet, renderer: u32) -> St
 
 #[test]
 fn sources_for_engines_compile() {
+    let sprite = SpriteTexture::new(&assets().sprite);
     for settings in all_settings() {
         for engine in ENGINES {
             let snippet = Snippet::new(&settings, engine).unwrap();
-            for (file, text) in sources::sources(engine, &snippet).unwrap() {
+            for (file, text) in sources::sources(engine, &settings, &snippet, &sprite).unwrap() {
+                if file.ends_with(".js") {
+                    // scripts/test_engines compiles it: three.js adds the lights.
+                    continue;
+                }
                 if file.ends_with(".wgsl") {
                     // The comparison with the renderers compiles it; here, that it needs nothing else.
                     naga::front::wgsl::parse_str(&text).unwrap();
@@ -383,10 +388,13 @@ fn global_names(text: &str) -> Vec<&str> {
 
 #[test]
 fn global_names_of_shaders_for_godot_are_none_of_its_own() {
+    let sprite = SpriteTexture::new(&assets().sprite);
     let mut kinds = BTreeSet::new();
     for settings in all_settings() {
         let snippet = Snippet::new(&settings, Engine::Godot).unwrap();
-        let [(_, text)] = &sources::sources(Engine::Godot, &snippet).unwrap()[..] else { panic!("one file") };
+        let [(_, text)] = &sources::sources(Engine::Godot, &settings, &snippet, &sprite).unwrap()[..] else {
+            panic!("one file")
+        };
         let names = global_names(text);
         assert!(names.len() > 20, "{names:?}");
         for name in names {
@@ -396,9 +404,7 @@ fn global_names_of_shaders_for_godot_are_none_of_its_own() {
         }
     }
     // Constants, uniforms, varyings, and functions of the library and of the material.
-    for name in
-        ["HAZE_BOOST", "HAZE_LIB_BACKLIGHT", "haze_heat_ramp", "haze_turn", "haze_lib_coverage", "haze_coverage"]
-    {
+    for name in ["HAZE_BOOST", "haze_heat_ramp", "haze_turn", "haze_lib_coverage", "haze_coverage"] {
         assert!(kinds.contains(name), "{name} is not in {kinds:?}");
     }
     let named = "const uint BACKLIGHT = 0u;\nuniform vec2 size = vec2(1.0);\nvarying float amount;\nvoid vertex() {\n    x = 1;\n}";
@@ -412,9 +418,11 @@ fn materials_for_godot_have_the_heat_by_age() {
     for engine in ENGINES {
         let export = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets[0], engine).unwrap();
         let is_godot = engine == Engine::Godot;
-        assert_eq!(export.files().any(|file| file == "heat_ramp.png"), is_godot, "{engine:?}");
+        let knows_age = is_godot || engine == Engine::Three;
+        assert_eq!(export.files().any(|file| file == "heat_ramp.png"), knows_age, "{engine:?}");
         let readme = &export.texts.iter().find(|(name, _)| *name == "README.md").unwrap().1;
-        assert_eq!(readme.contains("`haze_heat_ramp`") && readme.contains("| `heat_ramp.png` |"), is_godot, "{readme}");
+        assert_eq!(readme.contains("`haze_heat_ramp`"), is_godot, "{readme}");
+        assert_eq!(readme.contains("| `heat_ramp.png` |"), knows_age, "{readme}");
         let by_age = "haze_particle_heat = haze_heat * haze_heat_by_age(haze_heat_ramp, INSTANCE_CUSTOM.y);";
         assert_eq!(export.texts[0].1.contains(by_age), is_godot, "{}", export.texts[0].1);
     }
@@ -427,13 +435,17 @@ fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
     for engine in ENGINES {
         let export = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets[0], engine).unwrap();
         let names: Vec<_> = export.textures.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["diffuse_ramp.png", "backlight_ramp.png"], "{engine:?}");
+        let sprite = (engine == Engine::Three).then_some("sprite.png");
+        assert!(
+            names.into_iter().eq(["diffuse_ramp.png", "backlight_ramp.png"].into_iter().chain(sprite)),
+            "{engine:?}"
+        );
         // Images of ramps have row 0 at the bottom.
         let mut picture = export.textures[0].1.clone();
         if engine != Engine::Unity {
-            image::imageops::flip_vertical_in_place(&mut picture);
+            picture = picture.flipv();
         }
-        let read = Ramp::from_image(&picture.into());
+        let read = Ramp::from_image(&picture);
         let ramp = &assets[0].diffuse_ramp;
         assert_eq!(read.size(), ramp.size());
         for y in 0..ramp.size().y {
@@ -449,14 +461,41 @@ fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
 }
 
 #[test]
-fn a_material_for_three_js_is_refused_because_it_has_flipbooks_alone() {
-    let preset = Preset::load("column").unwrap();
-    let made = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets(), Engine::Three);
-    let said = made.err().unwrap().to_string();
-    assert_eq!(
-        said,
-        "--engine: three is not valid; expected unreal, unity, godot or wgsl; for three.js, `haze export flipbook`"
-    );
+fn modules_for_three_js_hold_the_functions_that_they_call() {
+    let sprite = SpriteTexture::new(&assets().sprite);
+    for settings in all_settings() {
+        let snippet = Snippet::new(&settings, Engine::Three).unwrap();
+        let sources = sources::sources(Engine::Three, &settings, &snippet, &sprite).unwrap();
+        let size: usize = sources.iter().map(|(_, text)| text.len()).sum();
+        assert!(size <= 15_000, "{size} bytes");
+        for (name, text) in sources {
+            let left: Vec<_> =
+                text.split('$').filter(|part| !part.is_empty() && part.chars().all(is_placeholder)).collect();
+            assert!(left.is_empty(), "{name}: {left:?}");
+            assert_eq!(text.contains("heat_ramp"), settings.burns(), "{name}");
+        }
+    }
+}
+
+fn is_placeholder(c: char) -> bool {
+    c.is_ascii_uppercase() || c == '_'
+}
+
+#[test]
+fn sprites_are_written_frame_by_frame() {
+    let sprite = &assets().sprite;
+    let sheet = SpriteTexture::new(sprite);
+    let size = sprite.size();
+    assert_eq!(sheet.frames, sprite.frame_count());
+    assert!(sheet.cells.element_product() >= sheet.frames && sheet.cells.y * (sheet.cells.x - 1) < sheet.frames);
+    assert_eq!(sheet.image.dimensions(), (sheet.cells * size).into());
+    for frame in 0..sheet.frames {
+        let cell = UVec2::new(frame % sheet.cells.x, frame / sheet.cells.x) * size;
+        for (x, y) in [(size / 2, size / 2), (size / 3, size / 2), (size / 2, size / 3)] {
+            let texel = sheet.image.get_pixel(cell.x + x, cell.y + y).0.map(f32::from);
+            assert_eq!(Vec4::from(texel) / 255.0, sprite.texel(0, frame, x, y), "{frame} {x} {y}");
+        }
+    }
 }
 
 #[test]

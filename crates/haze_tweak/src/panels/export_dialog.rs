@@ -65,15 +65,13 @@ const FILES: [(&str, (FileKind, BitDepth), &str); 3] = [
     ),
 ];
 
-const ENGINES: [(&str, Engine, &str); 4] = [
+const ENGINES: [(&str, Engine, &str); 5] = [
     ("Unreal", Engine::Unreal, "Ramps, and HLSL for a Custom node"),
     ("Unity", Engine::Unity, "Ramps, and HLSL for a Custom Function node of Shader Graph"),
     ("Godot", Engine::Godot, "Ramps, and a spatial shader"),
     ("WGSL", Engine::Wgsl, "Ramps, and functions for wgpu and Bevy"),
+    ("three.js", Engine::Three, "Ramps, the sprite, and a material"),
 ];
-
-/// Of flipbooks alone.
-const THREE: (&str, Engine, &str) = ("three.js", Engine::Three, "With a module that plays the flipbook");
 
 /// Draws a row of choices.
 fn choices<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, choices: &[(&str, T, &str)]) {
@@ -115,16 +113,12 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     let is_moving = has_cells || matches!(product, ExportKind::Sequence | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
         if *product == ExportKind::Material {
-            if options.engine == Engine::Three {
-                options.engine = Engine::default();
-            }
             choices(ui, "Engine", &mut options.engine, &ENGINES);
             return;
         }
         if is_for_engine {
             let about = "Conventions of normals and motion vectors; a README tells how to use the files";
-            let engines: Vec<_> =
-                ENGINES.iter().map(|(name, engine, _)| (*name, *engine, about)).chain([THREE]).collect();
+            let engines = ENGINES.map(|(name, engine, _)| (name, engine, about));
             choices(ui, "Engine", &mut options.engine, &engines);
             choices(ui, "Alpha", &mut options.flipbook_alpha, &FLIPBOOK_ALPHAS);
         }

@@ -13,6 +13,7 @@ fn materials_are_written_for_every_engine() {
         ("unity", "haze_material.hlsl"),
         ("godot", "haze_material.gdshader"),
         ("wgsl", "haze_material.wgsl"),
+        ("three", "haze_material.js"),
     ] {
         let arguments = ["export", "material", "campfire", "--engine", engine, "--set", "boost=1.25", "-o", engine];
         let output = haze(folder.path(), &arguments);
@@ -25,7 +26,7 @@ fn materials_are_written_for_every_engine() {
         let text = std::fs::read_to_string(folder.path().join(engine).join(source)).unwrap();
         assert!(text.contains("1.25") && text.contains("haze_emission"), "{engine}: {text}");
         let readme = std::fs::read_to_string(folder.path().join(engine).join("README.md")).unwrap();
-        assert!(readme.starts_with("# Campfire: fire\n") && readme.contains("fire_ramp`"), "{readme}");
+        assert!(readme.starts_with("# Campfire: fire\n") && readme.contains("`fire_ramp.png`"), "{readme}");
     }
 }
 
