@@ -1,5 +1,5 @@
 // Opens what haze has exported in engines that run in a browser. scripts/test_engines prepares the folder that it runs in:
-// `flipbook_NAME` with `frame_NAME_N.png` at its times and halfway between, and materials `godot_NAME`, `three_NAME` and `wgsl_NAME`.
+// `flipbook_ENGINE_NAME` with `frame_NAME_N.png` at its times and halfway between, and materials `godot_NAME`, `three_NAME` and `wgsl_NAME`.
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
@@ -25,7 +25,7 @@ function check(what, isRight, seen) {
     if (!isRight) failures.push(what);
 }
 
-const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.png': 'image/png' };
+const types = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm', '.png': 'image/png' };
 const server = http.createServer((request, response) => {
     const file = path.join('.', path.normalize(decodeURIComponent(request.url.split('?')[0])));
     if (!fs.existsSync(file) || !fs.statSync(file).isFile()) return response.writeHead(404).end();
@@ -97,7 +97,22 @@ window.readPixels = async (scene, camera, side) => {
     const rows = Array.from({ length: side }, (_, row) => [...texels.subarray(4 * side * row, 4 * side * (row + 1))]);
     return rows.reverse().flat();
 };
+window.readFlipbook = async ({ url, background, seconds, hasMotion, side }) => {
+    const { HazeFlipbook } = await import(url + 'haze_flipbook.js');
+    window.loaded ??= {};
+    const smoke = (window.loaded[url] ??= await HazeFlipbook.load());
+    const scale = hasMotion ? smoke.numbers.motion_scale : 0;
+    smoke.material.uniforms.hazeMotionScale.value.set(scale, scale);
+    smoke.scale.set(2, 2, 1);
+    smoke.update(seconds);
+    const scene = new three.Scene();
+    scene.background = new three.Color(background, background, background);
+    scene.add(smoke);
+    const pixels = await window.readPixels(scene, new three.OrthographicCamera(-1, 1, 1, -1, -1, 1), side);
+    return pixels.filter((_, index) => index % 4 < 3);
+};
 window.three = three;
+window.isLoaded = true;
 </script>`);
 
 // The same with WebGPURenderer, which draws by WebGPU, or by WebGL 2 with `?webgl`.
@@ -126,13 +141,100 @@ window.readPixels = async (scene, camera, side) => {
 window.three = three;
 </script>`);
 
-// three.js: the module that goes with a flipbook, in a target of linear light.
-async function testThree() {
+// Page with Babylon.js. `readFlipbook` returns linear light, or as on a screen codes, rows from the top.
+fs.writeFileSync('babylon.html', `<link rel="icon" href="data:,"><canvas></canvas>
+<script src="./node_modules/babylonjs/babylon.js"></script>
+<script type="module">
+const engine = new BABYLON.Engine(document.querySelector('canvas'));
+const scenes = {};
+window.readFlipbook = async ({ url, background, seconds, hasMotion, isScreen, side }) => {
+    const { HazeFlipbook } = await import(url + 'haze_flipbook.js');
+    if (!scenes[url]) {
+        const scene = new BABYLON.Scene(engine);
+        const camera = new BABYLON.FreeCamera('camera', new BABYLON.Vector3(0, 0, -1), scene);
+        camera.mode = BABYLON.Camera.ORTHOGRAPHIC_CAMERA;
+        [camera.orthoLeft, camera.orthoRight, camera.orthoBottom, camera.orthoTop] = [-1, 1, -1, 1];
+        const target = new BABYLON.RenderTargetTexture('target', side, scene, { type: BABYLON.Constants.TEXTURETYPE_FLOAT });
+        const smoke = await HazeFlipbook.load(BABYLON, scene);
+        smoke.mesh.scaling.setAll(2);
+        target.renderList = [smoke.mesh];
+        target.activeCamera = camera;
+        await scene.whenReadyAsync();
+        while (!target.isReadyForRendering()) await new Promise(requestAnimationFrame);
+        scenes[url] = { scene, target, smoke };
+    }
+    const { scene, target, smoke } = scenes[url];
+    // As a pipeline with \`hdr\` sets it.
+    scene.imageProcessingConfiguration.applyByPostProcess = !isScreen;
+    const scale = hasMotion ? smoke.numbers.motion_scale : 0;
+    smoke.mesh.material.setVector2('hazeMotionScale', new BABYLON.Vector2(scale, scale));
+    smoke.update(seconds);
+    target.clearColor = new BABYLON.Color4(background, background, background, 1);
+    target.render();
+    return lightOf(await target.readPixels(), side, true);
+};
+function lightOf(texels, side, isFlipped) {
+    const rows = Array.from({ length: side }, (_, row) => [...texels.subarray(4 * side * row, 4 * side * (row + 1))]);
+    return (isFlipped ? rows.reverse() : rows).flat().filter((_, index) => index % 4 < 3);
+}
+window.isLoaded = true;
+</script>`);
+
+// The same with PlayCanvas.
+fs.writeFileSync('playcanvas.html', `<link rel="icon" href="data:,"><canvas></canvas>
+<script type="importmap">{"imports": {"playcanvas": "./node_modules/playcanvas/build/playcanvas.mjs"}}</script>
+<script type="module">
+import * as pc from 'playcanvas';
+const app = new pc.Application(document.querySelector('canvas'), {});
+app.autoRender = false;
+app.start();
+const camera = new pc.Entity();
+camera.addComponent('camera', { projection: pc.PROJECTION_ORTHOGRAPHIC, orthoHeight: 1, nearClip: 0, farClip: 2 });
+camera.setPosition(0, 0, 1);
+camera.camera.toneMapping = pc.TONEMAP_NONE;
+app.root.addChild(camera);
+const all = {};
+let target;
+window.readFlipbook = async ({ url, background, seconds, hasMotion, isScreen, side }) => {
+    const { HazeFlipbook } = await import(url + 'haze_flipbook.js');
+    const smoke = (all[url] ??= await HazeFlipbook.load(pc, app));
+    smoke.entity.setLocalScale(2, 2, 2);
+    app.root.addChild(smoke.entity);
+    const scale = hasMotion ? smoke.numbers.motion_scale : 0;
+    smoke.material.setParameter('hazeMotionScale', [scale, scale]);
+    smoke.update(seconds);
+    if (!target) {
+        const options = { width: side, height: side, format: pc.PIXELFORMAT_RGBA32F, mipmaps: false };
+        target = new pc.RenderTarget({ colorBuffer: new pc.Texture(app.graphicsDevice, options), depth: false });
+        camera.camera.renderTarget = target;
+    }
+    // As a CameraFrame sets it.
+    camera.camera.gammaCorrection = isScreen ? pc.GAMMA_SRGB : pc.GAMMA_NONE;
+    camera.camera.clearColor = new pc.Color(background, background, background, 1);
+    app.renderNextFrame = true;
+    await new Promise(resolve => app.once('frameend', resolve));
+    const texels = await target.colorBuffer.read(0, 0, side, side, { renderTarget: target });
+    app.root.removeChild(smoke.entity);
+    const rows = Array.from({ length: side }, (_, row) => [...texels.subarray(4 * side * row, 4 * side * (row + 1))]);
+    return rows.reverse().flat().filter((_, index) => index % 4 < 3);
+};
+window.isLoaded = true;
+</script>`);
+
+// The modules that go with flipbooks, in a target of linear light.
+async function testFlipbooks(engine, { html, prefix, hasScreen }) {
     const page = await browser.newPage();
-    await page.goto(`${address}/three.html`);
-    await page.waitForFunction('window.three');
-    for (const folder of folders('flipbook_')) {
-        const name = folder.slice('flipbook_'.length);
+    const said = [];
+    page.on('console', message => {
+        if (['error', 'warn'].includes(message.type())) said.push(message.text());
+    });
+    page.on('pageerror', error => said.push(String(error)));
+    await page.goto(`${address}/${html}`);
+    await page.waitForFunction('window.isLoaded').catch(error => {
+        throw new Error(`${html}: ${error}; the page said: ${said.join('; ')}`);
+    });
+    for (const folder of folders(prefix)) {
+        const name = folder.slice(prefix.length);
         const { frames, rate, alpha } = JSON.parse(fs.readFileSync(`${folder}/flipbook.json`));
         // One at each frame, and one between two.
         const images = Array.from({ length: 2 * frames - 1 }, (_, index) => {
@@ -141,13 +243,19 @@ async function testThree() {
         });
         const draw = async (background, seconds, hasMotion) => {
             const options = { url: `/${folder}/`, background, seconds, hasMotion, side: SIDE };
-            return (await page.evaluate(drawFlipbook, options)).map(toCode);
+            return (await page.evaluate(options => window.readFlipbook(options), options)).map(toCode);
         };
+        if (hasScreen && alpha === 'premultiplied') {
+            const options = { url: `/${folder}/`, background: 0, seconds: 0, hasMotion: true, isScreen: true, side: SIDE };
+            const codes = await page.evaluate(options => window.readFlipbook(options), options);
+            const decibels = psnr(codes.map(code => 255 * code), over(images[0], 0));
+            check(`${engine}, ${name}, as on a canvas`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
+        }
         for (const background of [0, 0.2, 1]) {
             for (let frame = 0; frame < frames; frame++) {
                 const codes = await draw(background, frame / rate, true);
                 const decibels = psnr(codes, over(images[2 * frame], background));
-                check(`three.js, ${name}, frame ${frame} over ${background}`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
+                check(`${engine}, ${name}, frame ${frame} over ${background}`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
             }
             let moved = 0;
             let faded = 0;
@@ -159,28 +267,11 @@ async function testThree() {
             const share = moved / faded;
             const decibels = 10 * Math.log10((255 * 255 * 3 * SIDE * SIDE * (frames - 1)) / faded);
             const seen = `${share.toFixed(3)} of the squared error of a cross-fade of ${decibels.toFixed(1)} dB`;
-            check(`three.js, ${name}, between frames over ${background}`, share <= MOST_OF_A_FADE || decibels > ALIKE, seen);
+            check(`${engine}, ${name}, between frames over ${background}`, share <= MOST_OF_A_FADE || decibels > ALIKE, seen);
         }
     }
+    check(`${engine}, messages of flipbooks`, said.length === 0, said[0] ?? 'none');
     await page.close();
-}
-
-// Runs in the page. Returns linear light, rows from the top.
-async function drawFlipbook({ url, background, seconds, hasMotion, side }) {
-    const three = window.three;
-    const { HazeFlipbook } = await import(`${url}haze_flipbook.js`);
-    window.loaded ??= {};
-    const smoke = (window.loaded[url] ??= await HazeFlipbook.load());
-    const scale = hasMotion ? smoke.numbers.motion_scale : 0;
-    smoke.material.uniforms.hazeMotionScale.value.set(scale, scale);
-    smoke.scale.set(2, 2, 1);
-    smoke.update(seconds);
-    const scene = new three.Scene();
-    scene.background = new three.Color(background, background, background);
-    scene.add(smoke);
-    const camera = new three.OrthographicCamera(-1, 1, 1, -1, -1, 1);
-    const pixels = await window.readPixels(scene, camera, side);
-    return pixels.filter((_, index) => index % 4 < 3);
 }
 
 // The formula of a material, from the numbers of its WGSL and its textures.
@@ -603,7 +694,9 @@ async function drawInGodot(shader, parameters) {
     for (let frame = 0; frame < 6; frame++) await new Promise(requestAnimationFrame);
 }
 
-await testThree();
+await testFlipbooks('three.js', { html: 'three.html', prefix: 'flipbook_three_' });
+await testFlipbooks('Babylon.js', { html: 'babylon.html', prefix: 'flipbook_babylon_', hasScreen: true });
+await testFlipbooks('PlayCanvas', { html: 'playcanvas.html', prefix: 'flipbook_playcanvas_', hasScreen: true });
 await testThreeMaterials('three.js', { page: 'three.html', module: 'haze_material.js', name: 'HazeMaterial' });
 for (const [renderer, page] of [['three.js, WebGPU', 'three_webgpu.html'], ['three.js, nodes in WebGL 2', 'three_webgpu.html?webgl']]) {
     await testThreeMaterials(renderer, { page, module: 'haze_material_webgpu.js', name: 'HazeNodeMaterial' });

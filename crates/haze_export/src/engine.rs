@@ -19,6 +19,10 @@ pub enum Engine {
     Wgsl,
     /// three.js.
     Three,
+    /// Babylon.js. Flipbooks alone.
+    Babylon,
+    /// PlayCanvas. Flipbooks alone.
+    Playcanvas,
 }
 
 impl Engine {
@@ -46,7 +50,7 @@ impl Engine {
     pub fn six_way_packing(self) -> Packing {
         match self {
             Self::Unity => Packing::Unity,
-            Self::Unreal | Self::Godot | Self::Wgsl | Self::Three => Packing::RltBbf,
+            Self::Unreal | Self::Godot | Self::Wgsl | Self::Three | Self::Babylon | Self::Playcanvas => Packing::RltBbf,
         }
     }
 }

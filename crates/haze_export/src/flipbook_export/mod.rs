@@ -63,8 +63,16 @@ const NUMBERS: &str = "flipbook.json";
 const README: &str = "README.md";
 const SPRITE_SHEET: &str = "color.json";
 const MODULE: &str = "haze_flipbook.js";
-/// Plays a flipbook in three.js.
-const MODULE_SOURCE: &str = include_str!("haze_flipbook.js");
+
+/// Text of the module that plays a flipbook in an engine, if there is one.
+fn module(engine: Engine) -> Option<&'static str> {
+    match engine {
+        Engine::Three => Some(include_str!("haze_flipbook.js")),
+        Engine::Babylon => Some(include_str!("haze_flipbook_babylon.js")),
+        Engine::Playcanvas => Some(include_str!("haze_flipbook_playcanvas.js")),
+        Engine::Unreal | Engine::Unity | Engine::Godot | Engine::Wgsl => None,
+    }
+}
 
 impl FlipbookExport {
     /// Renders a flipbook. `folder`: the one to be written into. It need not exist; until [`FlipbookExport::write`], sheets are in
@@ -165,20 +173,16 @@ impl FlipbookExport {
         let numbers = serde_json::to_string_pretty(&self.numbers).unwrap_or_default() + "\n";
         write_file(&folder.join(NUMBERS), numbers.as_bytes())?;
         write_file(&folder.join(SPRITE_SHEET), self.sprite_sheet.as_bytes())?;
-        if self.has_module() {
-            write_file(&folder.join(MODULE), MODULE_SOURCE.as_bytes())?;
+        if let Some(module) = module(self.numbers.engine) {
+            write_file(&folder.join(MODULE), module.as_bytes())?;
         }
         write_file(&folder.join(README), self.readme.as_bytes())
     }
 
     /// Returns the names of the files that are written.
     pub fn files(&self) -> impl Iterator<Item = &'static str> {
-        let module = self.has_module().then_some(MODULE);
+        let module = module(self.numbers.engine).map(|_| MODULE);
         self.images.iter().map(|(name, _)| *name).chain([NUMBERS, SPRITE_SHEET]).chain(module).chain([README])
-    }
-
-    fn has_module(&self) -> bool {
-        self.numbers.engine == Engine::Three
     }
 }
 

@@ -130,11 +130,33 @@ fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
              smoke.update(clock.getElapsedTime());\n\
              ```\n"
             .into(),
+        Engine::Babylon => {
+            let setup = "// BABYLON: the global of babylon.js, or `import * as BABYLON from '@babylonjs/core'`.\n\
+                         const smoke = await HazeFlipbook.load(BABYLON, scene);\n";
+            module_steps("Babylon.js", setup, numbers)
+        }
+        Engine::Playcanvas => {
+            let setup = "// pc: `import * as pc from 'playcanvas'`.\n\
+                         const smoke = await HazeFlipbook.load(pc, app);\n\
+                         app.root.addChild(smoke.entity);\n";
+            module_steps("PlayCanvas", setup, numbers)
+        }
         Engine::Wgsl => format!(
             "## In WGSL\n\nUpload `color.png` and `emission.png` as `Rgba8UnormSrgb`, the others as `Rgba8Unorm`, and sample \
              them as above. Blend with {blending}.\n",
         ),
     }
+}
+
+/// Steps with a module that gets its engine as an argument. `setup`: lines of JavaScript that make `smoke`.
+fn module_steps(name: &str, setup: &str, numbers: &FlipbookNumbers) -> String {
+    let blending = blending(numbers.engine, numbers.alpha);
+    format!(
+        "## In {name}\n\n`haze_flipbook.js` shows the flipbook on a square that faces the camera, with motion vectors, {blending}, and \
+         without the frames beside. It needs WebGL 2, and the files of this folder beside it.\n\n\
+         ```js\nimport {{ HazeFlipbook }} from './haze_flipbook.js';\n\n{setup}\
+         // Before each frame; any time, in any order.\nsmoke.update(seconds);\n```\n",
+    )
 }
 
 /// Settings with which an engine blends linear light.
@@ -152,6 +174,10 @@ fn linear_light(engine: Engine) -> &'static str {
             "three.js blends codes on a canvas, and linear light in the half floats of an `EffectComposer`, with `OutputPass` as its last \
              pass."
         }
+        Engine::Babylon => {
+            "Babylon.js blends codes on a canvas, and linear light in a `DefaultRenderingPipeline` with `hdr`."
+        }
+        Engine::Playcanvas => "PlayCanvas blends codes on a canvas, and linear light in a `CameraFrame`.",
         Engine::Wgsl => {
             "wgpu blends linear light on targets whose format is sRGB or float, such as `Bgra8UnormSrgb` and `Rgba16Float`; on \
              `Bgra8Unorm`, codes are blended. Bevy blends linear light."
@@ -178,6 +204,10 @@ fn blending(engine: Engine, alpha: Alpha) -> &'static str {
         }
         (Engine::Three, Alpha::Straight) => "`NormalBlending`",
         (Engine::Three, Alpha::Premultiplied) => "`CustomBlending` of `OneFactor` and `OneMinusSrcAlphaFactor`",
+        (Engine::Babylon, Alpha::Straight) => "*alphaMode* `ALPHA_COMBINE`",
+        (Engine::Babylon, Alpha::Premultiplied) => "*alphaMode* `ALPHA_PREMULTIPLIED_PORTERDUFF`",
+        (Engine::Playcanvas, Alpha::Straight) => "*blendType* `BLEND_NORMAL`",
+        (Engine::Playcanvas, Alpha::Premultiplied) => "*blendType* `BLEND_PREMULTIPLIED`",
         (Engine::Wgsl, Alpha::Straight) => "`BlendState::ALPHA_BLENDING`, in Bevy `AlphaMode::Blend`",
         (Engine::Wgsl, Alpha::Premultiplied) => {
             "`BlendState::PREMULTIPLIED_ALPHA_BLENDING`, in Bevy `AlphaMode::Premultiplied`"

@@ -10,7 +10,8 @@ use super::*;
 use crate::image_format::{Alpha, Background, ImageFormat};
 use crate::smoke_layers::SmokeLayers;
 
-const ENGINES: [Engine; 5] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl, Engine::Three];
+const ENGINES: [Engine; 7] =
+    [Engine::Unreal, Engine::Unity, Engine::Godot, Engine::Wgsl, Engine::Three, Engine::Babylon, Engine::Playcanvas];
 const SIDE: u32 = 64;
 const GO_ON: ExportProgress<'_> = ExportProgress::Callback(&|_, _| true);
 
@@ -45,13 +46,19 @@ fn frames_are_as_far_apart_after_hours_as_at_first() {
 }
 
 #[test]
-fn three_js_gets_a_module_that_plays_the_flipbook() {
+fn engines_of_browsers_get_a_module_that_plays_the_flipbook() {
     let flipbook = |engine| Flipbook::new(&shot("column"), &frames(2, 24.0), options(engine));
-    let three = flipbook(Engine::Three);
-    let module = std::fs::read_to_string(three.folder.path().join(MODULE)).unwrap();
-    assert!(module.len() <= 15_000 && module.contains("export class HazeFlipbook"));
-    let readme = std::fs::read_to_string(three.folder.path().join(README)).unwrap();
-    assert!(readme.contains("HazeFlipbook.load()"), "{readme}");
+    for (engine, call) in [
+        (Engine::Three, "HazeFlipbook.load()"),
+        (Engine::Babylon, "HazeFlipbook.load(BABYLON, scene)"),
+        (Engine::Playcanvas, "HazeFlipbook.load(pc, app)"),
+    ] {
+        let made = flipbook(engine);
+        let module = std::fs::read_to_string(made.folder.path().join(MODULE)).unwrap();
+        assert!(module.len() <= 15_000 && module.contains("export class HazeFlipbook") && module.contains(call));
+        let readme = std::fs::read_to_string(made.folder.path().join(README)).unwrap();
+        assert!(readme.contains(call), "{readme}");
+    }
     assert!(!flipbook(Engine::Godot).folder.path().join(MODULE).exists());
 }
 

@@ -134,7 +134,7 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
                  canvas, three.js blends codes, and thin smoke is too dark.\n",
             )
         }
-        Engine::Wgsl => format!(
+        Engine::Wgsl | Engine::Babylon | Engine::Playcanvas => format!(
             "## In WGSL\n\n\
              Put `haze_material.wgsl` before your own shader: it declares functions and constants alone, no bindings. Bind {} \
              as `texture_2d<f32>` of a format such as `Rgba8UnormSrgb`, with a linear sampler.\n\n\

@@ -1,6 +1,6 @@
 //! Source files of a material, in the language of each engine.
 
-use haze::Error;
+use haze::{Error, FieldError};
 use haze_core::settings::Settings;
 
 use crate::engine::Engine;
@@ -28,6 +28,11 @@ pub fn sources(
                 (three_js::WEBGPU_FILE, three_js::webgpu_module(settings)),
                 (three_js::TEXTURES_FILE, three_js::textures_module(snippet, sprite)),
             ]
+        }
+        Engine::Babylon | Engine::Playcanvas => {
+            let name = if engine == Engine::Babylon { "babylon" } else { "playcanvas" };
+            let expected = format!("unreal, unity, godot, wgsl or three; for {name}, `haze export flipbook`");
+            return Err(FieldError::new("--engine", name, expected).into());
         }
         Engine::Wgsl => vec![("haze_material.wgsl", format!("{NOTE}\n{}", snippet.wgsl))],
         Engine::Unreal => {

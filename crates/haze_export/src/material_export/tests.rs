@@ -461,6 +461,20 @@ fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
 }
 
 #[test]
+fn materials_for_engines_of_flipbooks_alone_are_refused() {
+    let preset = Preset::load("column").unwrap();
+    let refused = |engine| {
+        let made = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets(), engine);
+        made.err().unwrap().to_string()
+    };
+    assert_eq!(
+        refused(Engine::Babylon),
+        "--engine: babylon is not valid; expected unreal, unity, godot, wgsl or three; for babylon, `haze export flipbook`"
+    );
+    assert!(refused(Engine::Playcanvas).starts_with("--engine: playcanvas is not valid; expected unreal, unity"));
+}
+
+#[test]
 fn modules_for_three_js_hold_the_functions_that_they_call() {
     let sprite = SpriteTexture::new(&assets().sprite);
     for settings in all_settings() {

@@ -73,6 +73,12 @@ const ENGINES: [(&str, Engine, &str); 5] = [
     ("three.js", Engine::Three, "Ramps, the sprite, and a material"),
 ];
 
+/// Of flipbooks alone.
+const FLIPBOOK_ENGINES: [(&str, Engine, &str); 2] = [
+    ("Babylon.js", Engine::Babylon, "With a module that plays the flipbook"),
+    ("PlayCanvas", Engine::Playcanvas, "With a module that plays the flipbook"),
+];
+
 /// Draws a row of choices.
 fn choices<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, choices: &[(&str, T, &str)]) {
     ui.label(name);
@@ -113,12 +119,16 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     let is_moving = has_cells || matches!(product, ExportKind::Sequence | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
         if *product == ExportKind::Material {
+            if !ENGINES.iter().any(|(_, engine, _)| *engine == options.engine) {
+                options.engine = Engine::default();
+            }
             choices(ui, "Engine", &mut options.engine, &ENGINES);
             return;
         }
         if is_for_engine {
             let about = "Conventions of normals and motion vectors; a README tells how to use the files";
-            let engines = ENGINES.map(|(name, engine, _)| (name, engine, about));
+            let shared = ENGINES.map(|(name, engine, _)| (name, engine, about));
+            let engines: Vec<_> = shared.into_iter().chain(FLIPBOOK_ENGINES).collect();
             choices(ui, "Engine", &mut options.engine, &engines);
             choices(ui, "Alpha", &mut options.flipbook_alpha, &FLIPBOOK_ALPHAS);
         }
