@@ -130,8 +130,8 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
                  Directional, point and spot lights of the scene light the smoke, as they light a white Lambert surface that faces them: \
                  intensity π is 1 in haze. Fog, tonemapping and, with `receiveShadow`, shadows of the scene apply. The smoke casts \
                  no shadow, and ambient, hemisphere and area lights, light probes and environments do not light it.\n\n\
-                 Opacity is that of linear light: render into half floats, as `EffectComposer` does, with `OutputPass` as its last pass. On a \
-                 canvas, three.js blends codes, and thin smoke is too dark.\n",
+                 Opacity is that of linear light, which `WebGPURenderer` blends. `WebGLRenderer` blends codes on a canvas, and thin smoke is \
+                 too dark: render into half floats, as `EffectComposer` does, with `OutputPass` as its last pass.\n",
             )
         }
         Engine::Wgsl | Engine::Babylon | Engine::Playcanvas => format!(

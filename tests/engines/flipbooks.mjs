@@ -1,0 +1,66 @@
+// Flipbooks: the modules that go with them, in a target of linear light.
+import fs from 'node:fs';
+import { PNG } from 'pngjs';
+import { over, psnr, squaredError, toCode } from './arithmetic.mjs';
+import { address, browser, check, folders } from './browser.mjs';
+
+const SIDE = 128;
+// Sheet and image are dithered to 8 bits, each by its own positions: 60 dB and more were seen.
+const LEAST_PSNR = 55;
+// Squared error between two frames with motion vectors, as a share of that without. Not where a cross-fade is as good as this, in
+// decibels: frames that are so alike differ by less than the filter of a texture that is moved by a fraction of a texel.
+const MOST_OF_A_FADE = 0.9;
+const ALIKE = 40;
+
+// `hasScreen`: the page can also draw codes, as on a canvas.
+export async function testFlipbooks(engine, { html, prefix, hasScreen }) {
+    const page = await browser.newPage();
+    const said = [];
+    page.on('console', message => {
+        if (['error', 'warn'].includes(message.type())) said.push(message.text());
+    });
+    page.on('pageerror', error => said.push(String(error)));
+    await page.goto(`${address}/${html}`);
+    await page.waitForFunction('window.isLoaded').catch(error => {
+        throw new Error(`${html}: ${error}; the page said: ${said.join('; ')}`);
+    });
+    for (const folder of folders(prefix)) {
+        const name = folder.slice(prefix.length);
+        const { frames, rate, alpha } = JSON.parse(fs.readFileSync(`${folder}/flipbook.json`));
+        // One at each frame, and one between two.
+        const images = Array.from({ length: 2 * frames - 1 }, (_, index) => {
+            const { data } = PNG.sync.read(fs.readFileSync(`frame_${name}_${index}.png`));
+            return { data, isStraight: alpha === 'straight' };
+        });
+        const draw = async (background, seconds, hasMotion) => {
+            const options = { url: `/${folder}/`, background, seconds, hasMotion, side: SIDE };
+            return (await page.evaluate(options => window.readFlipbook(options), options)).map(toCode);
+        };
+        if (hasScreen && alpha === 'premultiplied') {
+            const options = { url: `/${folder}/`, background: 0, seconds: 0, hasMotion: true, isScreen: true, side: SIDE };
+            const codes = await page.evaluate(options => window.readFlipbook(options), options);
+            const decibels = psnr(codes.map(code => 255 * code), over(images[0], 0));
+            check(`${engine}, ${name}, as on a canvas`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
+        }
+        for (const background of [0, 0.2, 1]) {
+            for (let frame = 0; frame < frames; frame++) {
+                const codes = await draw(background, frame / rate, true);
+                const decibels = psnr(codes, over(images[2 * frame], background));
+                check(`${engine}, ${name}, frame ${frame} over ${background}`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
+            }
+            let moved = 0;
+            let faded = 0;
+            for (let frame = 0; frame + 1 < frames; frame++) {
+                const expected = over(images[2 * frame + 1], background);
+                moved += squaredError(await draw(background, (frame + 0.5) / rate, true), expected);
+                faded += squaredError(await draw(background, (frame + 0.5) / rate, false), expected);
+            }
+            const share = moved / faded;
+            const decibels = 10 * Math.log10((255 * 255 * 3 * SIDE * SIDE * (frames - 1)) / faded);
+            const seen = `${share.toFixed(3)} of the squared error of a cross-fade of ${decibels.toFixed(1)} dB`;
+            check(`${engine}, ${name}, between frames over ${background}`, share <= MOST_OF_A_FADE || decibels > ALIKE, seen);
+        }
+    }
+    check(`${engine}, messages of flipbooks`, said.length === 0, said[0] ?? 'none');
+    await page.close();
+}
