@@ -32,20 +32,23 @@ pub fn textures_module(snippet: &Snippet, sprite: &SpriteTexture) -> String {
 /// Text of the material for `WebGLRenderer`. `functions`: those of the material, in GLSL.
 pub fn webgl_module(snippet: &Snippet, functions: &str) -> String {
     let uniform = |name: &str| format!("haze_{name}");
-    let input = |name: &str| {
-        match name {
-            "normal" => "normal",
-            "to_light" => "from.direction",
-            "to_viewer" => "to_viewer",
-            HEAT => "haze_particle_heat",
-            "age" => "hazeParticle.y",
-            _ => "amount",
-        }
-        .to_owned()
+    let calls = |amount: &str| {
+        let input = |name: &str| {
+            match name {
+                "normal" => "normal",
+                "to_light" => "from.direction",
+                "to_viewer" => "to_viewer",
+                HEAT => "haze_particle_heat",
+                "age" => "hazeParticle.y",
+                _ => amount,
+            }
+            .to_owned()
+        };
+        Calls::new(snippet, |function| call(function, uniform, None, input))
     };
-    let calls = Calls::new(snippet, |function| call(function, uniform, None, input));
-    // In the function `main`, the amount is what the chunk of lights calls a material.
-    let in_main = |text: &str| text.replace("(amount)", "(material)").replace(", amount)", ", material)");
+    let diffuse = calls("amount").diffuse;
+    // In `main`, the amount is what the chunk of lights calls a material.
+    let calls = calls("material");
     let emission = calls.emission.as_ref().map(|emission| format!(" + {emission}")).unwrap_or_default();
     let uniforms: String =
         snippet.ramps.iter().map(|ramp| format!("uniform sampler2D {};\n", uniform(ramp.name))).collect();
@@ -65,9 +68,9 @@ pub fn webgl_module(snippet: &Snippet, functions: &str) -> String {
             ),
             ("UNIFORMS", uniforms),
             ("FUNCTIONS", functions.to_owned()),
-            ("DIFFUSE", calls.diffuse.clone()),
-            ("EVEN_LIGHT", in_main(&format!("{}{emission}", calls.soft_scatter))),
-            ("COVERAGE", in_main(&calls.coverage)),
+            ("DIFFUSE", diffuse),
+            ("EVEN_LIGHT", format!("{}{emission}", calls.soft_scatter)),
+            ("COVERAGE", calls.coverage.clone()),
         ],
     )
 }
