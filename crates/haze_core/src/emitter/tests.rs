@@ -131,7 +131,8 @@ fn velocity_is_the_change_of_position() {
     // Between bounces, and without growth off an anchor.
     for emitter in emitters().filter(|emitter| emitter.bounce <= 0.0 && emitter.anchor <= 0.0) {
         let emitter = Emitter { frame_rate: 0.0, ..emitter };
-        // Swirls amplify the rounding of a path to a tenth of a millimeter, which a shorter step would divide.
+        // Swirls amplify the rounding of a path to a tenth of a millimeter, and to ten where a particle races through several in
+        // each step. A shorter time would divide that.
         let step = 1.0e-2_f32;
         let (before, now) = (at(&emitter, 0.9), at(&emitter, 0.9 + f64::from(step)));
         // A still flipbook frame is another in each particle.
@@ -141,7 +142,7 @@ fn velocity_is_the_change_of_position() {
         for (a, b) in pairs {
             let velocity = 0.5 * (a.velocity + b.velocity);
             let error = ((b.position - a.position) / step - velocity).length();
-            assert!(error < 0.05 * (1.0 + velocity.length()), "{emitter:?}: {error} of {velocity}");
+            assert!(error < 0.1 * (1.0 + velocity.length()), "{emitter:?}: {error} of {velocity}");
             count += 1;
         }
         assert!(count > 20, "{emitter:?}: {count}");
