@@ -74,7 +74,7 @@ struct Emitter {
     // Velocity of the swirls as a whole.
     swirl_travel: vec3f,
     padding_1: f32,
-    // How far they have come at this time, in simplex coordinates: a part of a simplex, and whole ones.
+    // Their way until this time, in simplex coordinates: a part of a simplex, and whole ones.
     swirl_offset: vec3f,
     padding_2: f32,
     swirl_first: vec3i,

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use haze::{Context, Error, FrameInput, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth, wgpu};
 use haze_author::particle_files;
+use haze_core::frame::EmitterPaths;
 use haze_core::settings::BlendOrder;
 use haze_demo::headless::Headless;
 use haze_export::interrupt;
@@ -13,7 +14,8 @@ use super::suites::{Group, Suite};
 
 const ROUNDS: u32 = 9;
 
-/// Returns rows for the first system of a group: evaluation of the emitter, and `prepare` with and without the sort.
+/// Returns rows for the first system of a group: evaluation of the emitter at any
+/// time and along the paths of the frame before, and `prepare` with and without the sort.
 pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let shot = &group.reference;
     let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {
@@ -31,7 +33,8 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
         let material = context.create_material(pictures)?;
         renderers.push((renderer, material, settings));
     }
-    let mut times = [Vec::new(), Vec::new(), Vec::new()];
+    let mut times = [const { Vec::new() }; 4];
+    let mut paths = EmitterPaths::default();
     let mut particles = Vec::new();
     for round in 0..=ROUNDS {
         if interrupt::is_requested() {
@@ -40,6 +43,10 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
         let started = Instant::now();
         particle_files::particles(system, None, shot.preset.time, &mut particles);
         let mut found = vec![started.elapsed()];
+        let started = Instant::now();
+        let next = shot.preset.time + f64::from(round) / 60.0;
+        particle_files::particles_along(system, None, next, &mut paths, &mut particles);
+        found.push(started.elapsed());
         for (renderer, material, settings) in &mut renderers {
             let systems = [ParticleSystem::new(0, Particles::Slice(&particles), settings, material)];
             let frame = FrameInput {
@@ -58,7 +65,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
         }
     }
     let count = particles.len() as u32;
-    let names = ["evaluate", "prepare sorted", "prepare weighted"];
+    let names = ["evaluate", "evaluate the next frame of", "prepare sorted", "prepare weighted"];
     let row = |(name, times): (&str, &mut Vec<f64>)| {
         let gpu_ms = Milliseconds::of(times)?;
         let case = format!("{name} {count} particles");

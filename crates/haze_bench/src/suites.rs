@@ -248,6 +248,7 @@ fn particles(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             // At the greatest rate, a million births take ten seconds.
             system.emitter.rate = count as f32 / 10.0;
             (system.emitter.duration, system.emitter.extent) = (10.0, Vec3::new(1.5, 0.8, 0.8));
+            system.emitter.turbulence = 0.5;
             // All counts cover the same area, so the difference in cost is the cost per particle.
             system.settings.sprite.size = 3.2 * 4.0 / (count as f32).sqrt();
         }

@@ -8,7 +8,7 @@ use super::particle::Particle;
 use crate::formula::emitter::{EmittedParticle, SwirlStep, emitted_particle_on};
 use crate::formula::uniforms::EmitterUniform;
 
-/// How far each particle of an emitter has come through the swirls, for
+/// Steps of each particle of an emitter on its way through the swirls, for
 /// [`EmitterSnapshot::evaluate_along`](super::EmitterSnapshot::evaluate_along): evaluating the next frame takes a fraction of
 /// the time of evaluating any. One for each emitter, and for each of all particles and a sample.
 #[derive(Clone, Debug, Default)]
