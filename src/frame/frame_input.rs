@@ -190,8 +190,8 @@ pub enum Particles<'a> {
     /// Particles on the GPU. Requires `ParticleSystem::bounds`.
     Buffer(ParticleBuffer<'a>),
     /// Particles of an emitter at one time. The path `tiled` evaluates them on the GPU, with differences from
-    /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre
-    /// and second. Other paths evaluate them on the CPU. If `ParticleSystem::bounds` is `None`, the box is
+    /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers, which swirls amplify: a tenth of
+    /// a millimetre or so. Other paths evaluate them on the CPU, along their paths in the frame before. If `ParticleSystem::bounds` is `None`, the box is
     /// [`EmitterSnapshot::bounds`]. The mean depth is taken from a sample of about a thousand.
     Emitter(&'a EmitterSnapshot),
 }
