@@ -130,9 +130,10 @@ fn motion_is_as_even_after_hours_as_at_first() {
 fn velocity_is_the_change_of_position() {
     // Between bounces, and without growth off an anchor.
     for emitter in emitters().filter(|emitter| emitter.bounce <= 0.0 && emitter.anchor <= 0.0) {
-        let emitter = Emitter { frame_rate: 0.0, ..emitter };
-        // Swirls amplify the rounding of a path to a tenth of a millimeter, and to ten where a particle races through several in
-        // each step. A shorter time would divide that.
+        // Strong swirls amplify the rounding of a path, to a tenth of a millimeter at this strength; a shorter time would divide
+        // that.
+        let turbulence = emitter.turbulence.min(0.5 * emitter.turbulence_scale);
+        let emitter = Emitter { turbulence, frame_rate: 0.0, ..emitter };
         let step = 1.0e-2_f32;
         let (before, now) = (at(&emitter, 0.9), at(&emitter, 0.9 + f64::from(step)));
         // A still flipbook frame is another in each particle.
@@ -142,7 +143,7 @@ fn velocity_is_the_change_of_position() {
         for (a, b) in pairs {
             let velocity = 0.5 * (a.velocity + b.velocity);
             let error = ((b.position - a.position) / step - velocity).length();
-            assert!(error < 0.1 * (1.0 + velocity.length()), "{emitter:?}: {error} of {velocity}");
+            assert!(error < 0.03 * (1.0 + velocity.length()), "{emitter:?}: {error} of {velocity}");
             count += 1;
         }
         assert!(count > 20, "{emitter:?}: {count}");

@@ -6,7 +6,7 @@ use haze_core::settings::Settings;
 use crate::engine::Engine;
 
 use super::calls::{Calls, HEAT, NOTE, call};
-use super::snippet::Snippet;
+use super::snippet::{Snippet, used_glsl};
 use super::spatial_shader::spatial_shader;
 use super::sprite_texture::SpriteTexture;
 use super::three_js;
@@ -22,7 +22,7 @@ pub fn sources(
     let names: Vec<_> = snippet.functions.iter().map(|function| function.name).collect();
     Ok(match engine {
         Engine::Three => {
-            let functions = glsl_functions(&snippet.wgsl, &names)?;
+            let functions = used_glsl(&glsl_functions(&snippet.wgsl)?, &names);
             vec![
                 (three_js::WEBGL_FILE, three_js::webgl_module(snippet, &functions)),
                 (three_js::WEBGPU_FILE, three_js::webgpu_module(settings)),
@@ -44,7 +44,8 @@ pub fn sources(
         }
         Engine::Unity => vec![("haze_material.hlsl", custom_function(snippet, &hlsl_functions(&snippet.wgsl)?))],
         Engine::Godot => {
-            vec![("haze_material.gdshader", spatial_shader(snippet, &glsl_functions(&snippet.wgsl, &names)?))]
+            let functions = used_glsl(&glsl_functions(&snippet.wgsl)?, &names);
+            vec![("haze_material.gdshader", spatial_shader(snippet, &functions))]
         }
     })
 }

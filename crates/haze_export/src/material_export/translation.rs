@@ -9,8 +9,6 @@ use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Arena, Block, Expression, Handle, Literal, Module, ShaderStage, Statement, front};
 
-use super::snippet::used_glsl;
-
 /// Name of the entry point that the GLSL back end asks for; everything from it on is left out.
 const ENTRY_POINT: &str = "haze_entry_point";
 
@@ -25,8 +23,8 @@ pub fn hlsl_functions(wgsl: &str) -> Result<String, Error> {
     Ok(text.trim().to_owned() + "\n")
 }
 
-/// Returns the functions of these names as GLSL ES 3.0, with all that they use, without a header. `sampler2D` are parameters.
-pub fn glsl_functions(wgsl: &str, names: &[&str]) -> Result<String, Error> {
+/// Returns the functions as GLSL ES 3.0, without a header. `sampler2D` are parameters.
+pub fn glsl_functions(wgsl: &str) -> Result<String, Error> {
     let entry_point = format!("{wgsl}\n@fragment fn {ENTRY_POINT}() -> @location(0) vec4f {{ return vec4f(0.0); }}\n");
     let (module, info) = parse(&entry_point)?;
     let options = glsl::Options {
@@ -46,7 +44,7 @@ pub fn glsl_functions(wgsl: &str, names: &[&str]) -> Result<String, Error> {
     // Godot chooses the precision of textures itself.
     let plain = |line: &str| line.replace("highp sampler2D", "sampler2D") + "\n";
     let kept: String = body.lines().filter(|line| !is_header(line)).map(plain).collect();
-    Ok(used_glsl(&kept, names))
+    Ok(kept)
 }
 
 fn parse(wgsl: &str) -> Result<(Module, ModuleInfo), Error> {
