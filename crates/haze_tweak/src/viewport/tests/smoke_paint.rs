@@ -70,14 +70,14 @@ fn a_drag_on_smoke_changes_its_brightness_in_one_step() {
         harness.run_steps(2);
         brightness(harness)
     };
-    let lighter = painted(&mut harness, -60.0);
+    let lighter = painted(&mut harness, -160.0);
     assert!(lighter > before + 8.0, "{before} {lighter}");
     assert_ne!(on_disk(&path("mine.ramp.json")), recipe);
     // The camera has not moved, and the step has a name.
     let document = &harness.state().session.document;
     assert_eq!(document.preset.camera, camera);
     assert_eq!(document.history().undo_name(), Some("Paint on smoke: mine.png"));
-    let same = painted(&mut harness, 60.0);
+    let same = painted(&mut harness, 160.0);
     assert!((same - before).abs() < 4.0, "{before} {same}");
     for _ in 0..2 {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
