@@ -14,7 +14,7 @@ use crate::smoke_layers::SmokeLayers;
 
 /// Setting that is fitted.
 const FOV: &str = "camera.fov";
-/// Longer side of the images by which a field of view is found, pixels.
+/// Longer side of the images by which a field of view is found, pixels, or that of smaller frames, whose borders are wider.
 const PROBE_SIDE: u32 = 64;
 /// Growth of the view from one image to the next.
 const WIDENING: f32 = 1.05;
@@ -111,7 +111,8 @@ pub(super) async fn fitting_fov(
     stopped: impl Fn(u32) -> Error,
 ) -> Result<Option<f32>, Error> {
     let mut small = shot.clone();
-    small.size = (shot.size * PROBE_SIDE / shot.size.max_element().max(1)).max(UVec2::splat(8));
+    let side = shot.size.max_element().max(1);
+    small.size = (shot.size * PROBE_SIDE.min(side) / side).max(UVec2::splat(8));
     let mut fov = shot.preset.camera.fov;
     for index in 0..count {
         loop {
