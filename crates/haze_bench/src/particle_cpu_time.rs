@@ -14,8 +14,8 @@ use super::suites::{Group, Suite};
 
 const ROUNDS: u32 = 9;
 
-/// Returns rows for the first system of a group: evaluation of the emitter at any
-/// time and along the paths of the frame before, and `prepare` with and without the sort.
+/// Returns rows for the first system of a group: evaluation of the emitter at any time and along the paths of the frame
+/// before, and `prepare` with and without the sort.
 pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let shot = &group.reference;
     let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {

@@ -1,8 +1,8 @@
 //! Seekable emitter: every particle is a function of (seed, birth index, time).
 //!
 //! A flow carries the particles: each path is integrated from its birth, in a fixed number of steps. There is no simulation
-//! state, so time can be scrubbed, frames can be rendered in any order, and two images can be compared. The arithmetic is integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs,
-//! `shaders/lib/emitter.wgsl`.
+//! state, so time can be scrubbed, frames can be rendered in any order, and two images can be compared. The arithmetic is
+//! integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs, `shaders/lib/emitter.wgsl`.
 
 use std::f32::consts::TAU;
 
@@ -100,8 +100,8 @@ settings! {
         /// Strength of swirls of half the size, as a share of the strength of the larger ones. Higher: wisps. 0: only large
         /// billows.
         turbulence_detail: f32 = 0.6, number(0.0..=1.0, "");
-        /// Share of the smoke's mean velocity with which the swirls travel. 1: they ride with the smoke, whose shapes last. 0:
-        /// they stand, and the smoke passes through them.
+        /// Share of the smoke's mean velocity with which the swirls travel. 1: they ride with the smoke. 0: they stand, and the
+        /// smoke passes through them.
         turbulence_travel: f32 = 1.0, number(0.0..=1.0, "");
         /// Turns of the swirls per second. Higher: restless smoke.
         turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");

@@ -39,7 +39,7 @@ pub struct OffscreenRenderer {
     sized: Option<SizedTargets>,
     shadow_maps: ShadowMaps,
     backdrop: Option<Arc<UploadedBackdrop>>,
-    keeps_paths: bool,
+    /// `None`: particles are evaluated anew for each image.
     paths: Option<KeptPaths>,
 }
 
@@ -125,7 +125,6 @@ impl OffscreenRenderer {
             shadow_maps: ShadowMaps::default(),
             backdrop: None,
             paths: None,
-            keeps_paths: false,
         })
     }
 
@@ -133,7 +132,7 @@ impl OffscreenRenderer {
     /// earlier ones, by a tenth of a millimetre.
     #[must_use]
     pub fn with_kept_paths(self) -> Self {
-        Self { keeps_paths: true, ..self }
+        Self { paths: Some(KeptPaths::default()), ..self }
     }
 
     /// Returns a renderer without a history, like a new one, that keeps what was drawn of the scene and uploaded.
@@ -142,7 +141,8 @@ impl OffscreenRenderer {
     /// As [`new`](Self::new).
     pub fn restarted(self, exact_filtering: bool) -> Result<Self, Error> {
         let Self { renderer, .. } = Self::new(&self.context, exact_filtering)?;
-        Ok(Self { renderer, ..self })
+        let paths = self.paths.map(|_| KeptPaths::default());
+        Ok(Self { renderer, paths, ..self })
     }
 
     /// Returns haze's renderer.
@@ -264,7 +264,8 @@ impl OffscreenRenderer {
             held.maps = views.into_iter().map(draw).collect();
             held.of = of;
         }
-        let mut paths = self.paths.take().unwrap_or_default();
+        let mut new_paths = KeptPaths::default();
+        let paths = self.paths.as_mut().unwrap_or(&mut new_paths);
         paths.all.resize(shot.preset.systems.len(), EmitterPaths::default());
         paths.of_fires.resize(shot.preset.systems.len(), EmitterPaths::default());
         let sources = shot.sources(&mut paths.all);
@@ -290,7 +291,6 @@ impl OffscreenRenderer {
             .map(|(view, depth)| ShadowMap { depth, first_layer: 0, projection: view.projection() })
             .collect();
         let lights = shot.lights_along(&mut paths.of_fires);
-        self.paths = self.keeps_paths.then_some(paths);
         let frame = FrameInput {
             shadow_maps: &shadow_maps,
             lights: &lights,

@@ -278,6 +278,11 @@ fn sample_represents_all_particles_and_stays_the_same() {
     assert!((900..=1100).contains(&now.len()), "{}", now.len());
     let mean = |particles: &[Particle]| particles.iter().map(|p| p.position).sum::<Vec3>() / particles.len() as f32;
     assert!((mean(&all) - mean(&now)).length() < 0.1);
+    let mut without_step = emitter.snapshot(9.0);
+    (without_step.step, without_step.first_sample) = (0, 0);
+    let mut particles = Vec::new();
+    without_step.sample(&mut particles);
+    assert_eq!(particles.len(), all.len());
     // Except for a birth or a death.
     let same = |a: &&Particle| soon.iter().any(|b| a.position.distance(b.position) < 0.002);
     assert!(now.iter().filter(same).count() >= now.len() - 2);

@@ -24,6 +24,8 @@ pub struct EmitterPaths {
 impl EmitterPaths {
     /// Replaces `particles` with those of every `step`th birth from number `first` on that are alive.
     pub(super) fn write(&mut self, emitter: &EmitterUniform, first: u32, step: u32, particles: &mut Vec<Particle>) {
+        // The step of a snapshot is public.
+        let step = step.max(1);
         let index = emitter.first.wrapping_add(first);
         let passed = index.wrapping_sub(self.first);
         let is_same = self.emitter == without_time(emitter) && self.step == step && passed.is_multiple_of(step);

@@ -64,14 +64,15 @@ const README: &str = "README.md";
 const SPRITE_SHEET: &str = "color.json";
 const MODULE: &str = "haze_flipbook.js";
 
-/// Text of the module that plays a flipbook in an engine, if there is one.
-fn module(engine: Engine) -> Option<&'static str> {
-    match engine {
-        Engine::Three => Some(include_str!("haze_flipbook.js")),
-        Engine::Babylon => Some(include_str!("haze_flipbook_babylon.js")),
-        Engine::Playcanvas => Some(include_str!("haze_flipbook_playcanvas.js")),
-        Engine::Unreal | Engine::Unity | Engine::Godot | Engine::Wgsl => None,
-    }
+/// Text of the module that plays a flipbook in an engine, if there is one. All mix frames by the same shader functions.
+fn module(engine: Engine) -> Option<String> {
+    let module = match engine {
+        Engine::Three => include_str!("haze_flipbook.js"),
+        Engine::Babylon => include_str!("haze_flipbook_babylon.js"),
+        Engine::Playcanvas => include_str!("haze_flipbook_playcanvas.js"),
+        Engine::Unreal | Engine::Unity | Engine::Godot | Engine::Wgsl => return None,
+    };
+    Some(module.replace("HAZE_FLIPBOOK_GLSL", include_str!("haze_flipbook.glsl")))
 }
 
 impl FlipbookExport {
