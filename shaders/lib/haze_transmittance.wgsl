@@ -10,8 +10,8 @@ struct SceneShadow {
     // Corner of the density grid, world space.
     origin: vec3f,
     cells_per_metre: f32,
-    // Number of cells along each axis.
-    size: vec3f,
+    // Extent of the smoke along each axis, in cells.
+    extent: vec3f,
     // Mix of full light and shadow. 0: no smoke casts shadow.
     strength: f32,
     // The lights with shadow, in cells: position, and 0 in w; or the direction to the light, and 1 in w.
@@ -35,15 +35,15 @@ fn haze_transmittance(world_position: vec3f, light: u32) -> vec3f {
     if slot == HAZE_SHADOWED_LIGHTS || haze_scene_shadow.strength <= 0.0 {
         return vec3f(1.0);
     }
-    let size = haze_scene_shadow.size;
+    let extent = haze_scene_shadow.extent;
     let place = (world_position - haze_scene_shadow.origin) * haze_scene_shadow.cells_per_metre;
-    let entry = grid_entry(haze_scene_shadow.lights[slot], place, size);
+    let entry = grid_entry(haze_scene_shadow.lights[slot], place, extent);
     if entry.w < 0.5 {
         return vec3f(1.0);
     }
     // Three lights in each block of the volume, behind each other along z.
     let texels = vec3f(textureDimensions(haze_optical_depths));
-    let place_in_block = clamp(entry.xyz, vec3f(0.5), size - 0.5);
+    let place_in_block = clamp(entry.xyz, vec3f(0.5), extent);
     let at = (place_in_block + vec3f(0.0, 0.0, f32(slot / 3u) * texels.x)) / texels;
     let optical_depth = textureSampleLevel(haze_optical_depths, haze_linear_sampler, at, 0.0)[slot % 3u];
     let coordinate = vec2f(saturate(1.0 - exp2(-optical_depth)), 1.0);

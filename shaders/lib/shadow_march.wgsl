@@ -16,18 +16,21 @@ struct ShadowMarch {
     size: vec3f,
     // Cells of a block of the volume along each axis.
     resolution: u32,
+    // Extent of the smoke along each axis, in cells: where marches end.
+    extent: vec3f,
     // Block of the openness.
     openness_block: u32,
     // Number of blocks of lights.
     light_blocks: u32,
     padding0: u32,
     padding1: u32,
+    padding2: u32,
 }
 
 @group(0) @binding(0) var<uniform> march: ShadowMarch;
 
 fn optical_depth_towards(light: vec4f, radius: f32, origin: vec3f, steps: u32) -> f32 {
-    let ray = shadow_ray(light, origin, march.size);
+    let ray = shadow_ray(light, origin, march.extent);
     let step = ray.w / f32(steps);
     // The steps fill the cone between the point and the light's disc.
     let slope = radius / max(distance(light.xyz, origin), 1.0e-4);

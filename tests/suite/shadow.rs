@@ -455,6 +455,43 @@ fn a_larger_lamp_casts_a_softer_shadow() {
 }
 
 #[test]
+fn shadow_on_the_scene_is_steady_while_the_box_grows() {
+    let mut scene = shaded();
+    keep_one_particle(&mut scene);
+    let center = scene.particles[0].position;
+    let depth = Image::new(SIZE, 1.0);
+    let kind = LightKind::Directional;
+    let lights = [Light { kind, direction: vec3(1.0, -0.3, 0.17), ..Light::default() }];
+    // Grows toward the shadow by a tenth of a cell per step, and keeps the cells: it is as high as before.
+    let shares = |step: u32| {
+        let right = 1.0 + 0.01 * step as f32;
+        let bounds = Bounds { min: center + vec3(-1.0, -1.6, -1.0), max: center + vec3(right, 1.6, 1.0) };
+        let systems = [haze_reference::ParticleSystem {
+            bounds: Some(bounds),
+            ..haze_reference::ParticleSystem::new(&scene.particles, &scene.settings, &scene.material)
+        }];
+        let frame = haze_reference::FrameInput {
+            lights: &lights,
+            systems: &systems,
+            ..haze_reference::FrameInput::new(scene.view, &depth)
+        };
+        let frame = haze_reference::PreparedFrame::new(&frame, SIZE).unwrap();
+        let shadow = frame.scene_shadow().unwrap();
+        let place = |i: u32| center + vec3(3.0, i as f32 * 0.05 - 2.0, 0.5);
+        (0..60).map(|i| 1.0 - shadow.haze_transmittance(place(i), 0).y).collect::<Vec<f32>>()
+    };
+    let steps: Vec<_> = (0..40).map(shares).collect();
+    let change = |pair: &[Vec<f32>]| {
+        let changes = pair[0].iter().zip(&pair[1]).map(|(before, after)| (before - after).abs());
+        changes.fold(0.0, f32::max)
+    };
+    let largest = steps.windows(2).map(change).fold(0.0, f32::max);
+    let darkest = steps[0].iter().copied().fold(0.0, f32::max);
+    println!("largest change {largest}, darkest {darkest}");
+    assert!(darkest > 0.2 && largest < 0.02 * darkest, "{largest} {darkest}");
+}
+
+#[test]
 fn further_lights_do_not_shade_smoke_without_its_depth() {
     let mut scene = under_many_lights();
     scene.settings.shadow.by_depth = false;

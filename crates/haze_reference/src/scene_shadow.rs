@@ -37,10 +37,10 @@ impl SceneShadow {
 
     /// Share of a light that reaches a point of the world through the smoke. `light`: its index in the frame.
     pub fn haze_transmittance(&self, world_position: Vec3, light: usize) -> Vec3 {
-        let SceneShadowUniform { origin, cells_per_metre, size, strength, lights, indices } = self.uniform;
+        let SceneShadowUniform { origin, cells_per_metre, extent, strength, lights, indices } = self.uniform;
         let found = lights.iter().zip(indices).position(|(_, index)| index as usize == light);
         let Some((slot, &march)) = found.and_then(|slot| Some((slot, lights.get(slot)?))) else { return Vec3::ONE };
-        let entry = grid_entry(march, (world_position - origin) * cells_per_metre, size);
+        let entry = grid_entry(march, (world_position - origin) * cells_per_metre, extent);
         if entry.w < 0.5 {
             return Vec3::ONE;
         }

@@ -146,9 +146,10 @@ uniform! {
         sky: [Vec4; 4],
         size: Vec3,
         resolution: u32,
+        extent: Vec3,
         openness_block: u32,
         light_blocks: u32,
-        padding: [u32; 2],
+        padding: [u32; 3],
     }
 }
 
@@ -177,7 +178,7 @@ uniform! {
     SceneShadowUniform {
         origin: Vec3,
         cells_per_metre: f32,
-        size: Vec3,
+        extent: Vec3,
         strength: f32,
         lights: [Vec4; 15],
         indices: [u32; 16],

@@ -16,13 +16,17 @@ use crate::frame::{Bounds, Light, LightKind, ShadowProjection};
 const MIN_EXTENT: f64 = 1.0e-3;
 
 /// Grid of cubic cells along the axes of the world. It follows the box of the smoke: a grid that keeps its cells until the
-/// box has outgrown them changes all of them at once, which shows.
+/// box has outgrown them changes all of them at once, which shows. So would marches that end at the last cell, when there is
+/// one more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmokeGrid {
     /// Corner of the first cell, metres.
     origin: DVec3,
     /// Side of a cell, metres.
     cell: f64,
+    /// Extent of the box in cells, along each axis. At least half a cell less than their number, so that a lookup at the end
+    /// of the box is between two cells.
+    extent: DVec3,
     /// Number of cells along each axis.
     pub size: UVec3,
 }
@@ -32,10 +36,10 @@ impl SmokeGrid {
     fn new(bounds: &Bounds, resolution: u32) -> Self {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let longest = (max - min).max_element().max(MIN_EXTENT);
-        let cell = longest / f64::from(resolution.max(1));
-        // Rounding may take the longest side a little beyond the last cell.
-        let size = ((max - min) / cell).ceil().clamp(DVec3::ONE, DVec3::splat(f64::from(resolution)));
-        Self { origin: min, cell, size: size.as_uvec3() }
+        let longest_extent = f64::from(resolution.max(1)) - 0.5;
+        let cell = longest / longest_extent;
+        let extent = ((max - min) / cell).clamp(DVec3::splat(0.5), DVec3::splat(longest_extent));
+        Self { origin: min, cell, extent, size: (extent + 0.5).ceil().as_uvec3() }
     }
 
     /// Returns the matrix from cells to world space.
@@ -145,9 +149,10 @@ impl SmokeShadow {
                 sky: sky_directions(up).map(|direction| direction.extend(1.0)),
                 size: grid.size.as_vec3(),
                 resolution,
+                extent: grid.extent.as_vec3(),
                 openness_block: 0,
                 light_blocks: 0,
-                padding: [0; 2],
+                padding: [0; 3],
             },
             on_scene,
             has_visibility,
@@ -225,7 +230,7 @@ impl SmokeShadow {
         SceneShadowUniform {
             origin: self.grid.origin.as_vec3(),
             cells_per_metre: self.grid.cells_per_metre(),
-            size: self.march.size,
+            extent: self.march.extent,
             strength: self.on_scene.map_or(0.0, |(_, strength)| strength),
             lights: self.march.lights,
             indices,

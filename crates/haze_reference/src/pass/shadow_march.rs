@@ -46,7 +46,7 @@ fn optical_depth_towards(
     origin: Vec3,
     steps: u32,
 ) -> f32 {
-    let ray = shadow_ray(light, origin, shadow.march.size);
+    let ray = shadow_ray(light, origin, shadow.march.extent);
     let step = ray.w / steps as f32;
     // The steps fill the cone between the point and the light's disc.
     let slope = radius / light.truncate().distance(origin).max(1.0e-4);
