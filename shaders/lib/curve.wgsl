@@ -39,3 +39,9 @@ fn curve_integral(curve: Curve, age: f32) -> f32 {
     }
     return sum + max(age - last.x, 0.0) * last.y;
 }
+
+// Smoothstep: 0..1 with slope 0 at both ends.
+fn smoothstep_unit(x: f32) -> f32 {
+    let s = saturate(x);
+    return s * s * (3.0 - 2.0 * s);
+}

@@ -167,6 +167,8 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| (s.settings.fire.intensity, s.settings.path) = (2.0, RenderPath::Forward),
     |s, _| (s.emitter.turbulence, s.emitter.extent, s.emitter.buoyancy) = (0.0, Vec3::ZERO, 0.0),
     |s, _| (s.emitter.bounce, s.emitter.buoyancy, s.emitter.floor) = (0.5, -2.0, s.emitter.position.y - 0.4),
+    |s, _| (s.emitter.floor_margin, s.emitter.buoyancy, s.emitter.floor) = (0.5, -2.0, s.emitter.position.y - 0.4),
+    |s, _| (s.emitter.ring_speed, s.emitter.attraction, s.emitter.small_share) = (1.0, 0.5, 0.4),
     |s, _| (s.emitter.duration, s.emitter.period) = (0.4, 0.5),
     |s, _| (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into()),
     |s, _| {

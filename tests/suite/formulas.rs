@@ -9,12 +9,14 @@ mod ambient;
 mod blending;
 mod color;
 mod compute;
+mod curve;
 mod depth;
 mod diffuse_bake;
 mod emitter;
 mod fire;
 mod fixture;
-
+mod flight;
+mod flow;
 mod grain;
 mod hash;
 mod inputs;
@@ -78,10 +80,13 @@ formula_tests!(
     ambient,
     blending,
     color,
+    curve,
     depth,
     diffuse_bake,
     emitter,
     fire,
+    flight,
+    flow,
     grain,
     hash,
     lighting,
@@ -293,8 +298,9 @@ const INDIRECT: &[(&str, &str)] = &[
     ("load_particle", "reads the particles of the pass"),
     ("unpack_signed", "swirl_noise covers it"),
     ("corner_curl", "swirl_noise covers it"),
-    ("swirl_at_step", "carried_by_swirls covers it"),
-    ("advance_swirl_step", "carried_by_swirls covers it"),
+    ("turned", "orbiting_flight covers it"),
+    ("flow_at_step", "carried_by_flow covers it"),
+    ("advance_flow_step", "carried_by_flow covers it"),
     ("values_of", "reads a buffer; tests of the tiled path with shadow cover it"),
 ];
 

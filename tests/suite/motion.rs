@@ -128,6 +128,33 @@ fn assert_detail_rides(preset: &str) {
     assert!(next >= 0.93 && second >= 0.86, "{preset}: {next} after a frame, {second} after two");
 }
 
+/// Pixels that smoke changes at a time.
+fn outline(preset: &str, time: f64) -> Vec<bool> {
+    let mut shot = shot(preset, SIZE / 2);
+    shot.preset.time = time;
+    for system in &mut shot.preset.systems {
+        system.settings.shadow.scene = 0.0;
+        system.settings.fire.light = 0.0;
+    }
+    let with_smoke = gray(&render_on_gpu(&shot.at_its_time(), false));
+    shot.preset.systems.iter_mut().for_each(|system| system.emitter.amount = 0.0);
+    let without = gray(&render_on_gpu(&shot.at_its_time(), false));
+    with_smoke.values.iter().zip(without.values).map(|(with, without)| (with - without).abs() > 0.04).collect()
+}
+
+#[test]
+fn outlines_of_smoke_change_within_seconds() {
+    for preset in ["column", "steam_vent", "oil_fire"] {
+        let before = outline(preset, 10.0);
+        let after = outline(preset, 11.6);
+        let pairs = || before.iter().zip(&after);
+        let both = pairs().filter(|(before, after)| **before && **after).count() as f32;
+        let either = pairs().filter(|(before, after)| **before || **after).count() as f32;
+        println!("{preset}: {:.3} of {either}", both / either);
+        assert!(either > 1000.0 && both <= 0.85 * either, "{preset}: {both} of {either}");
+    }
+}
+
 #[test]
 fn detail_of_column_rides_on_its_smoke() {
     assert_detail_rides("column");

@@ -113,7 +113,7 @@ fn wgsl_structs_match_rust() {
     assert_layout(&module, "Light", LightUniform::FIELDS, size_of::<LightUniform>());
     assert_layout(&module, "System", SystemUniform::FIELDS, size_of::<SystemUniform>());
     assert_layout(&composed("lib/tiles.wgsl"), "Tiles", TilesUniform::FIELDS, size_of::<TilesUniform>());
-    assert_layout(&composed("lib/emitter.wgsl"), "Emitter", EmitterUniform::FIELDS, size_of::<EmitterUniform>());
+    assert_layout(&composed("lib/flight.wgsl"), "Emitter", EmitterUniform::FIELDS, size_of::<EmitterUniform>());
     assert_layout(&composed("measure.wgsl"), "Measure", MeasureUniform::FIELDS, size_of::<MeasureUniform>());
     assert_layout(&composed("density_splat.wgsl"), "Splat", SplatUniform::FIELDS, size_of::<SplatUniform>());
     let screen = composed("screen_shadow.wgsl");
@@ -250,5 +250,5 @@ fn wgsl_constants_of_setting_enums_match_rust() {
     assert_choices!(accumulate, "SPRITE_ANIMATION", settings::SpriteAnimation);
     assert_choices!(composed("depth_downsample.wgsl"), "DEPTH_DOWNSAMPLE", settings::DepthDownsample);
     assert_choices!(composed("forward.wgsl"), "BLEND_MODE", settings::BlendMode);
-    assert_choices!(composed("lib/emitter.wgsl"), "EMITTER_SHAPE", haze_core::emitter::EmitterShape);
+    assert_choices!(composed("lib/flight.wgsl"), "EMITTER_SHAPE", haze_core::emitter::EmitterShape);
 }

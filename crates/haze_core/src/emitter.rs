@@ -10,7 +10,8 @@ use glam::{DVec3, Quat, Vec3};
 
 use crate::error::FieldError;
 use crate::formula::curve::curve_integral;
-use crate::formula::emitter::flight;
+use crate::formula::flight::{Flight, flight};
+use crate::formula::flow::FLOW_STEPS;
 use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{EmitterSnapshot, Particle};
 use crate::settings::{Curve, choice, settings, validate};
@@ -41,6 +42,9 @@ settings! {
         "birth":
         /// Seed of the random numbers. Each value gives different smoke of the same kind.
         seed: u32 = 1, seed;
+        /// Size of all of it: distances grow by this, times and speeds by its square root, as large fires burn slower. Lengths
+        /// below are those at 1. `position`, `floor` and `attractor` stay.
+        size: f32 = 1.0, number(0.01..=100.0, "");
         /// Births per second. Higher: denser and smoother smoke, at the cost of more sprites.
         rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
         /// Seconds of emission, from time 0. 0: emission has no beginning and no end.
@@ -80,8 +84,11 @@ settings! {
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         up: Vec3 = Vec3::Y, vector(-1.0e3..=1.0e3, "");
         /// Share of their speed that particles keep when they hit the floor, three times at most: sparks, embers, hail. 0:
-        /// there is no floor.
+        /// they do not bounce.
         bounce: f32 = 0.0, number(0.0..=0.95, "");
+        /// Height above the floor below which smoke turns aside: it flows along the floor, away from `position`. 0: it falls
+        /// through. About the size of the smoke, so that it turns gradually.
+        floor_margin: f32 = 0.0, number(0.0..=100.0, "m");
         /// Height of the floor along `up`, from the origin of the world.
         floor: f32 = 0.0, number(-1.0e5..=1.0e5, "m");
         /// Velocity of the air. Leans the smoke over.
@@ -105,6 +112,28 @@ settings! {
         turbulence_travel: f32 = 1.0, number(0.0..=1.0, "");
         /// Turns of the swirls per second. Higher: restless smoke.
         turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");
+        "flow":
+        /// Rolling rings that leave the source per second: puffs whose caps roll up, as over a fire or from a chimney.
+        ring_rate: f32 = 1.0, number(0.01..=100.0, "1/s");
+        /// Speed in the middle of a ring at birth, beyond that of the smoke. Higher: smoke rolls up more. 0: there are no rings.
+        /// More than 40 times `ring_size` / `lifetime` does no more.
+        ring_speed: f32 = 0.0, number(0.0..=1.0e3, "m/s");
+        /// Radius of a ring at birth; it widens on its way. About that of the source: all of the smoke rolls. Lower: its middle
+        /// breaks through.
+        ring_size: f32 = 0.4, number(0.01..=1.0e3, "m");
+        /// Growth of the wind per metre of height above the source. Bends the smoke more the higher it is.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        wind_shear: Vec3 = Vec3::ZERO, vector(-10.0..=10.0, "1/s");
+        /// Turns per second about the axis through `position` along `up`, which the wind carries along: a whirl. Below 0: the
+        /// other way around.
+        orbit: f32 = 0.0, number(-10.0..=10.0, "1/s");
+        /// Speed at which the smoke is drawn to the attractor. Below 0: it is pushed away, and flows around it.
+        attraction: f32 = 0.0, number(-100.0..=100.0, "m/s");
+        /// Point that draws the smoke.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        attractor: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
+        /// Distance from the attractor within which the pull grows weaker. Lower: smoke gathers in a point.
+        attractor_size: f32 = 0.5, number(0.01..=1.0e3, "m");
         "size":
         /// Radius at birth: thickness of the smoke at its root.
         radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
@@ -112,6 +141,10 @@ settings! {
         radius_end: f32 = 1.2, number(0.0..=1.0e3, "m");
         /// Random variation of the radius, up and down, as a share of it. Higher: less uniform puffs.
         radius_spread: f32 = 0.25, number(0.0..=0.95, "");
+        /// Share of the particles that are small: wisps among the puffs.
+        small_share: f32 = 0.0, number(0.0..=1.0, "");
+        /// Radius of a small particle, as a share of that of the others.
+        small_size: f32 = 0.4, number(0.01..=1.0, "");
         /// Multiplies the radius by age. With `radius_start` and `radius_end` alike, it is the size over the life.
         #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 2]>"))]
         size_curve: Curve = Curve::constant(1.0), curve(0.0..=10.0);
@@ -158,6 +191,11 @@ const SWIRL_SIMPLICES: f32 = 0.57;
 /// Most strain of the smoke in its life, in `turbulence` per `turbulence_scale` of one octave: beyond it a path depends on the
 /// last bits of its beginning, and would jump from frame to frame.
 const MAX_SWIRL_STRAIN: f32 = 2.0;
+
+/// Most way of the middle of a ring in a life, in its radii at birth: beyond it, smoke turns too far in a step.
+const MAX_RING_ROLL: f32 = 40.0;
+/// Most way that the attractor draws smoke in a life, in its size: beyond it, smoke would pass it in a step.
+const MAX_ATTRACTION: f32 = 0.8 * FLOW_STEPS as f32;
 
 /// An emission that repeats.
 #[derive(Clone, Copy)]
@@ -238,12 +276,54 @@ impl Emitter {
         later.swirl_turn = swirls.swirl_turn;
         later.swirl_offset = swirls.swirl_offset;
         later.swirl_first = swirls.swirl_first;
+        later.ring_phase = swirls.ring_phase;
+        later.ring_first = swirls.ring_first;
         displacements.clear();
         displacements.extend(now.displacements(&later, seconds));
     }
 
+    /// The same emitter at a size of 1: lengths, times and speeds are those of its smoke.
+    pub fn sized(&self) -> Emitter {
+        let size = self.size;
+        let slower = size.sqrt();
+        Emitter {
+            size: 1.0,
+            rate: self.rate / slower,
+            duration: self.duration * slower,
+            period: self.period * slower,
+            lifetime: self.lifetime * slower,
+            extent: self.extent * size,
+            velocity: self.velocity * slower,
+            burst: self.burst * slower,
+            velocity_spread: self.velocity_spread * slower,
+            drag: self.drag / slower,
+            wind: self.wind * slower,
+            turbulence: self.turbulence * size,
+            turbulence_scale: self.turbulence_scale * size,
+            turbulence_speed: self.turbulence_speed / slower,
+            ring_rate: self.ring_rate / slower,
+            ring_speed: self.ring_speed * slower,
+            ring_size: self.ring_size * size,
+            wind_shear: self.wind_shear / slower,
+            orbit: self.orbit / slower,
+            attraction: self.attraction * slower,
+            attractor_size: self.attractor_size * size,
+            radius_start: self.radius_start * size,
+            radius_end: self.radius_end * size,
+            floor_margin: self.floor_margin * size,
+            spin: self.spin / slower,
+            frame_rate: self.frame_rate / slower,
+            ..*self
+        }
+    }
+
     /// Particles alive at `time`, seconds, not evaluated, for `Particles::Emitter`.
     pub fn snapshot(&self, time: f64) -> EmitterSnapshot {
+        self.sized().snapshot_of_sized(time)
+    }
+
+    /// [`snapshot`](Self::snapshot) of an emitter whose size is 1.
+    fn snapshot_of_sized(&self, time: f64) -> EmitterSnapshot {
         let (first, last) = self.birth_range(time);
         let pulses = self.pulses();
         // An emission that ends is one pulse; one without an end has a single pulse that begins with the first birth.
@@ -263,6 +343,13 @@ impl Emitter {
         let octaves = |ratio: f32| (1.0 + ratio.powi(2) + ratio.powi(4)).sqrt();
         let most = MAX_SWIRL_STRAIN * self.turbulence_scale / octaves(2.0 * self.turbulence_detail);
         let strength = SWIRL_WAY * (self.turbulence / octaves(self.turbulence_detail)).min(most);
+        let rings = time * f64::from(self.ring_rate);
+        let attractor_size = (self.attraction.abs() * self.lifetime / MAX_ATTRACTION).max(self.attractor_size);
+        let has_flow = self.turbulence > 0.0
+            || self.ring_speed > 0.0
+            || self.attraction != 0.0
+            || self.wind_shear != Vec3::ZERO
+            || self.floor_margin > 0.0;
         let mut uniform = EmitterUniform {
             first: first as u32,
             count: (last - first) as u32,
@@ -313,6 +400,21 @@ impl Emitter {
             rotation_spread: self.rotation_spread,
             has_rate_curve: u32::from(self.rate_curve != Curve::constant(1.0) && self.duration > 0.0),
             swirl_detail: self.turbulence_detail,
+            ring_rate: self.ring_rate,
+            ring_phase: (rings - rings.floor()) as f32,
+            ring_first: rings.floor() as i64 as u32,
+            // Wind along `up` would grow without end.
+            wind_shear: self.wind_shear.reject_from_normalized(up),
+            ring_speed: self.ring_speed.min(MAX_RING_ROLL * self.ring_size / self.lifetime),
+            attractor: self.attractor,
+            attraction: self.attraction,
+            ring_size: self.ring_size,
+            attractor_size,
+            orbit_rate: self.orbit * TAU,
+            has_flow: u32::from(has_flow),
+            small_share: self.small_share,
+            small_size: self.small_size,
+            floor_margin: self.floor_margin,
             ..EmitterUniform::default()
         };
         uniform.swirl_travel = self.turbulence_travel * self.mean_velocity(&uniform);
@@ -329,8 +431,9 @@ impl Emitter {
 
     /// Velocity of a particle that is not scattered, on average over its life.
     fn mean_velocity(&self, uniform: &EmitterUniform) -> Vec3 {
+        let start = Flight { position: Vec3::ZERO, velocity: self.velocity };
         let flown = self.lifetime * curve_integral(&uniform.speed_curve, 1.0);
-        flight(uniform, Vec3::ZERO, self.velocity, flown).position / self.lifetime
+        flight(uniform, &start, flown).position / self.lifetime
     }
 
     /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate, in pulses at so much after the

@@ -5,7 +5,7 @@ use glam::{UVec3, Vec2, Vec3};
 use crate::assets::material_assets::MaterialAssets;
 use crate::assets::ramp::Ramp;
 use crate::formula::color::luminance;
-use crate::formula::emitter::smoothstep_unit;
+use crate::formula::curve::smoothstep_unit;
 use crate::formula::fire::heat_at;
 use crate::formula::hash::{pcg3d, unit};
 use crate::formula::lighting::{coverage, painted_share};

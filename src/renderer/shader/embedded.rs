@@ -59,6 +59,8 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/emission.wgsl",
     "lib/emitter.wgsl",
     "lib/fire.wgsl",
+    "lib/flight.wgsl",
+    "lib/flow.wgsl",
     "lib/hash.wgsl",
     "lib/haze_transmittance.wgsl",
     "lib/lighting.wgsl",

@@ -1,10 +1,10 @@
 //! Formula tests of `shaders/lib/hash.wgsl`.
 
 use glam::UVec3;
-use haze_core::assets::noise::{pcg3d, unit};
+use haze_core::formula::hash::{self, pcg3d, unit};
 
 use super::Formula;
-use super::inputs::random;
+use super::inputs::{TRANSCENDENTAL, random, v3};
 
 pub fn formulas() -> Vec<Formula> {
     vec![
@@ -33,6 +33,24 @@ pub fn formulas() -> Vec<Formula> {
             cases: random(50, &[(0.0, 1.0e6)]),
             tolerance: 0.0,
             mutants: &[("word >> 8u", "word >> 9u")],
+        },
+        Formula {
+            name: "unit_sphere",
+            file: "lib/hash.wgsl",
+            wgsl: "let v = unit_sphere(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| hash::unit_sphere(v3(x)).to_array().to_vec(),
+            cases: random(100, &[(0.0, 1.0); 3]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("random.z * 2.0 - 1.0", "random.z"), ("sqrt(1.0 - z * z)", "(1.0 - z * z)")],
+        },
+        Formula {
+            name: "birth_random",
+            file: "lib/hash.wgsl",
+            wgsl: "let v = birth_random(u32(x(0)), u32(x(1)), 9u); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| hash::birth_random(x[0] as u32, x[1] as u32, 9).to_array().to_vec(),
+            cases: random(50, &[(0.0, 1.0e6), (0.0, 4.0)]),
+            tolerance: 0.0,
+            mutants: &[("vec3u(index, salt, seed)", "vec3u(index, seed, salt)"), ("unit(hash.y)", "unit(hash.x)")],
         },
     ]
 }

@@ -1,5 +1,6 @@
 use super::*;
-use crate::formula::emitter::{drag_integrals, smoothstep_unit};
+use crate::formula::curve::smoothstep_unit;
+use crate::formula::flight::drag_integrals;
 use crate::frame::{EmitterPaths, SpriteExtent, particle_bounds};
 use crate::settings::Settings;
 
@@ -107,6 +108,20 @@ fn emitters() -> impl Iterator<Item = Emitter> {
             drag: 0.3,
             ..base
         },
+        Emitter { ring_speed: 1.5, ring_rate: 0.8, wind: Vec3::X, ..base },
+        Emitter {
+            ring_speed: 6.0,
+            ring_size: 1.0,
+            shape: EmitterShape::Disc,
+            turbulence: 0.0,
+            velocity: Vec3::Z,
+            ..base
+        },
+        Emitter { wind_shear: Vec3::new(0.5, 2.0, -0.2), small_share: 0.4, small_size: 0.2, ..base },
+        Emitter { orbit: -0.4, wind: Vec3::new(0.5, 0.0, 1.0), extent: Vec3::splat(1.0), ..base },
+        Emitter { attraction: 1.5, attractor: Vec3::new(1.0, 2.0, 0.0), ring_speed: 0.5, ..base },
+        Emitter { floor_margin: 0.6, floor: -0.5, buoyancy: -1.5, wind: Vec3::Z, orbit: 0.1, ..base },
+        Emitter { attraction: -0.8, attractor: Vec3::new(0.1, 1.0, 0.0), size: 3.0, orbit: 0.2, ..base },
     ]
     .into_iter()
 }
@@ -148,6 +163,77 @@ fn velocity_is_the_change_of_position() {
         }
         assert!(count > 20, "{emitter:?}: {count}");
     }
+}
+
+#[test]
+fn smoke_of_any_size_moves_alike() {
+    for emitter in emitters() {
+        // Not what stays where it is, nor births that f32 rounds to another number. Swirls are those of a place: at the origin.
+        if emitter.bounce > 0.0 || emitter.floor_margin > 0.0 || emitter.attraction != 0.0 || emitter.duration > 0.0 {
+            continue;
+        }
+        let turbulence = emitter.turbulence.min(0.5 * emitter.turbulence_scale);
+        let emitter = Emitter { size: 1.0, turbulence, ..emitter };
+        let small = at(&emitter, 5.0);
+        // Four is a power of two, which rounds nothing.
+        let large = at(&Emitter { size: 4.0, ..emitter }, 10.0);
+        assert_eq!(small.len(), large.len());
+        for (small, large) in small.iter().zip(&large) {
+            let expected = small.position * 4.0;
+            assert!(expected.distance(large.position) < 1.0e-2, "{emitter:?}: {small:?} {large:?}");
+            assert!((small.velocity * 2.0).distance(large.velocity) < 1.0e-2, "{emitter:?}: {small:?} {large:?}");
+            assert!((small.radius * 4.0 - large.radius).abs() < 1.0e-4, "{small:?} {large:?}");
+            assert!((small.age - large.age).abs() < 1.0e-5 && (small.amount - large.amount).abs() < 1.0e-4);
+        }
+    }
+}
+
+#[test]
+fn smoke_turns_about_an_axis_that_the_wind_carries() {
+    let emitter =
+        Emitter { orbit: 0.25, wind: Vec3::X, drag: 1.0, turbulence: 0.0, lifetime_spread: 0.0, ..Emitter::default() };
+    let straight = at(&Emitter { orbit: 0.0, ..emitter }, 9.0);
+    for (a, b) in straight.iter().zip(&at(&emitter, 9.0)) {
+        let seconds = a.age * emitter.lifetime;
+        let axis = Vec3::X * (seconds - 1.0 + (-seconds).exp());
+        let expected = axis + Quat::from_rotation_y(TAU * 0.25 * seconds) * (a.position - axis);
+        assert!(expected.distance(b.position) < 1.0e-4, "{a:?} {b:?} {expected}");
+    }
+}
+
+#[test]
+fn smoke_is_drawn_to_the_attractor_and_pushed_away() {
+    let emitter = Emitter { attractor: Vec3::new(0.5, 2.0, 0.0), turbulence: 0.0, ..Emitter::default() };
+    let mean_distance = |attraction: f32| {
+        let particles = at(&Emitter { attraction, ..emitter }, 20.0);
+        particles.iter().map(|p| p.position.distance(emitter.attractor)).sum::<f32>() / particles.len() as f32
+    };
+    let distances = [1.0, 0.3, 0.0, -0.3].map(mean_distance);
+    assert!(distances.is_sorted(), "{distances:?}");
+    assert!(distances[0] < 0.6 * distances[2], "{distances:?}");
+}
+
+#[test]
+fn smoke_that_falls_flows_along_the_floor() {
+    let emitter = Emitter { buoyancy: -1.0, turbulence: 0.3, position: Vec3::Y, lifetime: 8.0, ..Emitter::default() };
+    let flowing = at(&Emitter { floor_margin: 0.5, ..emitter }, 20.0);
+    let lowest = flowing.iter().map(|p| p.position.y).fold(f32::INFINITY, f32::min);
+    assert!(lowest > -0.15, "{lowest}");
+    assert!(at(&emitter, 20.0).iter().any(|p| p.position.y < -2.0));
+    let aside = |p: &&Particle| p.position.with_y(0.0).length() > 1.0;
+    assert!(flowing.iter().filter(aside).count() > flowing.len() / 4);
+}
+
+#[test]
+fn small_particles_have_their_share() {
+    let emitter = Emitter { small_share: 0.3, small_size: 0.25, radius_spread: 0.0, rate: 400.0, ..Emitter::default() };
+    let usual = at(&Emitter { small_share: 0.0, ..emitter }, 20.0);
+    let particles = at(&emitter, 20.0);
+    let small = particles.iter().zip(&usual).filter(|(a, b)| (a.radius - 0.25 * b.radius).abs() < 1.0e-6).count();
+    let same = particles.iter().zip(&usual).filter(|(a, b)| a == b).count();
+    assert_eq!(small + same, particles.len());
+    let share = small as f32 / particles.len() as f32;
+    assert!((share - 0.3).abs() < 0.04, "{share}");
 }
 
 #[test]

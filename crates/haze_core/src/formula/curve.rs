@@ -40,6 +40,12 @@ pub fn curve_integral(curve: &CurvePoints, age: f32) -> f32 {
     sum + (age - last.x).max(0.0) * last.y
 }
 
+/// Smoothstep: 0..1 with zero slope at both ends.
+pub fn smoothstep_unit(x: f32) -> f32 {
+    let s = x.clamp(0.0, 1.0);
+    s * s * (3.0 - 2.0 * s)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

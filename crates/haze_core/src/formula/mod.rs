@@ -11,6 +11,8 @@ pub mod depth_moments;
 pub mod diffuse_bake;
 pub mod emitter;
 pub mod fire;
+pub mod flight;
+pub mod flow;
 pub mod gradient_noise;
 pub mod grain;
 pub mod hash;

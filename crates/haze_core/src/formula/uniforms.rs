@@ -234,7 +234,7 @@ uniform! {
 }
 
 uniform! {
-    /// `Emitter` in `shaders/lib/emitter.wgsl`.
+    /// `Emitter` in `shaders/lib/flight.wgsl`.
     EmitterUniform {
         first: u32,
         count: u32,
@@ -285,10 +285,22 @@ uniform! {
         has_rate_curve: u32,
         swirl_detail: f32,
         swirl_travel: Vec3,
-        padding_1: f32,
+        ring_rate: f32,
         swirl_offset: Vec3,
-        padding_2: f32,
+        ring_phase: f32,
         swirl_first: IVec3,
-        padding_3: f32,
+        ring_first: u32,
+        wind_shear: Vec3,
+        ring_speed: f32,
+        attractor: Vec3,
+        attraction: f32,
+        ring_size: f32,
+        attractor_size: f32,
+        orbit_rate: f32,
+        has_flow: u32,
+        small_share: f32,
+        small_size: f32,
+        floor_margin: f32,
+        padding: f32,
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec3Swizzles, Vec4, vec3};
 
-use super::emitter::smoothstep_unit;
+use super::curve::smoothstep_unit;
 use crate::settings::Upsample;
 
 /// Depths that differ by less than this share of the pixel's depth count as one surface.

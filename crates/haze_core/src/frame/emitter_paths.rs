@@ -5,10 +5,11 @@ use std::collections::VecDeque;
 use glam::{IVec3, Vec3};
 
 use super::particle::Particle;
-use crate::formula::emitter::{EmittedParticle, SwirlStep, emitted_particle_on};
+use crate::formula::emitter::{EmittedParticle, emitted_particle_on};
+use crate::formula::flow::FlowStep;
 use crate::formula::uniforms::EmitterUniform;
 
-/// Steps of each particle of an emitter on its way through the swirls, for
+/// Steps of each particle of an emitter on its way through the flow, for
 /// [`EmitterSnapshot::evaluate_along`](super::EmitterSnapshot::evaluate_along): evaluating the next frame takes a fraction of
 /// the time of evaluating any. One for each emitter, and for each of all particles and a sample.
 #[derive(Clone, Debug, Default)]
@@ -18,7 +19,7 @@ pub struct EmitterPaths {
     /// Index of the first birth, and number of births from one path to the next.
     first: u32,
     step: u32,
-    reached: VecDeque<SwirlStep>,
+    reached: VecDeque<FlowStep>,
 }
 
 impl EmitterPaths {
@@ -39,7 +40,7 @@ impl EmitterPaths {
         self.first = index;
         self.step = step;
         let count = emitter.count.saturating_sub(first).div_ceil(step) as usize;
-        self.reached.resize(count, SwirlStep::default());
+        self.reached.resize(count, FlowStep::default());
         particles.clear();
         let numbers = (first..emitter.count).step_by(step as usize);
         particles.extend(
@@ -76,6 +77,8 @@ fn without_time(emitter: &EmitterUniform) -> EmitterUniform {
         swirl_turn: 0.0,
         swirl_offset: Vec3::ZERO,
         swirl_first: IVec3::ZERO,
+        ring_phase: 0.0,
+        ring_first: 0,
         ..*emitter
     }
 }

@@ -7,7 +7,8 @@ use super::emitter_paths::EmitterPaths;
 use super::particle::Particle;
 use super::sprite_extent::SpriteExtent;
 use crate::formula::curve::{CurvePoints, curve_point};
-use crate::formula::emitter::{EmittedParticle, birth_delay, drag_integrals, emitted_particle};
+use crate::formula::emitter::{EmittedParticle, birth_delay, emitted_particle};
+use crate::formula::flight::drag_integrals;
 use crate::formula::uniforms::EmitterUniform;
 use crate::settings::MAX_CURVE_POINTS;
 
@@ -27,6 +28,8 @@ pub struct EmitterSnapshot {
 /// Bound on the speed of a particle in the swirls, in units of their strength: more than at any point that the test below
 /// samples.
 const SWIRL_SPEED_BOUND: f32 = 25.0;
+/// Bound on the speed around two rings of the greatest speed, in units of their mean speed in the middle.
+const RING_SPEED_BOUND: f32 = 2.6;
 /// Number of intervals of age for which the box is computed.
 const AGE_INTERVALS: u32 = 16;
 
@@ -100,19 +103,33 @@ impl EmitterSnapshot {
                 (e.wind, early - reached_early.x, flown - reached_late.x),
                 (e.rise, reached_early.y, reached_late.y),
             ];
-            let (low, high) = ways.into_iter().fold((e.position, e.position), |(low, high), (way, from, to)| {
-                let (from, to) = (if lags { Vec3::ZERO } else { way * from }, way * to);
-                (low + from.min(to), high + from.max(to))
-            });
+            let (mut low, mut high) =
+                ways.into_iter().fold((e.position, e.position), |(low, high), (way, from, to)| {
+                    let (from, to) = (if lags { Vec3::ZERO } else { way * from }, way * to);
+                    (low + from.min(to), high + from.max(to))
+                });
+            let mut turning = 0.0;
+            if e.orbit_rate != 0.0 {
+                let blown = e.wind.length() * (flown - reached_late.x);
+                let far = (low - born - e.position).abs().max((high + born - e.position).abs()).length() + 2.0 * blown;
+                low = e.position - far;
+                high = e.position + far;
+                turning = e.orbit_rate.abs() * far;
+            }
             let age = (late / shortest).min(1.0);
-            let scattered = (e.burst.abs() + e.velocity_spread) * reached_late.x + swirl_way_bound(e, flown);
+            let way = (low - e.position).abs().max((high - e.position).abs()).length();
+            let flow = flow_bound(e, way + born.length(), flown);
+            let scattered = (e.burst.abs() + e.velocity_spread) * reached_late.x + flow.way;
             let radius = largest * e.radius_start.max(e.radius_start + (e.radius_end - e.radius_start) * age.sqrt());
             let kept = if lags { 1.0 } else { 1.0 - e.drag * reached_early.x };
             let speed = fastest
                 * ((e.velocity.length() + e.burst.abs() + e.velocity_spread) * kept
                     + e.wind.length()
-                    + e.rise.length() * reached_late.x)
-                + SWIRL_SPEED_BOUND * fastest * e.swirl_strength;
+                    + e.rise.length() * reached_late.x
+                    + turning
+                    + flow.speed);
+            // Along the floor, smoke is as fast again as it was, and rises.
+            let speed = if e.floor_margin > 0.0 { 3.0 * speed } else { speed };
             let radius = radius * (1.0 + e.radius_spread);
             let margin = scattered + e.anchor * radius + extent.radius(radius, speed);
             bounds.include(low - born, margin);
@@ -120,6 +137,36 @@ impl EmitterSnapshot {
         }
         bounds
     }
+}
+
+/// Bounds on what the flow adds to the flight of a particle.
+struct FlowBound {
+    way: f32,
+    speed: f32,
+}
+
+/// Bounds after a flight of so many seconds that has led no farther than `flight` from the source, in metres.
+fn flow_bound(emitter: &EmitterUniform, flight: f32, seconds: f32) -> FlowBound {
+    let ring_speed = RING_SPEED_BOUND * emitter.ring_speed;
+    let mut way = swirl_way_bound(emitter, seconds) + emitter.attraction.abs() * seconds;
+    way += (ring_speed * seconds).min(ring_way_bound(emitter, flight));
+    // No higher than this, of which the wind is a part.
+    let shear = emitter.wind_shear.length();
+    let aloft = shear * (flight + way);
+    if emitter.floor_margin > 0.0 {
+        // Up as far as it has fallen, and as far aside.
+        way += 2.0 * (flight + way);
+    }
+    FlowBound {
+        way: way + aloft * seconds,
+        speed: SWIRL_SPEED_BOUND * emitter.swirl_strength + ring_speed + emitter.attraction.abs() + aloft,
+    }
+}
+
+/// Bound on the way by which rings carry a particle: around them, not along with them. More than any that the test below
+/// samples.
+fn ring_way_bound(emitter: &EmitterUniform, flight: f32) -> f32 {
+    5.0 * emitter.ring_size + 0.6 * flight
 }
 
 /// Bound on the way along an axis by which the swirls carry a particle in so many seconds: more than any that the test below
@@ -135,7 +182,8 @@ mod tests {
 
     use super::*;
     use crate::emitter::Emitter;
-    use crate::formula::emitter::{Flight, Flying, SwirlStep, carried_by_swirls};
+    use crate::formula::flight::Flight;
+    use crate::formula::flow::{FlowStep, Flying, carried_by_flow};
     use crate::formula::hash::{pcg3d, unit};
 
     #[test]
@@ -155,7 +203,7 @@ mod tests {
                     for age in [0.1, 0.3, 0.6, 0.99] {
                         let seconds = emitter.lifetime * age;
                         let flying = Flying { start, lifetime: emitter.lifetime, seconds };
-                        let carried = carried_by_swirls(&uniform, &flying, &mut SwirlStep::default());
+                        let carried = carried_by_flow(&uniform, &flying, &mut FlowStep::default());
                         let way = carried.position.abs().max_element();
                         farthest = farthest.max(way / swirl_way_bound(&uniform, seconds));
                         fastest = fastest.max(carried.velocity.length() / uniform.swirl_strength);

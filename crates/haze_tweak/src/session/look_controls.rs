@@ -29,6 +29,7 @@ const fn param(param: &'static MacroParam) -> LookControl {
 
 /// All controls, in the order of the tab.
 pub const LOOK_CONTROLS: &[LookControl] = &[
+    control("size", ControlTarget::System("emitter.size", Some((0.1, 4.0)))),
     param(&THICKNESS),
     control("size at birth", ControlTarget::System("emitter.radius_start", Some((0.0, 1.5)))),
     control("size at death", ControlTarget::System("emitter.radius_end", Some((0.0, 4.0)))),

@@ -1,6 +1,6 @@
 //! Longer conditions under which settings of a system have no effect.
 
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 
 use haze_core::emitter::EmitterShape;
 use haze_core::settings::{
@@ -83,5 +83,8 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
 pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {
     let emitter = &system.emitter;
     let is_anchored = emitter.anchor > 0.0;
-    emitter.buoyancy == 0.0 && emitter.bounce <= 0.0 && !is_anchored && emitter.shape != EmitterShape::Disc
+    let is_flowing = emitter.wind_shear != Vec3::ZERO || emitter.orbit != 0.0;
+    let is_disc = emitter.shape == EmitterShape::Disc;
+    let has_floor = emitter.bounce > 0.0 || emitter.floor_margin > 0.0;
+    emitter.buoyancy == 0.0 && !has_floor && !is_anchored && !is_flowing && !is_disc
 }

@@ -367,8 +367,23 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "emitter.turbulence_speed",
         ],
     ),
+    rule(
+        "only at a ring_speed above 0",
+        |s, _| s.emitter.ring_speed <= 0.0,
+        &["emitter.ring_rate", "emitter.ring_size"],
+    ),
+    rule(
+        "only at an attraction other than 0",
+        |s, _| s.emitter.attraction == 0.0,
+        &["emitter.attractor", "emitter.attractor_size"],
+    ),
+    rule("only at a small_share above 0", |s, _| s.emitter.small_share <= 0.0, &["emitter.small_size"]),
     rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
-    rule("only with buoyancy, bounce, anchor, or shape disc", ignores_up, &["emitter.up"]),
-    rule("only at a bounce above 0", |s, _| s.emitter.bounce <= 0.0, &["emitter.floor"]),
+    rule("only with buoyancy, a floor, anchor, wind_shear, orbit, or shape disc", ignores_up, &["emitter.up"]),
+    rule(
+        "only at a bounce or a floor_margin above 0",
+        |s, _| s.emitter.bounce <= 0.0 && s.emitter.floor_margin <= 0.0,
+        &["emitter.floor"],
+    ),
     rule("only at a duration above 0", |s, _| s.emitter.duration <= 0.0, &["emitter.period", "emitter.rate_curve"]),
 ];
