@@ -96,8 +96,17 @@ impl Frames {
 
     /// Returns the shot at the time of a frame, with the values that its settings have then.
     pub fn shot(&self, shot: &Shot, frame: u32) -> Shot {
+        Self::shot_at(shot, self.time(shot, f64::from(frame)))
+    }
+
+    /// Returns the shot at the time halfway between a frame and the next, with the values that its settings have then.
+    pub fn shot_halfway(&self, shot: &Shot, frame: u32) -> Shot {
+        Self::shot_at(shot, self.time(shot, f64::from(frame) + 0.5))
+    }
+
+    fn shot_at(shot: &Shot, time: f64) -> Shot {
         let mut shot = shot.clone();
-        shot.preset = shot.preset.evaluate(self.time(&shot, frame));
+        shot.preset = shot.preset.evaluate(time);
         shot
     }
 
@@ -111,11 +120,12 @@ impl Frames {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn burns(&self, shot: &Shot, count: u32) -> bool {
         let mut animated = AnimatedPreset::new(&shot.preset);
-        (0..count).any(|index| burns(animated.evaluate(self.time(shot, self.range.start() + index))))
+        (0..count).any(|index| burns(animated.evaluate(self.time(shot, f64::from(self.range.start() + index)))))
     }
 
-    fn time(&self, shot: &Shot, frame: u32) -> f64 {
-        shot.preset.time + f64::from(frame) / f64::from(self.rate)
+    /// `frame`: its number, or one between two.
+    fn time(&self, shot: &Shot, frame: f64) -> f64 {
+        shot.preset.time + frame / f64::from(self.rate)
     }
 
     /// Renders every frame and passes it to `take` with its number. `stopped` makes the error of a run that was stopped

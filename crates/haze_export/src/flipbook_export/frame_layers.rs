@@ -26,6 +26,24 @@ pub struct FrameLayers {
     pub emission: Option<Image<Vec4>>,
 }
 
+/// Renders the light of a frame alone: exposed, multiplied by opacity.
+pub async fn frame_light(backend: &Backend, shot: &Shot) -> Result<Image<Vec4>, Error> {
+    Ok(exposed(SmokeLayers::new(backend, shot).await?.light, shot))
+}
+
+fn exposed(mut image: Image<Vec4>, shot: &Shot) -> Image<Vec4> {
+    let exposure = Vec3::splat(exposure(shot)).extend(1.0);
+    image.texels.iter_mut().for_each(|texel| *texel *= exposure);
+    image
+}
+
+/// Mixes two layers. `share`: of `other`, 0 to 1.
+pub fn mixed(mut image: Image<Vec4>, other: &Image<Vec4>, share: f32) -> Image<Vec4> {
+    let pairs = image.texels.iter_mut().zip(&other.texels);
+    pairs.for_each(|(texel, other)| *texel = texel.lerp(*other, share));
+    image
+}
+
 impl FrameLayers {
     /// `seconds`: time to the next frame.
     pub async fn render(
@@ -39,11 +57,6 @@ impl FrameLayers {
         let (width, height) = (shot.size.x as f32, shot.size.y as f32);
         let mut motion = layers.motion(seconds).await?;
         motion.texels.iter_mut().for_each(|texel| *texel /= Vec4::new(width, height, 1.0, 1.0));
-        let exposure = Vec3::splat(exposure(shot)).extend(1.0);
-        let exposed = |mut image: Image<Vec4>| {
-            image.texels.iter_mut().for_each(|texel| *texel *= exposure);
-            image
-        };
         let fire = if burns { Some(layers.fire().await?) } else { None };
         let emission = |fire: &Image<Vec4>| {
             let texels = fire.texels.iter().map(|fire| Vec4::new(luminance(fire.xyz()), 0.0, 0.0, fire.w));
@@ -53,19 +66,15 @@ impl FrameLayers {
             normals: layers.normals().await?,
             motion,
             emission: fire.as_ref().filter(|_| has_six_way).map(emission),
-            fire: fire.map(exposed),
+            fire: fire.map(|fire| exposed(fire, shot)),
             six_way: if has_six_way { Some(layers.six_way().await?) } else { None },
-            light: exposed(layers.light),
+            light: exposed(layers.light, shot),
         })
     }
 
     /// Mixes two frames. `share`: of `other`, 0 to 1.
     pub fn mixed(self, other: &Self, share: f32) -> Self {
-        let mix = |mut image: Image<Vec4>, other: &Image<Vec4>| {
-            let pairs = image.texels.iter_mut().zip(&other.texels);
-            pairs.for_each(|(texel, other)| *texel = texel.lerp(*other, share));
-            image
-        };
+        let mix = |image, other| mixed(image, other, share);
         Self {
             light: mix(self.light, &other.light),
             normals: mix(self.normals, &other.normals),

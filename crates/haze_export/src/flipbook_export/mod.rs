@@ -13,9 +13,7 @@ mod sprite_sheet;
 
 use std::path::Path;
 
-use glam::Vec4;
 use haze::Error;
-use haze_core::assets::image::Image;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::encoded;
 use haze_preset::write_file;
@@ -27,7 +25,8 @@ use crate::image_format::Alpha;
 use crate::png_stream::EncodedPng;
 pub use cut_smoke::CutSmoke;
 pub use emission::Emission;
-use frame_layers::FrameLayers;
+use frame_layers::{FrameLayers, frame_light, mixed};
+use motion_fit::HalfwayImages;
 use numbers::{FlipbookNumbers, Scales};
 pub use options::FlipbookOptions;
 
@@ -93,9 +92,10 @@ impl FlipbookExport {
         let (count, fade) = (frames.count(), options.loop_fade);
         let all = count + fade;
         let burns = frames.burns(shot, all);
+        // Frames of the fade are rendered with those that they fade into.
+        let done = |index: u32| index + index.min(fade);
         let layers = async |index: u32| {
-            // Frames of the fade are rendered with those that they fade into.
-            let done = index + index.min(fade);
+            let done = done(index);
             if !progress.goes_on(done, all) {
                 return Err(stopped_before_writing(folder, done, all));
             }
@@ -112,33 +112,39 @@ impl FlipbookExport {
             let share = 1.0 - index as f32 / fade as f32;
             Ok(layers.mixed(&at(count + index, done + 1).await?, share))
         };
+        // Image halfway between a frame and the next, encoded.
+        let halfway = async |index: u32| {
+            let at =
+                async |frame: u32| frame_light(backend, &frames.shot_halfway(shot, frames.range.start() + frame)).await;
+            let light = async {
+                let light = at(index).await?;
+                if index >= fade {
+                    return Ok::<_, Error>(light);
+                }
+                let share = 1.0 - (index as f32 + 0.5) / fade as f32;
+                Ok(mixed(light, &at(count + index).await?, share))
+            };
+            let light = progress.show(image_label(done(index), all), light).await?;
+            Ok::<_, Error>(encoded(&light, 1.0))
+        };
         let FlipbookOptions { engine, cells, emission, has_six_way, effort, .. } = options;
         let contains_fire = burns && emission == Emission::Contained;
         let alpha = options.alpha.unwrap_or(if contains_fire { Alpha::Premultiplied } else { Alpha::Straight });
         let layout = SheetLayout { engine, frame: shot.size, cells, alpha, emission, effort, folder };
         let mut sheets = Sheets::new(layout, burns, has_six_way)?;
-        let mut place = async |layers: &FrameLayers, pair: [&Image<Vec4>; 2]| {
-            progress.show("haze: encoding a frame".into(), async { sheets.place(layers, pair) }).await
-        };
-        // A frame is placed when the next one is known, for its motion.
-        let mut last = layers(0).await?;
         let mut cut_smoke = None;
-        CutSmoke::add_frame(&mut cut_smoke, 0, &last.light);
-        let first_frame = encoded(&last.light, 1.0);
-        let mut last_frame = first_frame.clone();
-        for index in 1..count {
-            let next = layers(index).await?;
-            CutSmoke::add_frame(&mut cut_smoke, index, &next.light);
-            let next_frame = encoded(&next.light, 1.0);
-            place(&last, [&last_frame, &next_frame]).await?;
-            if index + 1 == count && fade == 0 {
-                // No frame follows: its motion is that from the frame before.
-                place(&next, [&last_frame, &next_frame]).await?;
+        let mut before = None;
+        for index in 0..count {
+            let layers = layers(index).await?;
+            CutSmoke::add_frame(&mut cut_smoke, index, &layers.light);
+            if index == 0 && fade > 0 {
+                before = Some(halfway(count - 1).await?);
             }
-            (last, last_frame) = (next, next_frame);
-        }
-        if fade > 0 || count == 1 {
-            place(&last, [&last_frame, &first_frame]).await?;
+            let has_next = index + 1 < count || fade > 0;
+            let after = if has_next { Some(halfway(index).await?) } else { None };
+            let images = HalfwayImages { before: before.as_ref(), after: after.as_ref() };
+            progress.show("haze: encoding a frame".into(), async { sheets.place(&layers, images) }).await?;
+            before = after;
         }
         let goes_on =
             || if progress.goes_on(all, all) { Ok(()) } else { Err(stopped_before_writing(folder, all, all)) };

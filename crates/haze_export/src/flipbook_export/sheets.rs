@@ -16,7 +16,7 @@ use haze_preset::CompressionEffort;
 use super::emission::Emission;
 use super::fill::filled;
 use super::frame_layers::FrameLayers;
-use super::motion_fit::{followed, kept_inside};
+use super::motion_fit::{HalfwayImages, followed, kept_inside};
 use crate::engine::Engine;
 use crate::image_format::Alpha;
 use crate::png_stream::{EncodedPng, PngShape, PngStream};
@@ -46,13 +46,13 @@ pub fn row_bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
     (color + fire + six_way) as u64
 }
 
-/// Bytes of memory per pixel of a frame: layers of this frame and the next, three encoded frames, a layer that is filled (light
-/// without fire, its texels, those of coarser levels, and the result), and the errors and means by which motion is shortened.
+/// Bytes of memory per pixel of a frame: layers of this frame and of one that fades into it, the encoded frame and the images halfway
+/// to its neighbors, and a layer that is filled (light without fire, its texels, those of coarser levels, and the result).
 pub fn frame_bytes_per_pixel(burns: bool, has_six_way: bool) -> u64 {
     let six_way = if has_six_way { SIX_WAY.len() as u64 + u64::from(burns) } else { 0 };
     let layers = 3 + u64::from(burns) + six_way;
     let texel = size_of::<Vec4>() as u64;
-    (2 * layers + 3) * texel + 5 * texel + 8 * size_of::<f32>() as u64
+    (2 * layers + 3) * texel + 5 * texel
 }
 
 /// Layout that all sheets share.
@@ -237,12 +237,11 @@ impl<'a> Sheets<'a> {
         })
     }
 
-    /// Places the next frame. `pair`: this frame and a neighbour, in the order of time, encoded; motion vectors lead from the
-    /// first to the second.
+    /// Places the next frame. Its motion vectors are fitted to the images halfway to its neighbors.
     ///
     /// # Errors
     /// [`Error::Io`] if a row of frames cannot be written.
-    pub fn place(&mut self, layers: &FrameLayers, pair: [&Image<Vec4>; 2]) -> Result<(), Error> {
+    pub fn place(&mut self, layers: &FrameLayers, halfway: HalfwayImages<'_>) -> Result<(), Error> {
         let light = match (self.layout.emission, &layers.fire) {
             (Emission::Separate, Some(fire)) => &without(&layers.light, fire),
             _ => &layers.light,
@@ -252,7 +251,8 @@ impl<'a> Sheets<'a> {
             Alpha::Premultiplied => self.place_light(light),
         }
         self.place_normals(&filled(&layers.normals));
-        self.place_motion(&kept_inside(&followed(&filled(&layers.motion), pair)));
+        let frame = encoded(&layers.light, 1.0);
+        self.place_motion(&kept_inside(&followed(&filled(&layers.motion), &frame, halfway)));
         if let Some(fire) = &layers.fire {
             self.place_fire(fire);
         }

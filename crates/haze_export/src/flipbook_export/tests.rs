@@ -1,5 +1,5 @@
-use glam::{IVec2, UVec2, Vec2, Vec3, Vec4Swizzles};
-use haze_core::assets::image::read_png;
+use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use haze_core::assets::image::{Image, read_png};
 use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use haze_demo::tonemap_pass::rgba8;
 use haze_preset::{CompressionEffort, Ease, KeyValue, Keyframe, Track};
@@ -318,40 +318,88 @@ fn separate_emission_is_the_part_that_the_color_lacks() {
     assert_eq!(refused, "--emission: separate, but no system burns in these frames; expected contained");
 }
 
+/// Two frames of a flipbook, mixed along their motion vectors as an engine does.
+struct MixedFrames {
+    colors: [RgbaImage; 2],
+    motions: [RgbaImage; 2],
+    /// Shares of a frame's width and height, in texture coordinates from the upper left corner.
+    motion_scale: Vec2,
+}
+
+impl MixedFrames {
+    fn new(flipbook: &Flipbook, engine: Engine) -> Self {
+        // Texture coordinates count from the bottom in Unity.
+        let up = if engine == Engine::Unity { -1.0 } else { 1.0 };
+        Self {
+            colors: [0, 1].map(|index| flipbook.frame(sheets::COLOR, index)),
+            motions: [0, 1].map(|index| flipbook.frame(sheets::MOTION, index)),
+            motion_scale: flipbook.numbers.motion_scale * Vec2::new(1.0, up),
+        }
+    }
+
+    fn uv(at: UVec2) -> Vec2 {
+        (at.as_vec2() + 0.5) / SIDE as f32
+    }
+
+    fn motion(&self, index: usize, uv: Vec2) -> Vec2 {
+        (sample(&self.motions[index], uv).xy() * 2.0 - 1.0) * self.motion_scale
+    }
+
+    /// `share`: of the second frame. `strength`: factor of the vectors; 0 is a cross-fade.
+    fn texel(&self, at: UVec2, share: f32, strength: f32) -> Vec4 {
+        let at = Self::uv(at);
+        let a = sample(&self.colors[0], at - self.motion(0, at) * share * strength);
+        let b = sample(&self.colors[1], at + self.motion(1, at) * (1.0 - share) * strength);
+        let mixed = (a.xyz() * a.w).lerp(b.xyz() * b.w, share);
+        let alpha = a.w + (b.w - a.w) * share;
+        (mixed / alpha.max(1.0e-4)).extend(alpha)
+    }
+
+    /// Mean squared difference from the image of the renderer.
+    fn error(&self, expected: &RgbaImage, share: f32, strength: f32) -> f32 {
+        difference(|at| self.texel(at, share, strength), |at| texel(expected, at.as_ivec2()))
+    }
+}
+
+/// Image at a time between the first frame and the second.
+fn image_between(shot: &Shot, frames: &Frames, share: f32) -> RgbaImage {
+    let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
+    let mut between = frames.shot(shot, 0);
+    between.preset.time += f64::from(share) / f64::from(frames.rate);
+    block_on(format.render(&between, async |shot| shot.render_on_cpu())).unwrap().into_rgba8()
+}
+
 #[test]
 fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() {
     // Eight frames per second: smoke moves by some pixels.
     let (shot, frames) = (shot("spell"), frames(2, 8.0));
-    let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
-    let mut between = frames.shot(&shot, 0);
-    between.preset.time += 0.5 / f64::from(frames.rate);
-    let between = block_on(format.render(&between, async |shot| shot.render_on_cpu())).unwrap().into_rgba8();
+    let between = image_between(&shot, &frames, 0.5);
     for engine in ENGINES {
         let flipbook = Flipbook::new(&shot, &frames, options(engine));
-        let [first, second] = [0, 1].map(|index| flipbook.frame(sheets::COLOR, index));
-        let motions = [0, 1].map(|index| flipbook.frame(sheets::MOTION, index));
-        // Texture coordinates count from the bottom in Unity.
-        let up = if engine == Engine::Unity { -1.0 } else { 1.0 };
-        let scale = flipbook.numbers.motion_scale;
-        let motion =
-            |index: usize, uv: Vec2| (sample(&motions[index], uv).xy() * 2.0 - 1.0) * scale * Vec2::new(1.0, up);
-        let uv = |at: UVec2| (at.as_vec2() + 0.5) / SIDE as f32;
-        let blended = |at: UVec2, share: f32, strength: f32| {
-            let at = uv(at);
-            let a = sample(&first, at - motion(0, at) * share * strength);
-            let b = sample(&second, at + motion(1, at) * (1.0 - share) * strength);
-            let mixed = (a.xyz() * a.w).lerp(b.xyz() * b.w, share);
-            let alpha = a.w + (b.w - a.w) * share;
-            (mixed / alpha.max(1.0e-4)).extend(alpha)
-        };
-        let half = |strength: f32| difference(|at| blended(at, 0.5, strength), |at| texel(&between, at.as_ivec2()));
-        assert!(half(1.0) < 0.95 * half(0.0), "{engine:?}: {} with, {} without", half(1.0), half(0.0));
+        let mixed = MixedFrames::new(&flipbook, engine);
+        let half = |strength: f32| mixed.error(&between, 0.5, strength);
+        assert!(half(1.0) < 0.8 * half(0.0), "{engine:?}: {} with, {} without", half(1.0), half(0.0));
         assert!(half(-1.0) > 1.1 * half(0.0), "{engine:?}: vectors of the opposite sign are as good");
         let next = |strength: f32| {
-            let warped = |at: UVec2| sample(&first, uv(at) - motion(0, uv(at)) * strength);
-            difference(warped, |at| texel(&second, at.as_ivec2()))
+            let [first, second] = &mixed.colors;
+            let warped = |at: UVec2| {
+                let uv = MixedFrames::uv(at);
+                sample(first, uv - mixed.motion(0, uv) * strength)
+            };
+            difference(warped, |at| texel(second, at.as_ivec2()))
         };
         assert!(next(1.0) < 0.7 * next(0.0), "{engine:?}: {} with, {} without", next(1.0), next(0.0));
+    }
+}
+
+#[test]
+fn motion_vectors_predict_flames_with_sparks_at_times_to_which_they_are_not_fitted_too() {
+    let (shot, frames) = (shot("campfire"), frames(2, 24.0));
+    let mixed = MixedFrames::new(&Flipbook::new(&shot, &frames, options(Engine::Godot)), Engine::Godot);
+    for share in [0.25, 0.5, 0.75] {
+        let expected = image_between(&shot, &frames, share);
+        let error = |strength: f32| mixed.error(&expected, share, strength);
+        assert!(error(1.0) < 0.9 * error(0.0), "at {share}: {} with, {} without", error(1.0), error(0.0));
     }
 }
 
@@ -591,7 +639,7 @@ fn sheets_hold_one_row_of_frames() {
             };
             let mut sheets = Sheets::new(layout, burns, has_six_way).unwrap();
             for _ in 0..3 * rows {
-                sheets.place(&layers, [&light, &light]).unwrap();
+                sheets.place(&layers, HalfwayImages { before: Some(&light), after: Some(&light) }).unwrap();
             }
             let pixels = u64::from(3 * SIDE * SIDE);
             let expected = sheets::row_bytes_per_pixel(burns, has_six_way) * pixels;
@@ -628,9 +676,15 @@ fn sheets_of_rows_are_those_of_whole_images() {
     assert_eq!(file(sheets::COLOR).into_rgba8(), colors);
     let fire = rgba8(&encoded(&whole(&|index| layers[index].fire.clone().unwrap()), 1.0));
     assert_eq!(file(sheets::EMISSION).into_rgb8(), image::DynamicImage::from(fire).into_rgb8());
+    let halfway = [0, 1].map(|index| {
+        let light = block_on(frame_light(&Backend::Cpu, &frames.shot_halfway(&shot, index))).unwrap();
+        encoded(&light, 1.0)
+    });
     let motion = whole(&|index| {
-        let pair = [&light[index.min(1)], &light[index.min(1) + 1]];
-        motion_fit::kept_inside(&motion_fit::followed(&fill::filled(&layers[index].motion), pair))
+        let neighbors =
+            HalfwayImages { before: index.checked_sub(1).map(|at| &halfway[at]), after: halfway.get(index) };
+        let motion = fill::filled(&layers[index].motion);
+        motion_fit::kept_inside(&motion_fit::followed(&motion, &light[index], neighbors))
     });
     let visible = |image: &Image<Vec4>, value: &dyn Fn(&Vec4) -> f32| {
         image.texels.iter().filter(|texel| texel.w > 0.05).map(value).fold(0.0, f32::max)
