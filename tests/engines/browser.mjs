@@ -32,6 +32,21 @@ export const browser = await puppeteer.launch({
     protocolTimeout: 600000,
 });
 
+/** Opens one of the pages here. `said` collects its warnings and errors. */
+export async function openPage(html) {
+    const page = await browser.newPage();
+    const said = [];
+    page.on('console', message => {
+        if (['error', 'warn'].includes(message.type())) said.push(message.text());
+    });
+    page.on('pageerror', error => said.push(String(error)));
+    await page.goto(`${address}/${html}`);
+    await page.waitForFunction('window.isLoaded').catch(error => {
+        throw new Error(`${html}: ${error}; the page said: ${said.join('; ')}`);
+    });
+    return { page, said };
+}
+
 /** Folders whose names begin so. */
 export function folders(prefix) {
     const isFolder = name => fs.statSync(name).isDirectory();

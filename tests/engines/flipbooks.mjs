@@ -2,7 +2,7 @@
 import fs from 'node:fs';
 import { PNG } from 'pngjs';
 import { over, psnr, squaredError, toCode } from './arithmetic.mjs';
-import { address, browser, check, folders } from './browser.mjs';
+import { check, folders, openPage } from './browser.mjs';
 
 const SIDE = 128;
 // Sheet and image are dithered to 8 bits, each by its own positions: 60 dB and more were seen.
@@ -12,23 +12,18 @@ const LEAST_PSNR = 55;
 const MOST_OF_A_FADE = 0.9;
 const ALIKE = 40;
 
+// Images of the renderer per frame of the flipbook.
+const IMAGES = 4;
+// Places between two frames. Motion vectors are fitted to the middle; before it, they are not.
+const BETWEEN = [1, 2];
+
 // `hasScreen`: the page can also draw codes, as on a canvas.
 export async function testFlipbooks(engine, { html, prefix, hasScreen }) {
-    const page = await browser.newPage();
-    const said = [];
-    page.on('console', message => {
-        if (['error', 'warn'].includes(message.type())) said.push(message.text());
-    });
-    page.on('pageerror', error => said.push(String(error)));
-    await page.goto(`${address}/${html}`);
-    await page.waitForFunction('window.isLoaded').catch(error => {
-        throw new Error(`${html}: ${error}; the page said: ${said.join('; ')}`);
-    });
+    const { page, said } = await openPage(html);
     for (const folder of folders(prefix)) {
         const name = folder.slice(prefix.length);
         const { frames, rate, alpha } = JSON.parse(fs.readFileSync(`${folder}/flipbook.json`));
-        // One at each frame, and one between two.
-        const images = Array.from({ length: 2 * frames - 1 }, (_, index) => {
+        const images = Array.from({ length: IMAGES * (frames - 1) + 1 }, (_, index) => {
             const { data } = PNG.sync.read(fs.readFileSync(`frame_${name}_${index}.png`));
             return { data, isStraight: alpha === 'straight' };
         });
@@ -45,20 +40,24 @@ export async function testFlipbooks(engine, { html, prefix, hasScreen }) {
         for (const background of [0, 0.2, 1]) {
             for (let frame = 0; frame < frames; frame++) {
                 const codes = await draw(background, frame / rate, true);
-                const decibels = psnr(codes, over(images[2 * frame], background));
+                const decibels = psnr(codes, over(images[IMAGES * frame], background));
                 check(`${engine}, ${name}, frame ${frame} over ${background}`, decibels >= LEAST_PSNR, `${decibels.toFixed(1)} dB`);
             }
-            let moved = 0;
-            let faded = 0;
-            for (let frame = 0; frame + 1 < frames; frame++) {
-                const expected = over(images[2 * frame + 1], background);
-                moved += squaredError(await draw(background, (frame + 0.5) / rate, true), expected);
-                faded += squaredError(await draw(background, (frame + 0.5) / rate, false), expected);
+            for (const place of BETWEEN) {
+                let moved = 0;
+                let faded = 0;
+                for (let frame = 0; frame + 1 < frames; frame++) {
+                    const expected = over(images[IMAGES * frame + place], background);
+                    const seconds = (frame + place / IMAGES) / rate;
+                    moved += squaredError(await draw(background, seconds, true), expected);
+                    faded += squaredError(await draw(background, seconds, false), expected);
+                }
+                const share = moved / faded;
+                const decibels = 10 * Math.log10((255 * 255 * 3 * SIDE * SIDE * (frames - 1)) / faded);
+                const seen = `${share.toFixed(3)} of the squared error of a cross-fade of ${decibels.toFixed(1)} dB`;
+                const what = `${engine}, ${name}, ${place / IMAGES} between frames over ${background}`;
+                check(what, share <= MOST_OF_A_FADE || decibels > ALIKE, seen);
             }
-            const share = moved / faded;
-            const decibels = 10 * Math.log10((255 * 255 * 3 * SIDE * SIDE * (frames - 1)) / faded);
-            const seen = `${share.toFixed(3)} of the squared error of a cross-fade of ${decibels.toFixed(1)} dB`;
-            check(`${engine}, ${name}, between frames over ${background}`, share <= MOST_OF_A_FADE || decibels > ALIKE, seen);
         }
     }
     check(`${engine}, messages of flipbooks`, said.length === 0, said[0] ?? 'none');
