@@ -77,6 +77,8 @@ export class HazeFlipbook {
             });
             texture.wrapU = BABYLON.Texture.CLAMP_ADDRESSMODE;
             texture.wrapV = BABYLON.Texture.CLAMP_ADDRESSMODE;
+            // Motion vectors differ from texel to texel. An anisotropic filter takes that for a slope, and blurs.
+            texture.anisotropicFilteringLevel = 1;
         });
         const [color, motion] = await Promise.all([sheet('color.png', true), sheet('motion.png', false)]);
         return new HazeFlipbook(BABYLON, scene, numbers, color, motion);

@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_spark_does_not_move_the_flame_beside_it() {
         let flame = disc(Vec2::splat(24.0));
-        let scene = |spark: f32| image(|at| 0.5 * flame(at) + f32::from(at.y == 24.0 && (at.x - spark).abs() < 0.5));
+        let scene = |spark: f32| image(|at| 0.5 * flame(at) + f32::from(at.distance(Vec2::new(spark, 24.0)) < 0.5));
         let motion = even_motion(Vec2::new(6.0, 0.0));
         let moved = left(&motion, [&scene(21.0), &scene(24.0), &scene(27.0)]);
         for (x, y) in [(21, 24), (27, 24)] {
