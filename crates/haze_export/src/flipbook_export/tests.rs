@@ -327,12 +327,13 @@ struct MixedFrames {
 }
 
 impl MixedFrames {
-    fn new(flipbook: &Flipbook, engine: Engine) -> Self {
+    /// `indices`: of a frame and the one that follows it.
+    fn new(flipbook: &Flipbook, engine: Engine, indices: [u32; 2]) -> Self {
         // Texture coordinates count from the bottom in Unity.
         let up = if engine == Engine::Unity { -1.0 } else { 1.0 };
         Self {
-            colors: [0, 1].map(|index| flipbook.frame(sheets::COLOR, index)),
-            motions: [0, 1].map(|index| flipbook.frame(sheets::MOTION, index)),
+            colors: indices.map(|index| flipbook.frame(sheets::COLOR, index)),
+            motions: indices.map(|index| flipbook.frame(sheets::MOTION, index)),
             motion_scale: flipbook.numbers.motion_scale * Vec2::new(1.0, up),
         }
     }
@@ -361,11 +362,11 @@ impl MixedFrames {
     }
 }
 
-/// Image at a time between the first frame and the second.
-fn image_between(shot: &Shot, frames: &Frames, share: f32) -> RgbaImage {
+/// Image so many frames after the first.
+fn image_after(shot: &Shot, frames: &Frames, count: f32) -> RgbaImage {
     let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
     let mut between = frames.shot(shot, 0);
-    between.preset.time += f64::from(share) / f64::from(frames.rate);
+    between.preset.time += f64::from(count) / f64::from(frames.rate);
     block_on(format.render(&between, async |shot| shot.render_on_cpu())).unwrap().into_rgba8()
 }
 
@@ -373,10 +374,10 @@ fn image_between(shot: &Shot, frames: &Frames, share: f32) -> RgbaImage {
 fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() {
     // Eight frames per second: smoke moves by some pixels.
     let (shot, frames) = (shot("spell"), frames(2, 8.0));
-    let between = image_between(&shot, &frames, 0.5);
+    let between = image_after(&shot, &frames, 0.5);
     for engine in ENGINES {
         let flipbook = Flipbook::new(&shot, &frames, options(engine));
-        let mixed = MixedFrames::new(&flipbook, engine);
+        let mixed = MixedFrames::new(&flipbook, engine, [0, 1]);
         let half = |strength: f32| mixed.error(&between, 0.5, strength);
         assert!(half(1.0) < 0.8 * half(0.0), "{engine:?}: {} with, {} without", half(1.0), half(0.0));
         assert!(half(-1.0) > 1.1 * half(0.0), "{engine:?}: vectors of the opposite sign are as good");
@@ -395,12 +396,23 @@ fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() 
 #[test]
 fn motion_vectors_predict_flames_with_sparks_at_times_to_which_they_are_not_fitted_too() {
     let (shot, frames) = (shot("campfire"), frames(2, 24.0));
-    let mixed = MixedFrames::new(&Flipbook::new(&shot, &frames, options(Engine::Godot)), Engine::Godot);
+    let flipbook = Flipbook::new(&shot, &frames, options(Engine::Godot));
+    let mixed = MixedFrames::new(&flipbook, Engine::Godot, [0, 1]);
     for share in [0.25, 0.5, 0.75] {
-        let expected = image_between(&shot, &frames, share);
+        let expected = image_after(&shot, &frames, share);
         let error = |strength: f32| mixed.error(&expected, share, strength);
         assert!(error(1.0) < 0.9 * error(0.0), "at {share}: {} with, {} without", error(1.0), error(0.0));
     }
+}
+
+#[test]
+fn motion_vectors_lead_from_the_last_frame_of_a_loop_to_the_first() {
+    let (shot, frames) = (shot("spell"), frames(4, 8.0));
+    let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { loop_fade: 2, ..options(Engine::Godot) });
+    let mixed = MixedFrames::new(&flipbook, Engine::Godot, [3, 0]);
+    let expected = image_after(&shot, &frames, 3.5);
+    let error = |strength: f32| mixed.error(&expected, 0.5, strength);
+    assert!(error(1.0) < 0.8 * error(0.0), "{} with, {} without", error(1.0), error(0.0));
 }
 
 #[test]
