@@ -361,7 +361,7 @@ fn settings_without_effect_are_exactly_those_that_change_no_image() {
         "no effect in these cases: {unreported:?}"
     );
     // All reasons except the one about the demo scene.
-    assert_eq!(reasons.len(), 64, "{reasons:#?}");
+    assert_eq!(reasons.len(), 67, "{reasons:#?}");
 }
 
 #[test]
