@@ -117,7 +117,7 @@ fn steps(engine: Engine, numbers: &FlipbookNumbers) -> String {
              2. In a *StandardMaterial3D*: *Transparency* `Alpha`, {blending}, *Shading Mode* `Unshaded`, *Albedo* `color.png`, *Billboard \
              Mode* `Particle Billboard`, *H Frames* {columns}, *V Frames* {rows}.\n\
              3. In the process material, *Animation Speed* 1 plays all {frames} frames in a particle's life.\n\
-             4. Motion vectors need a shader: the formula above, in `fragment()`.\n",
+             4. Motion vectors need a shader: the formula above, in `fragment()`, and sheets without mipmaps, which would blur the motion.\n",
         ),
         Engine::Three => "## In three.js\n\n\
              `haze_flipbook.js` shows the flipbook on a square that faces the camera, with motion vectors, the blend mode of its color, \
