@@ -110,7 +110,7 @@ fn emitters() -> impl Iterator<Item = Emitter> {
         },
         Emitter { ring_speed: 1.5, ring_rate: 0.8, wind: Vec3::X, ..base },
         Emitter {
-            ring_speed: 6.0,
+            ring_speed: 4.0,
             ring_size: 1.0,
             shape: EmitterShape::Disc,
             turbulence: 0.0,
