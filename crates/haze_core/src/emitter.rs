@@ -134,7 +134,7 @@ settings! {
         attractor: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
         /// Distance from the attractor within which the pull grows weaker. Lower: smoke gathers in a point.
         attractor_size: f32 = 0.5, number(0.01..=1.0e3, "m");
-        "size":
+        "radius":
         /// Radius at birth: thickness of the smoke at its root.
         radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
         /// Radius at death. Higher: smoke spreads wider and looks softer; cost grows with its square.

@@ -312,9 +312,17 @@ mod tests {
         harness.get_by_label("Smoke").click();
         harness.run_steps(4);
         let window = eframe::egui::Rect::from_min_size(Default::default(), size);
-        for heading in
-            ["Emitter", "Birth", "Motion", "Turbulence", "Size", "Appearance", "Sprite and ramps", "Soft fade"]
-        {
+        for heading in [
+            "Emitter",
+            "Birth",
+            "Motion",
+            "Turbulence",
+            "Flow",
+            "Radius",
+            "Appearance",
+            "Sprite and ramps",
+            "Soft fade",
+        ] {
             assert!(window.contains_rect(harness.get_by_label(heading).rect()), "{heading}");
         }
         let sliders = harness.query_all_by_role(Role::Slider).filter(|node| node.rect().left() > 800.0).count();
