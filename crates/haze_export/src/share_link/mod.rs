@@ -19,8 +19,8 @@ use serde_json::Value;
 /// Digit before the look.
 const VERSION: char = '1';
 
-/// Most characters after `#`, so that chats and mail programs leave the link whole.
-const MAX_LENGTH: usize = 1500;
+/// Most characters after `#`: with the page's address a link stays below 2,000, which chats and mail programs leave whole.
+const MAX_LENGTH: usize = 1800;
 
 /// Most texels of a ramp's image, which is baked when the link is opened.
 const MAX_TEXELS: u32 = 1 << 20;

@@ -97,7 +97,7 @@ fn a_look_that_is_too_large_is_refused_with_the_reason() {
         })
         .collect();
     let error = look.to_fragment().unwrap_err().to_string();
-    assert!(error.contains("characters; expected at most 1500 characters; save the preset as a file"), "{error}");
+    assert!(error.contains("characters; expected at most 1800 characters; save the preset as a file"), "{error}");
 }
 
 #[test]
