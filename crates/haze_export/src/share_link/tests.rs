@@ -115,7 +115,7 @@ fn hostile_links_are_refused_with_one_line() {
         ("1AAAA".into(), "damaged"),
         ("1%00%ff".into(), "damaged"),
         ("2AAAA".into(), "version"),
-        ("1".repeat(super::MAX_LENGTH + 1), "too many"),
+        ("1".repeat(MAX_LENGTH + 1), "too many"),
         (pack("not json"), "damaged"),
         (pack(r#"{"b":"nothing"}"#), "damaged"),
         (pack(r#"{"b":"column","x":1}"#), "damaged"),
