@@ -29,7 +29,7 @@ fn swirl(emitter: Emitter, position: vec3f, later: f32) -> vec3f {
 const RING_SALT: u32 = 5u;
 // A ring takes in air and widens by so much of its way.
 const RING_GROWTH: f32 = 0.12;
-// Random variation of radius and speed, up and down, as a share of them, and of the axis, as a share of its length.
+// Random variation of radius and speed, up and down, as a share, and of the axis, as a share of its length.
 const RING_SPREAD: f32 = 0.3;
 // Share of the life after which a ring rolls at full speed.
 const RING_ONSET: f32 = 0.1;
@@ -112,6 +112,7 @@ fn flow_at_step(emitter: Emitter, flying: Flying, number: u32, offset: vec3f) ->
     let path = paced_flight(emitter, flying.start, pace);
     let position = path.position + offset;
     var velocity = vec3f(0.0);
+    // Swirls do not hold at birth.
     if emitter.swirl_strength > 0.0 && number > 0u {
         velocity += swirl(emitter, position, later) * smoothstep_unit(age / SWIRL_ONSET);
     }

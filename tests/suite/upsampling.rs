@@ -104,8 +104,8 @@ fn lighting_at_target_resolution_stays_close_to_full_resolution() {
         let shot = Shot::load(preset.name, SIZE).unwrap();
         let lit = |scale, resolution| render_lit(&shot, scale, Upsample::Bilinear, resolution);
         assert!(lit(1, LightingResolution::Target) == lit(1, LightingResolution::Full));
-        // The reduced target alone is at 36 to 81 dB. `wildfire_sky` is the worst preset here, whose backlight ramp is steep where
-        // grain tilts normals: 61 and 58 dB. The others are at 65 and 62 dB or more.
+        // The reduced target alone is at 36 to 80 dB. The worst presets here are `steam_vent`, 61.9 and 57.9 dB, and
+        // `wildfire_sky`, whose backlight ramp is steep where grain tilts normals. The others are at 66 and 61 dB or more.
         for (scale, least) in [(2, 60.0), (4, 56.0)] {
             let [full, target] = [LightingResolution::Full, LightingResolution::Target].map(|r| lit(scale, r));
             let all = psnr(&target, &full);
@@ -132,8 +132,8 @@ fn carrying_texels_along_slopes_is_as_close_to_full_scale_as_a_fit_for_each_pixe
             };
             let (fitted, carried) = (error(LightingResolution::Full), error(LightingResolution::Target));
             println!("{} at scale {scale}: fitted {fitted:.1} dB, carried {carried:.1} dB", preset.name);
-            // `backlit_fog` is 0.8 dB behind. At 70 dB the error is 0.08 of 255, which no screen shows: `corridor` at scale 4
-            // is 1.1 dB behind at 72 dB.
+            // `corridor` is 0.7 dB behind, the others 0.5 at most. At 70 dB the error is 0.08 of 255, which no screen shows:
+            // `corridor` at scale 4 is 1.3 dB behind at 71 dB.
             let is_close = carried > fitted - 1.0 || carried > 70.0;
             assert!(is_close, "{} at scale {scale}: {carried:.1} dB, fitted {fitted:.1}", preset.name);
         }
@@ -179,7 +179,10 @@ fn guided_upsampling_has_no_stripes_on_a_grazing_surface() {
 #[ignore = "prints the figures of docs/upsampling.md"]
 fn prints_errors_of_every_upsampling_mode() {
     for preset in builtin::PRESETS {
-        print_rows(preset.name, &Shot::load(preset.name, SIZE).unwrap());
+        let shot = Shot::load(preset.name, SIZE).unwrap();
+        if has_edges(&shot) {
+            print_rows(preset.name, &shot);
+        }
     }
     print_rows("grazing", &grazing_shot());
 }

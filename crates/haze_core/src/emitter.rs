@@ -2,7 +2,7 @@
 //!
 //! A flow carries the particles: each path is integrated from its birth, in a fixed number of steps. There is no simulation
 //! state, so time can be scrubbed, frames can be rendered in any order, and two images can be compared. The arithmetic is
-//! integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs, `shaders/lib/emitter.wgsl`.
+//! integer hashes and plain f32, in `emitter.rs`, `flight.rs` and `flow.rs` of `src/formula/` and, for GPUs, `shaders/lib/`.
 
 use std::f32::consts::TAU;
 
@@ -121,7 +121,8 @@ settings! {
         /// Radius of a ring at birth; it widens on its way. About that of the source: all of the smoke rolls. Lower: its middle
         /// breaks through.
         ring_size: f32 = 0.4, number(0.01..=1.0e3, "m");
-        /// Growth of the wind per metre of height above the source. Bends the smoke more the higher it is.
+        /// Growth of the wind per metre of height above the source. Bends the smoke more the higher it is. A part along `up` has
+        /// no effect.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         wind_shear: Vec3 = Vec3::ZERO, vector(-10.0..=10.0, "1/s");
         /// Turns per second about the axis through `position` along `up`, which the wind carries along: a whirl. Below 0: the
@@ -270,20 +271,20 @@ impl Emitter {
     /// that die before are taken to fly on.
     pub fn displacements(&self, time: f64, seconds: f32, displacements: &mut Vec<Vec3>) {
         let now = self.snapshot(time);
-        let mut later = now.uniform;
-        later.since_first += seconds;
-        let swirls = self.snapshot(time + f64::from(seconds)).uniform;
-        later.swirl_turn = swirls.swirl_turn;
-        later.swirl_offset = swirls.swirl_offset;
-        later.swirl_first = swirls.swirl_first;
-        later.ring_phase = swirls.ring_phase;
-        later.ring_first = swirls.ring_first;
+        // The flow of then, the births of now.
+        let later = EmitterUniform {
+            first: now.uniform.first,
+            count: now.uniform.count,
+            first_in_pulse: now.uniform.first_in_pulse,
+            since_first: now.uniform.since_first + seconds,
+            ..self.snapshot(time + f64::from(seconds)).uniform
+        };
         displacements.clear();
         displacements.extend(now.displacements(&later, seconds));
     }
 
     /// The same emitter at a size of 1: lengths, times and speeds are those of its smoke.
-    pub fn sized(&self) -> Emitter {
+    fn sized(&self) -> Emitter {
         let size = self.size;
         let slower = size.sqrt();
         Emitter {

@@ -365,7 +365,8 @@ fn sample_represents_all_particles_and_stays_the_same() {
     let mean = |particles: &[Particle]| particles.iter().map(|p| p.position).sum::<Vec3>() / particles.len() as f32;
     assert!((mean(&all) - mean(&now)).length() < 0.1);
     let mut without_step = emitter.snapshot(9.0);
-    (without_step.step, without_step.first_sample) = (0, 0);
+    without_step.step = 0;
+    without_step.first_sample = 0;
     let mut particles = Vec::new();
     without_step.sample(&mut particles);
     assert_eq!(particles.len(), all.len());

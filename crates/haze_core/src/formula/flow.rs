@@ -32,10 +32,9 @@ pub fn swirl(emitter: &EmitterUniform, position: Vec3, later: f32) -> Vec3 {
 
 /// Salt of the random numbers of rings.
 const RING_SALT: u32 = 5;
-/// A ring takes in air and widens by so much of its way. (Maxworthy, "The structure and stability of vortex rings", 1972,
-/// found 0.01 for thin rings; hot puffs take in more)
+/// A ring takes in air and widens by so much of its way: chosen by eye.
 const RING_GROWTH: f32 = 0.12;
-/// Random variation of radius and speed, up and down, as a share of them, and of the axis, as a share of its length.
+/// Random variation of radius and speed, up and down, as a share, and of the axis, as a share of its length.
 const RING_SPREAD: f32 = 0.3;
 /// Share of the life after which a ring rolls at full speed.
 const RING_ONSET: f32 = 0.1;
@@ -124,6 +123,7 @@ pub fn flow_at_step(emitter: &EmitterUniform, flying: &Flying, number: u32, offs
     let path = paced_flight(emitter, &flying.start, &pace);
     let position = path.position + offset;
     let mut velocity = Vec3::ZERO;
+    // Swirls do not hold at birth.
     if emitter.swirl_strength > 0.0 && number > 0 {
         velocity += swirl(emitter, position, later) * smoothstep_unit(age / SWIRL_ONSET);
     }

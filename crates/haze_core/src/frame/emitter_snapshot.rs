@@ -28,8 +28,9 @@ pub struct EmitterSnapshot {
 /// Bound on the speed of a particle in the swirls, in units of their strength: more than at any point that the test below
 /// samples.
 const SWIRL_SPEED_BOUND: f32 = 25.0;
-/// Bound on the speed around two rings of the greatest speed, in units of their mean speed in the middle.
-const RING_SPEED_BOUND: f32 = 2.6;
+/// Bound on the speed of a particle around two rings, in units of their mean speed in the middle: more than at any point that
+/// the test below samples.
+const RING_SPEED_BOUND: f32 = 4.0;
 /// Number of intervals of age for which the box is computed.
 const AGE_INTERVALS: u32 = 16;
 
@@ -118,8 +119,9 @@ impl EmitterSnapshot {
             }
             let age = (late / shortest).min(1.0);
             let way = (low - e.position).abs().max((high - e.position).abs()).length();
-            let flow = flow_bound(e, way + born.length(), flown);
-            let scattered = (e.burst.abs() + e.velocity_spread) * reached_late.x + flow.way;
+            let thrown = (e.burst.abs() + e.velocity_spread) * reached_late.x;
+            let flow = flow_bound(e, way + born.length() + thrown, flown);
+            let scattered = thrown + flow.way;
             let radius = largest * e.radius_start.max(e.radius_start + (e.radius_end - e.radius_start) * age.sqrt());
             let kept = if lags { 1.0 } else { 1.0 - e.drag * reached_early.x };
             let speed = fastest
@@ -149,14 +151,13 @@ struct FlowBound {
 fn flow_bound(emitter: &EmitterUniform, flight: f32, seconds: f32) -> FlowBound {
     let ring_speed = RING_SPEED_BOUND * emitter.ring_speed;
     let mut way = swirl_way_bound(emitter, seconds) + emitter.attraction.abs() * seconds;
-    way += (ring_speed * seconds).min(ring_way_bound(emitter, flight));
-    // No higher than this, of which the wind is a part.
-    let shear = emitter.wind_shear.length();
-    let aloft = shear * (flight + way);
+    way += ring_way_bound(emitter, flight, seconds);
     if emitter.floor_margin > 0.0 {
         // Up as far as it has fallen, and as far aside.
         way += 2.0 * (flight + way);
     }
+    // Shear blows across `up`: the smoke rises no higher than this.
+    let aloft = emitter.wind_shear.length() * (flight + way);
     FlowBound {
         way: way + aloft * seconds,
         speed: SWIRL_SPEED_BOUND * emitter.swirl_strength + ring_speed + emitter.attraction.abs() + aloft,
@@ -165,8 +166,9 @@ fn flow_bound(emitter: &EmitterUniform, flight: f32, seconds: f32) -> FlowBound 
 
 /// Bound on the way by which rings carry a particle: around them, not along with them. More than any that the test below
 /// samples.
-fn ring_way_bound(emitter: &EmitterUniform, flight: f32) -> f32 {
-    5.0 * emitter.ring_size + 0.6 * flight
+fn ring_way_bound(emitter: &EmitterUniform, flight: f32, seconds: f32) -> f32 {
+    let straight = RING_SPEED_BOUND * emitter.ring_speed * seconds;
+    straight.min(5.0 * emitter.ring_size + 0.6 * flight)
 }
 
 /// Bound on the way along an axis by which the swirls carry a particle in so many seconds: more than any that the test below
@@ -182,7 +184,7 @@ mod tests {
 
     use super::*;
     use crate::emitter::Emitter;
-    use crate::formula::flight::Flight;
+    use crate::formula::flight::{Flight, flight};
     use crate::formula::flow::{FlowStep, Flying, carried_by_flow};
     use crate::formula::hash::{pcg3d, unit};
 
@@ -214,5 +216,37 @@ mod tests {
         println!("{farthest} {fastest}");
         assert!((0.5..0.98).contains(&farthest), "{farthest}");
         assert!((0.5..0.98).contains(&(fastest / SWIRL_SPEED_BOUND)), "{fastest}");
+    }
+
+    #[test]
+    fn rings_stay_within_their_bounds() {
+        let mut farthest = 0.0_f32;
+        let mut fastest = 0.0_f32;
+        for (ring_size, ring_rate, buoyancy) in [(0.1, 2.0, 0.6), (0.4, 1.0, 0.0), (0.4, 0.3, 2.0), (2.0, 0.5, 1.0)] {
+            // The second is more than has effect.
+            for ring_speed in [0.5, 1000.0] {
+                let emitter =
+                    Emitter { ring_size, ring_rate, ring_speed, buoyancy, turbulence: 0.0, ..Emitter::default() };
+                let uniform = emitter.snapshot(100.0).uniform;
+                for particle in 0..4000 {
+                    let random = pcg3d(UVec3::new(particle, 3, 5));
+                    let random = Vec3::new(unit(random.x), unit(random.y), unit(random.z)) - 0.5;
+                    let start = Flight { position: random * 3.0 * ring_size, velocity: emitter.velocity };
+                    for age in [0.1, 0.3, 0.6, 0.99] {
+                        // Births at any time between two rings.
+                        let seconds = (age + 0.1 * random.x) * emitter.lifetime;
+                        let seconds = seconds.clamp(0.0, 0.999 * emitter.lifetime);
+                        let flying = Flying { start, lifetime: emitter.lifetime, seconds };
+                        let carried = carried_by_flow(&uniform, &flying, &mut FlowStep::default());
+                        let flown = flight(&uniform, &start, seconds).position.length();
+                        farthest = farthest.max(carried.position.length() / ring_way_bound(&uniform, flown, seconds));
+                        fastest = fastest.max(carried.velocity.length() / uniform.ring_speed);
+                    }
+                }
+            }
+        }
+        println!("{farthest} {fastest}");
+        assert!((0.3..0.98).contains(&farthest), "{farthest}");
+        assert!((0.3..0.98).contains(&(fastest / RING_SPEED_BOUND)), "{fastest}");
     }
 }

@@ -16,8 +16,8 @@ use crate::frame::{Bounds, Light, LightKind, ShadowProjection};
 const MIN_EXTENT: f64 = 1.0e-3;
 
 /// Grid of cubic cells along the axes of the world. It follows the box of the smoke: a grid that keeps its cells until the
-/// box has outgrown them changes all of them at once, which shows. So would marches that end at the last cell, when there is
-/// one more.
+/// box has outgrown them changes all of its cells at once, which shows. So would marches that end at the last cell, where a
+/// cell is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmokeGrid {
     /// Corner of the first cell, metres.

@@ -1,14 +1,14 @@
 //! Motion vectors, shortened to what the images between frames follow.
 //!
 //! Particles of a plume move through an outline and a light that stand still: smoke is born, lit and fades where other smoke
-//! was before, and sparks fly in front of it. A vector is the mean of all of them. Each texel gets the length at which the frame
+//! was before, and sparks fly in front of it. A vector is the mean over all particles. Each texel gets the length at which the frame
 //! predicts the images halfway to the frames before and after, between which an engine uses it. Two frames alone do not tell it:
 //! sparks and flames that are alike match each other's.
 
 use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
 use haze_core::assets::image::Image;
 
-/// Lengths that are tried, as shares of the way of the particles. More of them lower the error by less than a hundredth.
+/// Lengths that are tried, as shares of the way of the particles. More lengths lower the error by less than a hundredth.
 const SHARES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Squared error that a vector of full length must save, or rest is as good: one code of 8 bits.

@@ -22,6 +22,7 @@ fn bench() -> Bench {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("my.json");
     fs::write(&path, Preset::load("fence").unwrap().to_json("")).unwrap();
+    // High enough for the last row of the look page.
     let mut window = testing::window(path.to_str().unwrap(), Vec2::new(800.0, 540.0), Theme::Dark);
     window.state_mut().export_job.options =
         ExportOptions { size: UVec2::new(64, 36), last: 3, ..ExportOptions::default() };
