@@ -98,6 +98,14 @@ struct Emitter {
     small_size: f32,
     // Height above the floor below which smoke turns aside; 0 if it does not.
     floor_margin: f32,
+    // Distance from the obstacle below which smoke turns aside; 0 if there is none.
+    obstacle_margin: f32,
+    // Middle of the box.
+    obstacle: vec3f,
+    // Radius of its edges, for the smoke.
+    obstacle_rounding: f32,
+    // Half its size, less that radius.
+    obstacle_core: vec3f,
     padding: f32,
 }
 

@@ -1,5 +1,5 @@
 // Flow of the air that carries an emitter's particles beside their flight: swirls, rolling rings, wind that grows with the
-// height, a pull, a floor.
+// height, a pull, a floor, a box.
 
 #import "lib/flight.wgsl"
 #import "lib/swirl_noise.wgsl"
@@ -68,18 +68,46 @@ fn rings(emitter: Emitter, position: vec3f, born: f32, later: f32) -> vec3f {
         + ring(emitter, position, last + 1.0, later) * smoothstep_unit(2.0 * share);
 }
 
-// Velocity that turns smoke aside from the floor: what falls flows away from the source, and what is below rises. `velocity`:
-// that of the smoke. `seconds`: from one step to the next.
-fn turned_aside(emitter: Emitter, position: vec3f, velocity: vec3f, seconds: f32) -> vec3f {
-    let margin = emitter.floor_margin;
-    let height = dot(position, emitter.up) - emitter.floor;
-    let near = smoothstep_unit(1.0 - height / margin);
-    let falling = max(-dot(velocity, emitter.up), 0.0) * near;
-    let from_source = position - emitter.position;
-    let side = from_source - emitter.up * dot(from_source, emitter.up);
-    // Nowhere in particular below the source, and slower where it has spread.
+// The part of a surface that is nearest to smoke which flows around it.
+struct Wall {
+    // Towards the smoke, of unit length.
+    normal: vec3f,
+    // Of the smoke from the surface, metres; below 0 behind it.
+    distance: f32,
+    // From the point that smoke flows away from, to the smoke.
+    from_middle: vec3f,
+}
+
+// The floor, along which smoke flows away from the source.
+fn floor_wall(emitter: Emitter, position: vec3f) -> Wall {
+    return Wall(emitter.up, dot(position, emitter.up) - emitter.floor, position - emitter.position);
+}
+
+// The surface of the obstacle: a box whose edges are rounded, so that smoke turns gradually.
+fn obstacle_wall(emitter: Emitter, position: vec3f) -> Wall {
+    let from_middle = position - emitter.obstacle;
+    let beyond = abs(from_middle) - emitter.obstacle_core;
+    let outside = max(beyond, vec3f(0.0));
+    let away = length(outside);
+    // Deep inside, smoke rises.
+    var normal = emitter.up;
+    var distance = max(max(beyond.x, beyond.y), beyond.z);
+    if away > 0.0 {
+        normal = sign(from_middle) * outside / away;
+        distance = away;
+    }
+    return Wall(normal, distance - emitter.obstacle_rounding, from_middle);
+}
+
+// Velocity that turns smoke aside from a wall within a margin: what flows towards the wall flows along it, and what is behind it
+// comes out. `velocity`: that of the smoke. `seconds`: from one step to the next.
+fn turned_aside(wall: Wall, margin: f32, velocity: vec3f, seconds: f32) -> vec3f {
+    let near = smoothstep_unit(1.0 - wall.distance / margin);
+    let towards = max(-dot(velocity, wall.normal), 0.0) * near;
+    let side = wall.from_middle - wall.normal * dot(wall.from_middle, wall.normal);
+    // Nowhere in particular at the middle, and slower where it has spread.
     let away = side * (2.0 * margin / (dot(side, side) + margin * margin));
-    return (emitter.up + away) * falling + emitter.up * (max(-height, 0.0) * 0.5 / seconds);
+    return (wall.normal + away) * towards + wall.normal * (max(-wall.distance, 0.0) * 0.5 / seconds);
 }
 
 // A particle between its birth and its death.
@@ -125,8 +153,14 @@ fn flow_at_step(emitter: Emitter, flying: Flying, number: u32, offset: vec3f) ->
     let distance = sqrt(dot(to_attractor, to_attractor) + emitter.attractor_size * emitter.attractor_size);
     velocity += to_attractor * (emitter.attraction / distance);
     velocity *= pace.speed;
+    let step = flying.lifetime / f32(FLOW_STEPS);
     if emitter.floor_margin > 0.0 {
-        velocity += turned_aside(emitter, position, path.velocity + velocity, flying.lifetime / f32(FLOW_STEPS));
+        let wall = floor_wall(emitter, position);
+        velocity += turned_aside(wall, emitter.floor_margin, path.velocity + velocity, step);
+    }
+    if emitter.obstacle_margin > 0.0 {
+        let wall = obstacle_wall(emitter, position);
+        velocity += turned_aside(wall, emitter.obstacle_margin, path.velocity + velocity, step);
     }
     return velocity;
 }

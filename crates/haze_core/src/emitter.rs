@@ -43,7 +43,7 @@ settings! {
         /// Seed of the random numbers. Each value gives different smoke of the same kind.
         seed: u32 = 1, seed;
         /// Size of all of it: distances grow by this, times and speeds by its square root, as large fires burn slower. Lengths
-        /// below are those at 1. `position`, `floor` and `attractor` stay.
+        /// below are those at 1. `position`, `floor`, `attractor` and the obstacle stay.
         size: f32 = 1.0, number(0.01..=100.0, "");
         /// Births per second. Higher: denser and smoother smoke, at the cost of more sprites.
         rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
@@ -135,6 +135,15 @@ settings! {
         attractor: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
         /// Distance from the attractor within which the pull grows weaker. Lower: smoke gathers in a point.
         attractor_size: f32 = 0.5, number(0.01..=1.0e3, "m");
+        /// Distance from the obstacle below which smoke turns aside and flows around it: a crate, a beam, a wall. Rounds its edges
+        /// for the smoke. About the size of the smoke, so that it turns gradually. 0: there is no obstacle.
+        obstacle_margin: f32 = 0.0, number(0.0..=100.0, "m");
+        /// Middle of the obstacle, a box along the axes of the world.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        obstacle: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
+        /// Half the size of the obstacle. Flat: a wall or a table.
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+        obstacle_extent: Vec3 = Vec3::splat(0.5), vector(0.0..=1.0e4, "m");
         "radius":
         /// Radius at birth: thickness of the smoke at its root.
         radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
@@ -312,6 +321,7 @@ impl Emitter {
             radius_start: self.radius_start * size,
             radius_end: self.radius_end * size,
             floor_margin: self.floor_margin * size,
+            obstacle_margin: self.obstacle_margin * size,
             spin: self.spin / slower,
             frame_rate: self.frame_rate / slower,
             ..*self
@@ -350,7 +360,9 @@ impl Emitter {
             || self.ring_speed > 0.0
             || self.attraction != 0.0
             || self.wind_shear != Vec3::ZERO
-            || self.floor_margin > 0.0;
+            || self.floor_margin > 0.0
+            || self.obstacle_margin > 0.0;
+        let rounding = self.obstacle_margin.min(self.obstacle_extent.min_element());
         let mut uniform = EmitterUniform {
             first: first as u32,
             count: (last - first) as u32,
@@ -416,6 +428,10 @@ impl Emitter {
             small_share: self.small_share,
             small_size: self.small_size,
             floor_margin: self.floor_margin,
+            obstacle_margin: self.obstacle_margin,
+            obstacle: self.obstacle,
+            obstacle_rounding: rounding,
+            obstacle_core: self.obstacle_extent - rounding,
             ..EmitterUniform::default()
         };
         uniform.swirl_travel = self.turbulence_travel * self.mean_velocity(&uniform);

@@ -77,6 +77,10 @@ pub(super) fn test_emitter(x: &[f32]) -> EmitterUniform {
         small_share: 0.3,
         small_size: 0.6,
         floor_margin: 0.5,
+        obstacle_margin: 0.6,
+        obstacle: vec3(1.3, 4.0, 2.6),
+        obstacle_rounding: 0.2,
+        obstacle_core: vec3(0.4, 0.3, 0.45),
         ..EmitterUniform::default()
     }
 }
@@ -102,7 +106,8 @@ macro_rules! wgsl_emitter {
              Curve(array(vec4f(0.0, 0.3, 0.2, 1.0), vec4f(0.5, 0.4, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8), vec4f(1.0, 0.8, 1.0, 0.8))), \
              Curve(array(vec4f(0.0, 1.0, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5), vec4f(1.0, 0.5, 1.0, 0.5))), \
              0.7, 0.4, 1u, 0.7, vec3f(0.2, 0.5, -0.1), 0.6, vec3f(0.3, 0.9, 0.1), 0.35, vec3i(-9, 7, 100000), 4000000000u, \
-             vec3f(0.2, 0.0, -0.1), 0.9, vec3f(2.0, 5.0, 3.5), 0.3, 0.7, 0.6, 0.2, 1u, 0.3, 0.6, 0.5, 0.0); ",
+             vec3f(0.2, 0.0, -0.1), 0.9, vec3f(2.0, 5.0, 3.5), 0.3, 0.7, 0.6, 0.2, 1u, 0.3, 0.6, 0.5, \
+             0.6, vec3f(1.3, 4.0, 2.6), 0.2, vec3f(0.4, 0.3, 0.45), 0.0); ",
             $call
         )
     };

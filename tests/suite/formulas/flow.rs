@@ -1,15 +1,19 @@
 //! Formula tests of `shaders/lib/flow.wgsl`.
 
-use haze_core::formula::flow::{self, FlowStep, Flying};
+use haze_core::formula::flow::{self, FlowStep, Flying, Wall};
 
 use super::Formula;
 use super::flight::{CASES, numbers, start, test_emitter, wgsl_emitter};
-use super::inputs::{TRANSCENDENTAL, random, v3};
+use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v3};
 
 const WGSL_CARRIED: &str = wgsl_emitter!(
     "let f = carried_by_flow(e, Flying(Flight(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))), 6.0, x(6))); \
      y3(0, f.position); y3(3, f.velocity);"
 );
+
+fn wall_numbers(wall: &Wall) -> Vec<f32> {
+    [wall.normal.to_array().as_slice(), &[wall.distance], &wall.from_middle.to_array()].concat()
+}
 
 pub fn formulas() -> Vec<Formula> {
     // Around the rings that have left the source.
@@ -66,19 +70,56 @@ pub fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "turned_aside",
+            name: "floor_wall",
             file: "lib/flow.wgsl",
-            wgsl: wgsl_emitter!("y3(0, turned_aside(e, vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), 0.2));"),
-            reference: |x| flow::turned_aside(&test_emitter(&[0.0]), v3(x), v3(&x[3..]), 0.2).to_array().to_vec(),
-            cases: random(100, &[(-1.0, 3.0), (1.4, 2.5), (1.0, 5.0), (-1.0, 1.0), (-2.0, 0.5), (-1.0, 1.0)]),
-            tolerance: TRANSCENDENTAL,
+            wgsl: wgsl_emitter!(
+                "let w = floor_wall(e, vec3f(x(0), x(1), x(2))); y3(0, w.normal); y(3, w.distance); y3(4, w.from_middle);"
+            ),
+            reference: |x| wall_numbers(&flow::floor_wall(&test_emitter(&[0.0]), v3(x))),
+            cases: random(20, &[(-1.0, 3.0), (1.4, 2.5), (1.0, 5.0)]),
+            tolerance: ARITHMETIC,
             mutants: &[
                 ("dot(position, emitter.up) - emitter.floor", "dot(position, emitter.up)"),
-                ("smoothstep_unit(1.0 - height / margin)", "smoothstep_unit(1.0 - height)"),
-                ("max(-dot(velocity, emitter.up), 0.0)", "-dot(velocity, emitter.up)"),
-                ("(emitter.up + away) * falling", "emitter.up * falling"),
+                ("position - emitter.position", "position"),
+            ],
+        },
+        Formula {
+            name: "obstacle_wall",
+            file: "lib/flow.wgsl",
+            wgsl: wgsl_emitter!(
+                "let w = obstacle_wall(e, vec3f(x(0), x(1), x(2))); y3(0, w.normal); y(3, w.distance); y3(4, w.from_middle);"
+            ),
+            reference: |x| wall_numbers(&flow::obstacle_wall(&test_emitter(&[0.0]), v3(x))),
+            // Inside and on all sides.
+            cases: random(300, &[(0.7, 1.9), (3.6, 4.4), (1.9, 3.3)]),
+            // A normal is a small difference over another.
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("abs(from_middle) - emitter.obstacle_core", "abs(from_middle)"),
+                ("var normal = emitter.up", "var normal = vec3f(0.0)"),
+                ("max(max(beyond.x, beyond.y), beyond.z)", "max(beyond.x, beyond.y)"),
+                ("sign(from_middle) * outside", "outside"),
+                ("distance - emitter.obstacle_rounding", "distance"),
+            ],
+        },
+        Formula {
+            name: "turned_aside",
+            file: "lib/flow.wgsl",
+            wgsl: wgsl_emitter!(
+                "let w = obstacle_wall(e, vec3f(x(0), x(1), x(2))); y3(0, turned_aside(w, 0.6, vec3f(x(3), x(4), x(5)), 0.2));"
+            ),
+            reference: |x| {
+                let wall = flow::obstacle_wall(&test_emitter(&[0.0]), v3(x));
+                flow::turned_aside(&wall, 0.6, v3(&x[3..]), 0.2).to_array().to_vec()
+            },
+            cases: random(100, &[(0.3, 2.3), (3.5, 4.5), (1.4, 3.8), (-1.0, 1.0), (-2.0, 0.5), (-1.0, 1.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("smoothstep_unit(1.0 - wall.distance / margin)", "smoothstep_unit(1.0 - wall.distance)"),
+                ("max(-dot(velocity, wall.normal), 0.0)", "-dot(velocity, wall.normal)"),
+                ("(wall.normal + away) * towards", "wall.normal * towards"),
                 ("dot(side, side) + margin * margin", "dot(side, side)"),
-                ("max(-height, 0.0) * 0.5", "max(-height, 0.0)"),
+                ("max(-wall.distance, 0.0) * 0.5", "max(-wall.distance, 0.0)"),
             ],
         },
         Formula {
@@ -98,7 +139,8 @@ pub fn formulas() -> Vec<Formula> {
                 ("let later = seconds - flying.seconds", "let later = 0.0"),
                 ("smoothstep_unit(age / SWIRL_ONSET)", "1.0"),
                 ("velocity *= pace.speed;", ""),
-                ("path.velocity + velocity, flying", "path.velocity, flying"),
+                ("emitter.floor_margin, path.velocity + velocity", "emitter.floor_margin, path.velocity"),
+                ("emitter.obstacle_margin, path.velocity + velocity", "emitter.obstacle_margin, path.velocity"),
                 ("emitter.ring_phase - flying.seconds * emitter.ring_rate", "emitter.ring_phase"),
                 ("velocity += emitter.wind_shear", "velocity -= emitter.wind_shear"),
                 ("dot(position - emitter.position, emitter.up), 0.0)", "dot(position, emitter.up), 0.0)"),

@@ -1,5 +1,5 @@
 //! Flow of the air that carries an emitter's particles beside their flight: swirls, rolling rings, wind that grows with the
-//! height, a pull, a floor. WGSL: `shaders/lib/flow.wgsl`.
+//! height, a pull, a floor, a box. WGSL: `shaders/lib/flow.wgsl`.
 
 use glam::{Vec2, Vec3};
 
@@ -72,18 +72,51 @@ pub fn rings(emitter: &EmitterUniform, position: Vec3, born: f32, later: f32) ->
         + ring(emitter, position, last + 1.0, later) * smoothstep_unit(2.0 * share)
 }
 
-/// Velocity that turns smoke aside from the floor: what falls flows away from the source, and what is below rises.
-/// `velocity`: that of the smoke. `seconds`: from one step to the next.
-pub fn turned_aside(emitter: &EmitterUniform, position: Vec3, velocity: Vec3, seconds: f32) -> Vec3 {
-    let margin = emitter.floor_margin;
-    let height = position.dot(emitter.up) - emitter.floor;
-    let near = smoothstep_unit(1.0 - height / margin);
-    let falling = (-velocity.dot(emitter.up)).max(0.0) * near;
-    let from_source = position - emitter.position;
-    let side = from_source - emitter.up * from_source.dot(emitter.up);
-    // Nowhere in particular below the source, and slower where it has spread.
+/// The part of a surface that is nearest to smoke which flows around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Towards the smoke, of unit length.
+    pub normal: Vec3,
+    /// Of the smoke from the surface, metres; below 0 behind it.
+    pub distance: f32,
+    /// From the point that smoke flows away from, to the smoke.
+    pub from_middle: Vec3,
+}
+
+/// The floor, along which smoke flows away from the source.
+pub fn floor_wall(emitter: &EmitterUniform, position: Vec3) -> Wall {
+    Wall {
+        normal: emitter.up,
+        distance: position.dot(emitter.up) - emitter.floor,
+        from_middle: position - emitter.position,
+    }
+}
+
+/// The surface of the obstacle: a box whose edges are rounded, so that smoke turns gradually.
+pub fn obstacle_wall(emitter: &EmitterUniform, position: Vec3) -> Wall {
+    let from_middle = position - emitter.obstacle;
+    let beyond = from_middle.abs() - emitter.obstacle_core;
+    let outside = beyond.max(Vec3::ZERO);
+    let away = outside.length();
+    // Deep inside, smoke rises.
+    let mut normal = emitter.up;
+    let mut distance = beyond.max_element();
+    if away > 0.0 {
+        normal = from_middle.signum() * outside / away;
+        distance = away;
+    }
+    Wall { normal, distance: distance - emitter.obstacle_rounding, from_middle }
+}
+
+/// Velocity that turns smoke aside from a wall within a margin: what flows towards the wall flows along it, and what is behind
+/// it comes out. `velocity`: that of the smoke. `seconds`: from one step to the next.
+pub fn turned_aside(wall: &Wall, margin: f32, velocity: Vec3, seconds: f32) -> Vec3 {
+    let near = smoothstep_unit(1.0 - wall.distance / margin);
+    let towards = (-velocity.dot(wall.normal)).max(0.0) * near;
+    let side = wall.from_middle - wall.normal * wall.from_middle.dot(wall.normal);
+    // Nowhere in particular at the middle, and slower where it has spread.
     let away = side * (2.0 * margin / (side.dot(side) + margin * margin));
-    (emitter.up + away) * falling + emitter.up * ((-height).max(0.0) * 0.5 / seconds)
+    (wall.normal + away) * towards + wall.normal * ((-wall.distance).max(0.0) * 0.5 / seconds)
 }
 
 /// A particle between its birth and its death.
@@ -136,8 +169,14 @@ pub fn flow_at_step(emitter: &EmitterUniform, flying: &Flying, number: u32, offs
     let distance = (to_attractor.dot(to_attractor) + emitter.attractor_size * emitter.attractor_size).sqrt();
     velocity += to_attractor * (emitter.attraction / distance);
     velocity *= pace.speed;
+    let step = flying.lifetime / FLOW_STEPS as f32;
     if emitter.floor_margin > 0.0 {
-        velocity += turned_aside(emitter, position, path.velocity + velocity, flying.lifetime / FLOW_STEPS as f32);
+        let wall = floor_wall(emitter, position);
+        velocity += turned_aside(&wall, emitter.floor_margin, path.velocity + velocity, step);
+    }
+    if emitter.obstacle_margin > 0.0 {
+        let wall = obstacle_wall(emitter, position);
+        velocity += turned_aside(&wall, emitter.obstacle_margin, path.velocity + velocity, step);
     }
     velocity
 }

@@ -301,6 +301,10 @@ uniform! {
         small_share: f32,
         small_size: f32,
         floor_margin: f32,
+        obstacle_margin: f32,
+        obstacle: Vec3,
+        obstacle_rounding: f32,
+        obstacle_core: Vec3,
         padding: f32,
     }
 }

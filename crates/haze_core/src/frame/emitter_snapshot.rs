@@ -130,8 +130,9 @@ impl EmitterSnapshot {
                     + e.rise.length() * reached_late.x
                     + turning
                     + flow.speed);
-            // Along the floor, smoke is as fast again as it was, and rises.
-            let speed = if e.floor_margin > 0.0 { 3.0 * speed } else { speed };
+            // Along a floor or an obstacle, smoke is as fast again as it was, and comes out.
+            let walls = [e.floor_margin, e.obstacle_margin].into_iter().filter(|margin| *margin > 0.0).count();
+            let speed = speed * 3.0_f32.powi(walls as i32);
             let radius = radius * (1.0 + e.radius_spread);
             let margin = scattered + e.anchor * radius + extent.radius(radius, speed);
             bounds.include(low - born, margin);
@@ -155,6 +156,13 @@ fn flow_bound(emitter: &EmitterUniform, flight: f32, seconds: f32) -> FlowBound 
     if emitter.floor_margin > 0.0 {
         // Up as far as it has fallen, and as far aside.
         way += 2.0 * (flight + way);
+    }
+    if emitter.obstacle_margin > 0.0 {
+        // Aside as far as it has come towards the obstacle; births inside come out.
+        let extent = emitter.obstacle_core + emitter.obstacle_rounding;
+        let born_inside = (emitter.position - emitter.obstacle).abs().cmple(extent + emitter.extent.length()).all();
+        way += 2.0 * (flight + way);
+        way += if born_inside { 2.0 * extent.length() } else { 0.0 };
     }
     // Shear blows across `up`: the smoke rises no higher than this.
     let aloft = emitter.wind_shear.length() * (flight + way);

@@ -85,6 +85,6 @@ pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {
     let is_anchored = emitter.anchor > 0.0;
     let is_flowing = emitter.wind_shear != Vec3::ZERO || emitter.orbit != 0.0 || emitter.ring_speed > 0.0;
     let is_disc = emitter.shape == EmitterShape::Disc;
-    let has_floor = emitter.bounce > 0.0 || emitter.floor_margin > 0.0;
-    emitter.buoyancy == 0.0 && !has_floor && !is_anchored && !is_flowing && !is_disc
+    let has_walls = emitter.bounce > 0.0 || emitter.floor_margin > 0.0 || emitter.obstacle_margin > 0.0;
+    emitter.buoyancy == 0.0 && !has_walls && !is_anchored && !is_flowing && !is_disc
 }

@@ -377,9 +377,18 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         |s, _| s.emitter.attraction == 0.0,
         &["emitter.attractor", "emitter.attractor_size"],
     ),
+    rule(
+        "only at an obstacle_margin above 0",
+        |s, _| s.emitter.obstacle_margin <= 0.0,
+        &["emitter.obstacle", "emitter.obstacle_extent"],
+    ),
     rule("only at a small_share above 0", |s, _| s.emitter.small_share <= 0.0, &["emitter.small_size"]),
     rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
-    rule("only with buoyancy, a floor, anchor, rings, wind_shear, orbit, or shape disc", ignores_up, &["emitter.up"]),
+    rule(
+        "only with buoyancy, a floor, an obstacle, anchor, rings, wind_shear, orbit, or shape disc",
+        ignores_up,
+        &["emitter.up"],
+    ),
     rule(
         "only at a bounce or a floor_margin above 0",
         |s, _| s.emitter.bounce <= 0.0 && s.emitter.floor_margin <= 0.0,
