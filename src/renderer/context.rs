@@ -93,7 +93,7 @@ impl Context {
     fn create(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let layouts = Layouts::new(device);
         let store = PipelineStore::new(device, pipeline_cache);
-        let Ok(pipelines) = Pipelines::new(&store, &layouts, |name| embedded_shader(device, name));
+        let Ok(pipelines) = Pipelines::new(&store, &layouts, embedded_shader);
         Self::assemble(queue, layouts, pipelines, None)
     }
 

@@ -62,7 +62,7 @@ impl<K: PipelineKey> PipelineVariants<K> {
             bind_group_layouts: &groups,
             immediate_size: 0,
         });
-        let common = Common { name: K::PASS, module: shader.module, path: shader.path, layout, store: store.clone() };
+        let common = Common { name: K::PASS, shader, layout, store: store.clone() };
         Self { common, inputs, pipelines: Arc::default() }
     }
 
@@ -78,7 +78,7 @@ impl<K: PipelineKey> PipelineVariants<K> {
 
     /// Shares the pipelines of another context if its module is the same.
     pub fn share(&mut self, other: &Self) {
-        if self.common.module == other.common.module {
+        if self.common.shader.is_same(&other.common.shader) {
             self.pipelines = other.pipelines.clone();
         }
     }
@@ -99,7 +99,7 @@ impl<K: PipelineKey> PipelineVariants<K> {
             let stages = [("VERTEX", "vertex"), ("FRAGMENT", "fragment"), ("COMPUTE", "compute")];
             let plain = |text: String, (stage, name): (&str, _)| text.replace(&format!("ShaderStages({stage})"), name);
             let reason = one_line(stages.into_iter().fold(reason, plain));
-            Error::Shader { path: self.common.path.clone(), line: 1, column: 1, reason }
+            Error::Shader { path: self.common.shader.path.clone(), line: 1, column: 1, reason }
         })?;
         self.keep(key, compiled);
         Ok(())

@@ -21,10 +21,10 @@ pub(crate) struct MeshPipelines {
     hierarchy_layout: wgpu::BindGroupLayout,
     /// Writes reflectance and normals at 2x2 samples per pixel.
     pub paint: wgpu::RenderPipeline,
-    /// Lights the paint of each layer: surfaces behind outlines, objects in front.
-    pub light: [wgpu::RenderPipeline; 2],
-    /// Lights the paint of each layer, with up to three lights apart.
-    pub light_parts: [wgpu::RenderPipeline; 2],
+    /// Lights the paint of a layer: surfaces behind outlines, objects in front.
+    pub light: wgpu::RenderPipeline,
+    /// Lights the paint of a layer, with up to three lights apart.
+    pub light_parts: wgpu::RenderPipeline,
     /// Writes depth alone, as a light sees it.
     pub shadow: wgpu::RenderPipeline,
 }
@@ -132,12 +132,10 @@ impl MeshPipelines {
             ScenePipeline { groups: &drawn, vertex: "mesh_vertex", buffers: &vertices, fragment, depth: true }
                 .create(device, &module)
         };
-        let lights = |fragments: [_; 2], formats: &[_]| {
-            fragments.map(|fragment| {
-                let fragment = Some((fragment, formats));
-                ScenePipeline { groups: &lit, vertex: "fullscreen_vertex", buffers: &[], fragment, depth: false }
-                    .create(device, &module)
-            })
+        let lights = |fragment, formats: &[_]| {
+            let fragment = Some((fragment, formats));
+            ScenePipeline { groups: &lit, vertex: "layer_vertex", buffers: &[], fragment, depth: false }
+                .create(device, &module)
         };
         Self {
             paint: draws("mesh_paint_fragment", &[COLOR_FORMAT; 2]),

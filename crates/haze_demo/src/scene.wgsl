@@ -104,9 +104,14 @@ fn add_light(lit: Lit, index: u32, light: vec3f) -> Lit {
     return sum;
 }
 
+// Corner of a triangle that covers the image.
+fn fullscreen_corner(index: u32) -> vec4f {
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
 @vertex
 fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+    return fullscreen_corner(index);
 }
 
 // Returns the vector from the eye to view depth 1. `uv` is 0..1, from the image's upper left corner.

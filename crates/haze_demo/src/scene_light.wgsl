@@ -54,33 +54,29 @@ fn light_parts(lit: Lit, share: f32) -> LightParts {
     );
 }
 
-// Alpha is 0: that of the smoke is added to it.
-@fragment
-fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let groups = sample_groups(vec2i(position.xy));
-    return vec4f(total(light_at(position.xy, !groups.is_front)), 0.0);
-}
-
-@fragment
-fn light_parts_fragment(@builtin(position) position: vec4f) -> LightParts {
-    let groups = sample_groups(vec2i(position.xy));
-    return light_parts(light_at(position.xy, !groups.is_front), 0.0);
-}
-
-@fragment
-fn front_light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let groups = sample_groups(vec2i(position.xy));
-    if !any(groups.is_front) {
+// Samples of a pixel in a layer. Discards the pixel if there are none.
+fn layer_samples(in: LayerVertex) -> vec4<bool> {
+    let is_front = sample_groups(vec2i(in.position.xy)).is_front;
+    let is_in_layer = is_front == vec4<bool>(in.layer == FRONT);
+    if !any(is_in_layer) {
         discard;
     }
-    return vec4f(total(light_at(position.xy, groups.is_front)), group_share(groups.is_front));
+    return is_in_layer;
+}
+
+// Alpha of a layer. Behind it is 0: that of the smoke is added to it.
+fn layer_alpha(in: LayerVertex, is_in_layer: vec4<bool>) -> f32 {
+    return select(0.0, group_share(is_in_layer), in.layer == FRONT);
 }
 
 @fragment
-fn front_light_parts_fragment(@builtin(position) position: vec4f) -> LightParts {
-    let groups = sample_groups(vec2i(position.xy));
-    if !any(groups.is_front) {
-        discard;
-    }
-    return light_parts(light_at(position.xy, groups.is_front), group_share(groups.is_front));
+fn light_fragment(in: LayerVertex) -> @location(0) vec4f {
+    let samples = layer_samples(in);
+    return vec4f(total(light_at(in.position.xy, samples)), layer_alpha(in, samples));
+}
+
+@fragment
+fn light_parts_fragment(in: LayerVertex) -> LightParts {
+    let samples = layer_samples(in);
+    return light_parts(light_at(in.position.xy, samples), layer_alpha(in, samples));
 }

@@ -6,9 +6,9 @@ pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// Entry points that light the surfaces behind outlines, and objects in front; the same with up to three lights apart.
-pub(crate) const LIGHT: [&str; 2] = ["light_fragment", "front_light_fragment"];
-pub(crate) const LIGHT_PARTS: [&str; 2] = ["light_parts_fragment", "front_light_parts_fragment"];
+/// Entry points that light a layer; the same with up to three lights apart.
+pub(crate) const LIGHT: &str = "light_fragment";
+pub(crate) const LIGHT_PARTS: &str = "light_parts_fragment";
 
 /// Pipeline of entry points of a scene's shader.
 pub(crate) struct ScenePipeline<'a> {

@@ -3,7 +3,8 @@
 //! and a fourth pass, shade, adds them, dimmed by the smoke. At outlines, all passes after paint show the surfaces behind;
 //! light and shade have a second turn for the objects in front, which `outline_pass.rs` adds when the smoke is drawn.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+use std::ops::Range;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError, Weak};
 
 use bytemuck::Zeroable as _;
 use glam::UVec2;
@@ -24,6 +25,12 @@ use haze::shader;
 use haze_author::backdrop::Backdrop;
 use wgpu::util::DeviceExt as _;
 
+/// Formats of the color targets of a pass, of which most have one.
+const COLOR: [wgpu::TextureFormat; 4] = [COLOR_FORMAT; 4];
+
+/// Compiled on first use: a scene draws half of the pipelines.
+type LazyPipeline = LazyLock<wgpu::RenderPipeline, Box<dyn FnOnce() -> wgpu::RenderPipeline + Send>>;
+
 /// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::offscreen_renderer::OffscreenRenderer)s of a
 /// device.
 #[derive(Debug)]
@@ -34,18 +41,18 @@ pub(crate) struct SceneRenderer {
     pub scene_layout: wgpu::BindGroupLayout,
     paint_layout: wgpu::BindGroupLayout,
     /// Writes reflectance and face at 2x2 samples per pixel.
-    paint: wgpu::RenderPipeline,
+    paint: LazyPipeline,
     /// Writes the depth buffer, and linear depth if `R32Float` is renderable.
-    depth: wgpu::RenderPipeline,
+    depth: LazyPipeline,
     parts_layout: wgpu::BindGroupLayout,
-    /// Lights the paint of each layer.
-    light: [wgpu::RenderPipeline; 2],
-    /// Lights the paint of each layer, with up to three lights apart.
-    light_parts: [wgpu::RenderPipeline; 2],
-    /// Adds up the parts of each layer.
-    shade: [wgpu::RenderPipeline; 2],
+    /// Lights the paint of a layer.
+    light: LazyPipeline,
+    /// Lights the paint of a layer, with up to three lights apart.
+    light_parts: LazyPipeline,
+    /// Adds up the parts of a layer.
+    shade: LazyPipeline,
     /// Writes depth alone, as a light sees it.
-    shadow: wgpu::RenderPipeline,
+    shadow: LazyPipeline,
     sky_sampler: wgpu::Sampler,
     mesh: OnceLock<Arc<MeshPipelines>>,
     /// Backdrops that existing renderers have uploaded.
@@ -95,7 +102,7 @@ impl SceneTargets {
 }
 
 impl SceneRenderer {
-    /// Compiles the pipelines. `draws_linear`: the adapter can render to `R32Float`.
+    /// Creates the shader. `draws_linear`: the adapter can render to `R32Float`.
     /// `shadow_layout`: that of the smoke's shadow.
     pub fn new(
         device: &wgpu::Device,
@@ -144,23 +151,29 @@ impl SceneRenderer {
         let unfilterable = texture(wgpu::TextureSampleType::Float { filterable: false });
         let paint_layout = layout(&[0, 7].map(|binding| entry(binding, unfilterable)));
         let parts_layout = layout(&[1, 2, 3, 4, 7].map(|binding| entry(binding, unfilterable)));
-        let pipeline = |vertex, fragment, groups: &[_], depth| {
-            ScenePipeline { groups, vertex, buffers: &[], fragment, depth }.create(device, &module)
-        };
-        let color = [COLOR_FORMAT; 4];
+        let pipeline =
+            |vertex, fragment: Option<(&'static str, &'static [wgpu::TextureFormat])>, groups: &[_], depth| {
+                let device = device.clone();
+                let module = module.clone();
+                let groups: Vec<wgpu::BindGroupLayout> = groups.iter().copied().cloned().collect();
+                let create = move || {
+                    let groups: Vec<_> = groups.iter().map(Some).collect();
+                    ScenePipeline { groups: &groups, vertex, buffers: &[], fragment, depth }.create(&device, &module)
+                };
+                LazyPipeline::new(Box::new(create))
+            };
         let depth = if draws_linear { ("linear_fragment", &[LINEAR_FORMAT][..]) } else { ("depth_fragment", &[][..]) };
-        let scene_group = [Some(&scene_layout)];
-        let paint_groups = [Some(&scene_layout), Some(&paint_layout)];
-        let shade_groups = [Some(&scene_layout), Some(&parts_layout), Some(shadow_layout)];
-        let layers = |fragments: [_; 2], colors, groups: &[_]| {
-            fragments.map(|fragment| pipeline("fullscreen_vertex", Some((fragment, colors)), groups, false))
-        };
+        let scene_group = [&scene_layout];
+        let paint_groups = [&scene_layout, &paint_layout];
+        let shade_groups = [&scene_layout, &parts_layout, shadow_layout];
+        let of_layer =
+            |fragment, colors, groups: &[_]| pipeline("layer_vertex", Some((fragment, colors)), groups, false);
         Self {
-            paint: pipeline("box_vertex", Some(("paint_fragment", &color[..1])), &scene_group, true),
+            paint: pipeline("box_vertex", Some(("paint_fragment", &COLOR[..1])), &scene_group, true),
             depth: pipeline("fullscreen_vertex", Some(depth), &paint_groups, true),
-            light: layers(LIGHT, &color[..1], &paint_groups),
-            light_parts: layers(LIGHT_PARTS, &color, &paint_groups),
-            shade: layers(["shade_fragment", "front_shade_fragment"], &color[..1], &shade_groups),
+            light: of_layer(LIGHT, &COLOR[..1], &paint_groups),
+            light_parts: of_layer(LIGHT_PARTS, &COLOR, &paint_groups),
+            shade: of_layer("shade_fragment", &COLOR[..1], &shade_groups),
             shadow: pipeline("box_vertex", None, &scene_group, true),
             parts_layout,
             scene_layout,
@@ -272,14 +285,16 @@ impl SceneRenderer {
             held => Some(held.unwrap_or_else(|| [(); 2].map(|()| self.light_parts(targets)))),
         };
         let colors = [default_view(&targets.color), targets.front.clone()];
-        let [light, light_parts] = match mesh {
-            Some((pipelines, _)) => [&pipelines.light, &pipelines.light_parts],
-            None => [&self.light, &self.light_parts],
-        };
         for layer in 0..2 {
-            let (views, pipelines) = match &targets.parts {
-                Some(parts) => (parts[layer].views.each_ref().to_vec(), light_parts),
-                None => (vec![&colors[layer]], light),
+            let pipeline = match (mesh, &targets.parts) {
+                (Some((pipelines, _)), Some(_)) => &pipelines.light_parts,
+                (Some((pipelines, _)), None) => &pipelines.light,
+                (None, Some(_)) => &self.light_parts,
+                (None, None) => &self.light,
+            };
+            let views = match &targets.parts {
+                Some(parts) => parts[layer].views.each_ref().to_vec(),
+                None => vec![&colors[layer]],
             };
             let mut pass = begin_pass(encoder, &views, wgpu::Color::TRANSPARENT, None);
             pass.set_bind_group(0, &group, &[]);
@@ -289,8 +304,8 @@ impl SceneRenderer {
             } else {
                 pass.set_bind_group(1, &targets.paint_group, &[]);
             }
-            pass.set_pipeline(&pipelines[layer]);
-            pass.draw(0..3, 0..1);
+            pass.set_pipeline(pipeline);
+            pass.draw(layer_vertices(layer), 0..1);
         }
         targets.scene_group = Some(group);
     }
@@ -300,13 +315,13 @@ impl SceneRenderer {
     pub fn shade(&self, encoder: &mut wgpu::CommandEncoder, targets: &SceneTargets, shadow: &wgpu::BindGroup) {
         let Some((parts, group)) = targets.parts.as_ref().zip(targets.scene_group.as_ref()) else { return };
         let colors = [&default_view(&targets.color), &targets.front];
-        for ((color, parts), pipeline) in colors.into_iter().zip(parts).zip(&self.shade) {
+        for (layer, (color, parts)) in colors.into_iter().zip(parts).enumerate() {
             let mut pass = begin_pass(encoder, &[color], wgpu::Color::TRANSPARENT, None);
             pass.set_bind_group(0, group, &[]);
             pass.set_bind_group(1, &parts.group, &[]);
             pass.set_bind_group(2, shadow, &[]);
-            pass.set_pipeline(pipeline);
-            pass.draw(0..3, 0..1);
+            pass.set_pipeline(&self.shade);
+            pass.draw(layer_vertices(layer), 0..1);
         }
     }
 
@@ -448,6 +463,12 @@ impl SceneRenderer {
 
 /// Clear value of paint. `NO_BOX` in scene.wgsl.
 const NO_BOX: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
+
+/// Vertices of the triangle of a layer, for `layer_vertex` in scene_samples.wgsl.
+fn layer_vertices(layer: usize) -> Range<u32> {
+    let first = 3 * layer as u32;
+    first..first + 3
+}
 
 pub(crate) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,

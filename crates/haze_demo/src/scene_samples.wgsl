@@ -10,6 +10,20 @@
 // Depths whose ratio is below this are one surface.
 const OUTLINE_RATIO: f32 = 1.05;
 
+// The layer of objects in front; the other is that of the surfaces behind them.
+const FRONT: u32 = 1u;
+
+struct LayerVertex {
+    @builtin(position) position: vec4f,
+    @location(0) @interpolate(flat, either) layer: u32,
+}
+
+// Draws a triangle over the image for each layer: one pipeline for both, because drivers take long to compile their light.
+@vertex
+fn layer_vertex(@builtin(vertex_index) index: u32) -> LayerVertex {
+    return LayerVertex(fullscreen_corner(index % 3u), index / 3u);
+}
+
 struct SampleGroups {
     // Samples of the object in front; none if all are one surface.
     is_front: vec4<bool>,

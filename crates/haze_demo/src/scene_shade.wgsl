@@ -27,15 +27,11 @@ fn shaded(position: vec2f, depth: f32) -> vec4f {
 }
 
 @fragment
-fn shade_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    return shaded(position.xy, sample_groups(vec2i(position.xy)).back);
-}
-
-@fragment
-fn front_shade_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let groups = sample_groups(vec2i(position.xy));
-    if !any(groups.is_front) {
+fn shade_fragment(in: LayerVertex) -> @location(0) vec4f {
+    let groups = sample_groups(vec2i(in.position.xy));
+    let is_front = in.layer == FRONT;
+    if is_front && !any(groups.is_front) {
         discard;
     }
-    return shaded(position.xy, groups.front);
+    return shaded(in.position.xy, select(groups.back, groups.front, is_front));
 }

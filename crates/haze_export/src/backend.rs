@@ -31,6 +31,7 @@ pub struct Gpu {
     /// Shaders, pipelines and scene on the device.
     pub context: OffscreenContext,
     renderer: RefCell<OffscreenRenderer>,
+    has_own_shaders: bool,
 }
 
 impl Backend {
@@ -50,7 +51,7 @@ impl Backend {
             context = context.with_shaders(sources)?;
         }
         let renderer = RefCell::new(OffscreenRenderer::new(&context, false)?);
-        Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, renderer })))
+        Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, renderer, has_own_shaders: sources.is_some() })))
     }
 
     /// Renders an image in linear HDR.
@@ -59,7 +60,10 @@ impl Backend {
             Self::Gpu(gpu) => {
                 let mut renderer = gpu.renderer.borrow_mut();
                 let mut draw = || {
-                    renderer.warm_up(shot)?;
+                    // Locates errors; without them, drawing compiles what it needs, which is less.
+                    if gpu.has_own_shaders {
+                        renderer.warm_up(shot)?;
+                    }
                     renderer.draw(&gpu.headless, shot)?;
                     renderer.read(&gpu.headless, shot)
                 };

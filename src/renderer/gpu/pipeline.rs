@@ -2,34 +2,49 @@
 
 use std::fmt::Debug;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 
-/// Shader of a pass.
+/// Shader of a pass. Clones share its module.
 #[derive(Clone, Debug)]
 pub(crate) struct Shader {
-    pub module: wgpu::ShaderModule,
+    /// Name of the pass, used as label.
+    name: &'static str,
+    /// Created on first use: most frames draw few of the passes.
+    module: Arc<OnceLock<wgpu::ShaderModule>>,
     /// File of the pass.
     pub path: PathBuf,
     /// WGSL without imports.
     pub text: Arc<str>,
     /// True for haze's own shaders, whose loops end; false for sources of a host.
-    pub loops_end: bool,
+    loops_end: bool,
 }
 
 impl Shader {
-    /// Returns the shader with its text changed. `name`: name of the pass, used as label.
-    pub fn with_text(&self, device: &wgpu::Device, name: &str, change: impl FnOnce(&str) -> String) -> Self {
-        let text = change(&self.text);
-        let module = create_module(device, name, &text, self.loops_end);
-        Self { module, path: self.path.clone(), text: text.into(), loops_end: self.loops_end }
+    pub fn new(name: &'static str, path: PathBuf, text: Arc<str>, loops_end: bool) -> Self {
+        Self { name, module: Arc::default(), path, text, loops_end }
+    }
+
+    /// Returns the module.
+    pub fn module(&self, device: &wgpu::Device) -> &wgpu::ShaderModule {
+        self.module.get_or_init(|| create_module(device, self.name, &self.text, self.loops_end))
+    }
+
+    /// True if both have the same module.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.module, &other.module)
+    }
+
+    /// Returns the shader with its text changed.
+    pub fn with_text(&self, change: impl FnOnce(&str) -> String) -> Self {
+        Self::new(self.name, self.path.clone(), change(&self.text).into(), self.loops_end)
     }
 }
 
 /// Creates a module. `loops_end`: true if no loop of the text runs forever. wgpu counts the rounds of all other loops, which
 /// keeps drivers from unrolling them: on an H100 `tile_accumulate` then takes up to 1.8 times as long.
 #[expect(unsafe_code, reason = "wgpu offers no safe way to leave out the counters")]
-pub(crate) fn create_module(device: &wgpu::Device, name: &str, text: &str, loops_end: bool) -> wgpu::ShaderModule {
+fn create_module(device: &wgpu::Device, name: &str, text: &str, loops_end: bool) -> wgpu::ShaderModule {
     let descriptor = wgpu::ShaderModuleDescriptor { label: Some(name), source: wgpu::ShaderSource::Wgsl(text.into()) };
     if !loops_end {
         return device.create_shader_module(descriptor);
@@ -70,8 +85,7 @@ impl PipelineStore {
 pub(crate) struct Common {
     /// Name of the pass, used as label.
     pub name: &'static str,
-    pub module: wgpu::ShaderModule,
-    pub path: PathBuf,
+    pub shader: Shader,
     pub layout: wgpu::PipelineLayout,
     pub store: PipelineStore,
 }
@@ -108,12 +122,13 @@ impl PipelineDescription for RenderPipelineDescription {
     type Pipeline = wgpu::RenderPipeline;
 
     fn create(&self, common: &Common) -> wgpu::RenderPipeline {
+        let module = common.shader.module(&common.store.device);
         let options = wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() };
         common.store.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(common.name),
             layout: Some(&common.layout),
             vertex: wgpu::VertexState {
-                module: &common.module,
+                module,
                 entry_point: Some("vertex"),
                 compilation_options: options.clone(),
                 buffers: self.buffers,
@@ -122,7 +137,7 @@ impl PipelineDescription for RenderPipelineDescription {
             depth_stencil: self.depth_stencil.clone(),
             multisample: wgpu::MultisampleState { count: self.sample_count, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
-                module: &common.module,
+                module,
                 entry_point: Some("fragment"),
                 compilation_options: options,
                 targets: &self.targets,
@@ -141,7 +156,7 @@ impl PipelineDescription for ComputePipelineDescription {
         common.store.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(common.name),
             layout: Some(&common.layout),
-            module: &common.module,
+            module: common.shader.module(&common.store.device),
             entry_point: Some(self.entry_point),
             compilation_options: wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() },
             cache: common.store.cache.as_ref(),

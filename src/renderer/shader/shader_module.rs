@@ -8,15 +8,14 @@ use super::naga_messages::{marked_location, to_wgsl_terms};
 use super::nesting::check_nesting;
 use super::sources::Sources;
 use crate::renderer::gpu::error_scopes::{poll_once, with_error_scopes};
-use crate::renderer::gpu::pipeline::{Shader, create_module};
+use crate::renderer::gpu::pipeline::Shader;
 
-/// Creates the embedded shader of a pass.
-pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Result<Shader, Infallible> {
+/// Composes the embedded shader of a pass.
+pub(crate) fn embedded_shader(name: &'static str) -> Result<Shader, Infallible> {
     // A test composes every embedded shader, so this cannot fail. The device would report an empty module like any
     // other error.
     let composed = Sources::embedded().compose(&file_of(name)).unwrap_or_default();
-    let module = create_module(device, name, &composed.text, true);
-    Ok(Shader { module, path: composed.path, text: composed.text.into(), loops_end: true })
+    Ok(Shader::new(name, composed.path, composed.text.into(), true))
 }
 
 /// Creates the shader of a pass from sources that may contain errors, or returns `known`, the shader of an earlier context, if
@@ -35,13 +34,11 @@ pub(crate) fn checked_shader(
         return Ok(known.clone());
     }
     check_nesting(&composed.text).map_err(|deep| composed.error_at(deep.line, deep.column, &deep.reason))?;
-    let mut module = None;
-    let created =
-        with_error_scopes(device, || module.insert(create_module(device, name, &composed.text, false)).clone());
-    match created {
-        Ok(module) => Ok(Shader { module, path: composed.path, text: composed.text.into(), loops_end: false }),
+    let shader = Shader::new(name, composed.path.clone(), composed.text.as_str().into(), false);
+    match with_error_scopes(device, || _ = shader.module(device)) {
+        Ok(()) => Ok(shader),
         Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
-            let info = module.and_then(|module| poll_once(module.get_compilation_info()));
+            let info = poll_once(shader.module(device).get_compilation_info());
             match info.and_then(|info| info.messages.into_iter().next()) {
                 Some(wgpu::CompilationMessage { message, location: Some(place), .. }) => {
                     let naga_location = || {

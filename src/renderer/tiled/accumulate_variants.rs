@@ -44,7 +44,7 @@ impl AccumulateVariants {
 
     /// Shares the variants of another context if its module is the same.
     pub fn share(&mut self, other: &Self) {
-        if self.shader.module == other.shader.module {
+        if self.shader.is_same(&other.shader) {
             self.variants = other.variants.clone();
         }
     }
@@ -70,10 +70,9 @@ impl AccumulateVariants {
     }
 
     fn create(&self, formats: TiledFormats) -> PipelineVariants<TileAccumulateKey> {
-        let device = &self.store.device;
         let mut shader = self.shader.clone();
         if formats != [PLACEHOLDER_FORMAT; MAX_TARGET_ATTACHMENTS] {
-            shader = shader.with_text(device, TileAccumulateKey::PASS, |text| {
+            shader = shader.with_text(|text| {
                 (0..).zip(formats).fold(text.to_owned(), |text, (slot, format)| {
                     text.replace(&target_declaration(slot, PLACEHOLDER_FORMAT), &target_declaration(slot, format))
                 })
