@@ -7,4 +7,6 @@ pub struct Finding {
     pub name: &'static str,
     /// Description: what is wrong, where, and what is expected.
     pub description: String,
+    /// True if the image is usable as it is, and only looks better without the defect.
+    pub is_warning: bool,
 }

@@ -116,7 +116,7 @@ mod tests {
         for ending in EXPORT_ENDINGS {
             let path = folder.path().join(format!("my ramp.{ending}"));
             std::fs::write(&path, export_gradient(&recipe, &path).unwrap()).unwrap();
-            let read = import_gradient(&path, 1.0, None).unwrap().fit.recipe;
+            let read = import_gradient(&path, Some(1.0), None).unwrap().fit.recipe;
             for index in 0..1000 {
                 let at = (index as f32 + 0.5) / 1000.0;
                 let off = (code(&read, at) - code(&recipe, at)).abs().max_element() * 255.0;

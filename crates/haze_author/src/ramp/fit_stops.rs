@@ -10,11 +10,22 @@ use image::DynamicImage;
 use super::gradient::PreparedRows;
 use super::ramp_recipe::{Blend, Curve, HexColor, RampRecipe, RampRow, RampStop};
 
-/// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's color.
+/// Default error bound of an image without noise, steps of 255: one for dithering, and a half for rounding of a stop's
+/// color.
 pub const DEFAULT_MAX_ERROR: f32 = 1.5;
 
 /// Range of error bounds, steps of 255: from the smallest that stops of 8 bits per channel can meet to the largest of use.
 pub const MAX_ERROR_RANGE: RangeInclusive<f32> = 1.0..=64.0;
+
+/// Standard deviations of the noise of a painted image, steps of 255. Rounding and dithering are below; above, the texture
+/// is a part of the picture.
+const PAINTED_NOISE: RangeInclusive<f32> = 0.9..=4.0;
+
+/// Texels over which the difference of two rows is averaged, to tell noise from a slope.
+const NOISE_WINDOW: usize = 16;
+
+/// Least number of texels that the noise is estimated from.
+const MIN_NOISE_TEXELS: usize = 64;
 
 /// Maximum number of stops. An image that needs more is not a gradient, and its recipe would exceed the size limit.
 const MAX_STOPS: usize = 50_000;
@@ -32,9 +43,12 @@ pub struct RampFit {
 /// Fits stops to an sRGB image, so that no channel differs by more than `max_error`, 1 to 64 steps of 255. Hard edges
 /// are preserved: with constant stops between flat parts, otherwise with two stops at one position.
 ///
+/// Without a bound, the stops follow the paint and not its noise: rows that differ only by noise are averaged to one row, and
+/// the bound is [`DEFAULT_MAX_ERROR`] plus four standard deviations of the noise that is left.
+///
 /// # Errors
 /// [`FieldError`] if `max_error` is out of range, the image is empty, or it needs more than 50 000 stops.
-pub fn fit_image(picture: &DynamicImage, max_error: f32) -> Result<RampFit, FieldError> {
+pub fn fit_image(picture: &DynamicImage, max_error: Option<f32>) -> Result<RampFit, FieldError> {
     validate_max_error(max_error)?;
     let pixels = picture.to_rgb16();
     if pixels.is_empty() {
@@ -47,11 +61,16 @@ pub fn fit_image(picture: &DynamicImage, max_error: f32) -> Result<RampFit, Fiel
     for row in &mut rows {
         row.resize(width as usize, row.first().copied().unwrap_or_default());
     }
-    // Rows that differ only by dithering count as equal.
-    let is_strip = rows.iter().all(|row| max_difference(row, &rows[0]) <= 1.0);
     let mean = |x: usize| rows.iter().map(|row| row[x]).sum::<Vec3>() / rows.len() as f32;
-    let strip: Vec<Vec<Vec3>> = is_strip.then(|| (0..width as usize).map(mean).collect()).into_iter().collect();
-    let texels = if is_strip { &strip } else { &rows };
+    let mean_row: Vec<Vec3> = (0..width as usize).map(mean).collect();
+    let noise = if max_error.is_none() { painted_noise(&rows) } else { 0.0 };
+    // Rows that differ only by dithering count as equal.
+    let is_dithered = || rows.iter().all(|row| max_difference(row, &rows[0]) <= 1.0);
+    let is_strip = is_dithered() || noise > 0.0 && rows.iter().all(|row| is_noise(row, &mean_row, noise));
+    let strip = [mean_row];
+    let texels: &[Vec<Vec3>] = if is_strip { &strip } else { &rows };
+    let noise_left = if is_strip { noise / (rows.len() as f32).sqrt() } else { noise };
+    let max_error = max_error.unwrap_or(DEFAULT_MAX_ERROR + 4.0 * noise_left);
     let spaces = [Blend::Oklab, Blend::Srgb, Blend::Linear].map(|blend| (blend, curve_for(blend)));
     // About eight rows decide which blend space needs the fewest stops.
     let some = texels.iter().step_by(texels.len().div_ceil(8));
@@ -73,6 +92,18 @@ pub fn fit_image(picture: &DynamicImage, max_error: f32) -> Result<RampFit, Fiel
     Ok(RampFit { recipe, error: rows.iter().zip(baked).map(|(a, b)| max_difference(a, b)).fold(0.0, f32::max) })
 }
 
+/// Fits fewer rows and stops to the rows of a recipe, so that no channel differs by more than `max_error`, 1 to 64 steps of
+/// 255. The gradient that multiplies the rows and the formula of the position stay.
+///
+/// # Errors
+/// [`FieldError`] if `max_error` is out of range or the recipe is invalid.
+pub fn simplify_rows(recipe: &RampRecipe, max_error: f32) -> Result<RampFit, FieldError> {
+    let plain = RampRecipe { bits: 16, times: Vec::new(), place: String::new(), ..recipe.clone() };
+    let RampFit { recipe: fitted, error } = fit_image(&plain.bake()?, Some(max_error))?;
+    let recipe = RampRecipe { rows: fitted.rows, blend: fitted.blend, ..recipe.clone() };
+    Ok(RampFit { recipe, error })
+}
+
 /// Fits stops to a row of at least two sRGB codes, 0 to 255, evenly spaced from 0 to 1, so that no channel differs by
 /// more than `max_error` steps of 255.
 pub fn fit_row(row: &[Vec3], blend: Blend, max_error: f32) -> Vec<RampStop> {
@@ -85,7 +116,8 @@ fn curve_for(blend: Blend) -> Curve {
 }
 
 /// Returns an error if the bound is below what stops of 8 bits per channel can meet, or too large to be useful.
-pub(super) fn validate_max_error(max_error: f32) -> Result<(), FieldError> {
+pub(super) fn validate_max_error(max_error: Option<f32>) -> Result<(), FieldError> {
+    let Some(max_error) = max_error else { return Ok(()) };
     let is_good = MAX_ERROR_RANGE.contains(&max_error);
     if is_good { Ok(()) } else { Err(FieldError::new("error", max_error, "1 to 64 steps of 255")) }
 }
@@ -93,6 +125,44 @@ pub(super) fn validate_max_error(max_error: f32) -> Result<(), FieldError> {
 /// Returns the largest difference in any channel.
 fn max_difference(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f32::max)
+}
+
+/// Returns the standard deviation of the noise of painted rows, steps of 255; 0 for rounding, dithering and textures.
+///
+/// The fourth difference of a smooth curve is near 0, and that of independent noise has sqrt(70) times its deviation. The median
+/// of absolute values, 0.6745 deviations of a normal distribution, ignores edges.
+fn painted_noise(rows: &[Vec<Vec3>]) -> f32 {
+    let of_channel = |channel: usize| {
+        let fourth_difference = |near: &[Vec3]| {
+            let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|index| near[index][channel]);
+            // Clipped texels have no noise.
+            (c > 0.0 && c < 255.0).then_some((a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs())
+        };
+        let count: usize = rows.iter().map(Vec::len).sum();
+        let mut found: Vec<f32> = rows.iter().flat_map(|row| row.windows(5).filter_map(fourth_difference)).collect();
+        // The slope between two clipped parts is too short for an estimate.
+        if found.len() < (count / 4).max(MIN_NOISE_TEXELS) {
+            return 0.0;
+        }
+        let middle = found.len() / 2;
+        *found.select_nth_unstable_by(middle, f32::total_cmp).1 / (0.6745 * 70.0_f32.sqrt())
+    };
+    let noise = (0..3).map(of_channel).fold(0.0, f32::max);
+    if PAINTED_NOISE.contains(&noise) { noise } else { 0.0 }
+}
+
+/// True if a row differs from another only by noise of a standard deviation: nowhere by more than six deviations, which
+/// no texel of a million has, and on average by little.
+fn is_noise(row: &[Vec3], other: &[Vec3], noise: f32) -> bool {
+    let window = NOISE_WINDOW.min(row.len());
+    let mean_difference = |start: usize| {
+        let texels = start..start + window;
+        let sum: Vec3 = row[texels.clone()].iter().zip(&other[texels]).map(|(a, b)| *a - *b).sum();
+        (sum / window as f32).abs().max_element()
+    };
+    let most_on_average = 1.0 + 4.0 * noise / (window as f32).sqrt();
+    max_difference(row, other) <= 1.0 + 6.0 * noise
+        && (0..=row.len() - window).all(|start| mean_difference(start) <= most_on_average)
 }
 
 /// A candidate stop or row: the index of its texel (or row of texels) and its position.

@@ -8,7 +8,7 @@ use haze_core::assets::image::read_color_png;
 use haze_core::error::{Error, FieldError, display_path, one_line};
 
 use super::blend_space::srgb_from_linear;
-use super::fit_stops::{RampFit, fit_image, validate_max_error};
+use super::fit_stops::{DEFAULT_MAX_ERROR, RampFit, fit_image, validate_max_error};
 use super::gradient_text::{GradientParseError, parse_numbers};
 use super::ramp_recipe::Blend;
 use super::source_gradient::{Interpolation, NotedGradient, SourceGradient, SourcePoint};
@@ -37,13 +37,14 @@ pub struct ImportedGradient {
 }
 
 /// Converts a file to a recipe. The format follows from the extension: `.png`, or one of [`GRADIENT_ENDINGS`]. `max_error`
-/// is the maximum error of a channel, 1 to 64 steps of 255. `name` chooses one of several gradients in a file of Godot,
+/// is the maximum error of a channel, 1 to 64 steps of 255; without, [`DEFAULT_MAX_ERROR`], and for a PNG as [`fit_image`]
+/// chooses. `name` chooses one of several gradients in a file of Godot,
 /// SVG or Photoshop. Transparent colors are darkened by their alpha, in linear light.
 ///
 /// # Errors
 /// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
 /// [`Error::Field`] for a `max_error` out of range, an unknown extension, or a `name` for a file of one gradient.
-pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Result<ImportedGradient, Error> {
+pub fn import_gradient(path: &Path, max_error: Option<f32>, name: Option<&str>) -> Result<ImportedGradient, Error> {
     validate_max_error(max_error)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if let Some(name) = name.filter(|_| !ENDINGS_OF_SEVERAL.contains(&ending.as_str())) {
@@ -55,6 +56,7 @@ pub fn import_gradient(path: &Path, max_error: f32, name: Option<&str>) -> Resul
         let fit = fit_image(&read_color_png(path)?, max_error).map_err(refuse)?;
         return Ok(ImportedGradient { fit, note: None });
     }
+    let max_error = max_error.unwrap_or(DEFAULT_MAX_ERROR);
     if !GRADIENT_ENDINGS.contains(&ending.as_str()) {
         let expected = format!("a name that ends in .png or .{}", GRADIENT_ENDINGS.join(", ."));
         return Err(FieldError::new("file", path.display(), expected).into());
@@ -171,7 +173,7 @@ mod tests {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
         let shown = |error: Error| error.to_string().replace(&format!("{}/", folder.path().display()), "");
-        import_gradient(&path, 1.5, None).map(|imported| imported.fit.recipe).map_err(shown)
+        import_gradient(&path, None, None).map(|imported| imported.fit.recipe).map_err(shown)
     }
 
     fn stops(recipe: &RampRecipe) -> Vec<(f32, String, Curve)> {
@@ -220,7 +222,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("two.tres");
         std::fs::write(&path, TWO_GRADIENTS).unwrap();
-        let import = |name| import_gradient(&path, 1.5, name);
+        let import = |name| import_gradient(&path, None, name);
         let first = import(None).unwrap();
         let stop = |at: f32, color: &str, curve| (at, color.to_owned(), curve);
         let linear = [stop(0.0, "#ff8000", Curve::Linear), stop(1.0, "#1a1a1a", Curve::Linear)];
@@ -235,7 +237,7 @@ mod tests {
         assert_eq!(second.fit.recipe.rows[0].stops[1].curve, Curve::Constant);
         let refused = import(Some("Gradient_c")).unwrap_err().to_string();
         assert!(refused.ends_with("no gradient \"Gradient_c\"; expected one of Gradient_a, Gradient_b"), "{refused}");
-        let refused = import_gradient(Path::new("a.ggr"), 1.5, Some("b")).unwrap_err().to_string();
+        let refused = import_gradient(Path::new("a.ggr"), None, Some("b")).unwrap_err().to_string();
         assert!(refused.contains("expected no name: only a .tres, .svg or .grd has several gradients"), "{refused}");
     }
 
@@ -246,7 +248,7 @@ mod tests {
         for colors in [1, 2] {
             let text = format!("GIMP Gradient\nName: A\n1\n0 0.5 1 1 0.749 0.749 1 1 0.749 0.749 1 0 {colors}\n");
             std::fs::write(&path, text).unwrap();
-            let fit = import_gradient(&path, 1.5, None).unwrap().fit;
+            let fit = import_gradient(&path, None, None).unwrap().fit;
             let light = fit.recipe.gradient().unwrap().sample(0.5, 0.0);
             let code = light.map(srgb_from_linear);
             assert!(code.distance(glam::Vec3::new(0.749, 1.0, 1.0)) < 0.01 && fit.error <= 1.5, "{colors}: {code}");
@@ -264,7 +266,7 @@ mod tests {
         };
         let noise = image::RgbImage::from_fn(256, 256, |_, _| image::Rgb([random(), random(), random()]));
         noise.save(&path).unwrap();
-        let error = import_gradient(&path, 1.0, None).unwrap_err().to_string();
+        let error = import_gradient(&path, Some(1.0), None).unwrap_err().to_string();
         assert!(
             error.contains("noise.png: stops: the picture needs 6") && error.contains("expected at most 50000"),
             "{error}"
@@ -318,7 +320,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a.ggr");
             std::fs::write(&path, text).unwrap();
-            let fitted = import_gradient(&path, 1.5, None).unwrap().fit;
+            let fitted = import_gradient(&path, None, None).unwrap().fit;
             let count = fitted.recipe.rows[0].stops.len();
             assert!(fitted.error <= 1.5 && count > 4 && count < 80, "{blend} {color}: {count}, {}", fitted.error);
         }

@@ -14,6 +14,9 @@ const RATIO: f32 = 3.0;
 /// Brightest 16-bit code that counts as black: 1 of 255, for rounding.
 const BLACK: u16 = 257;
 
+/// Name of the finding of visible steps, which is a warning.
+pub const BANDING: &str = "banding";
+
 /// Returns the defects of an sRGB image that would be visible. Without a role, only the checks that hold for every role
 /// run.
 ///
@@ -27,7 +30,8 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding>
     let pixels = picture.to_rgb16();
     let (width, height) = pixels.dimensions();
     let mut findings = Vec::new();
-    let mut find = |name, description: String| findings.push(Finding { name, description });
+    let mut find =
+        |name, description: String| findings.push(Finding { name, description, is_warning: name == BANDING });
     if height > width && pixels.rows().all(|mut row| row.next().is_some_and(|first| row.all(|pixel| pixel == first))) {
         find(
             "turned",
@@ -43,10 +47,7 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding>
     if pixels.iter().all(|channel| channel % 257 == 0)
         && let Some((axis, at)) = lines().find_map(|(axis, line)| Some((axis, find_banding(line)?)))
     {
-        find(
-            "banding",
-            format!("visible steps at {at:.2} {axis}; expected 16 bits a channel, or 8 bits with dithering"),
-        );
+        find(BANDING, format!("visible steps at {at:.2} {axis}; expected 16 bits a channel, or 8 bits with dithering"));
     }
     let jump = lines().find_map(|(axis, line)| Some((axis, find_step(&luminances(line))?)));
     let may_jump = matches!(role, None | Some(RampRole::Diffuse | RampRole::Coverage | RampRole::Shadow));
@@ -79,6 +80,7 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding>
                     "brightness {lightest} of 255 at distance 0, the first column, but {most} farther out; expected the first \
                      column to be the brightest: the axes are distance and amount, not a picture of a glow"
                 ),
+                is_warning: false,
             });
         }
     }

@@ -32,7 +32,7 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 /// As [`Sprite::from_image`] if the layout does not fit.
 pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Vec<Finding>, Error> {
     let mut findings = Vec::new();
-    let mut find = |name, description: String| findings.push(Finding { name, description });
+    let mut find = |name, description: String| findings.push(Finding { name, description, is_warning: false });
     // A border that is not clear is a finding, not an error: it is cleared so that the other checks can run.
     let mut picture = picture.clone();
     let border = clear_borders(&mut picture, layout);

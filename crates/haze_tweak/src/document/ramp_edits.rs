@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use egui_gradient::GradientEditor;
 use haze::{Error, MaterialAssets};
 use haze_author::ramp::RampRecipe;
-use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, fit_image};
+use haze_author::ramp::fit_stops::fit_image;
+use haze_author::ramp::lint::{BANDING, lint_ramp};
 use haze_core::assets::ramp::Ramp;
 use haze_core::error::builtin_path;
 use haze_core::settings::{FieldValue, field_values, set_field};
@@ -43,6 +44,8 @@ pub enum RampOrigin {
     Painted {
         /// A recipe is beside it and makes another image: another program has changed one of the two.
         has_recipe: bool,
+        /// The gradient has visible steps.
+        has_bands: bool,
     },
     /// Unreadable. The reason is reported elsewhere.
     Missing,
@@ -111,12 +114,21 @@ impl RampEdits {
     /// Fits a recipe to a painted ramp. Returns the number of stops and the largest error of the fit in 1/255.
     pub fn fit(&mut self, name: &str) -> Result<(usize, f32), Error> {
         let Some(known) = self.known.get_mut(name) else { return Ok((0, 0.0)) };
-        let fitted = fit_image(&read_color_png(&known.picture)?, DEFAULT_MAX_ERROR)?;
+        let fitted = fit_image(&read_color_png(&known.picture)?, None)?;
         let count = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
         // The image stays as it was painted until a stop is changed.
         known.written = Some(fitted.recipe.clone());
         known.source = RampOrigin::Recipe(fitted.recipe);
         Ok((count, fitted.error))
+    }
+
+    /// Fits a recipe to a painted ramp as [`fit`](Self::fit) does, and replaces the image by the smooth one that the recipe
+    /// makes.
+    pub fn import_and_bake(&mut self, name: &str) -> Result<(usize, f32), Error> {
+        let fitted = self.fit(name)?;
+        // `advance` writes it.
+        self.known.get_mut(name).into_iter().for_each(|known| known.written = None);
+        Ok(fitted)
     }
 
     /// Bakes recipes that have changed, and writes them unless a control is held. Call once a frame, after the panels.
@@ -182,7 +194,11 @@ impl EditedRamp {
             match (asset_loading::ramp(&picture), asset_loading::ramp_recipe(&recipe_of(&picture))) {
                 (Err(_), _) => RampOrigin::Missing,
                 (Ok(ramp), Ok(recipe)) if makes(&recipe, &ramp) => RampOrigin::Recipe(recipe),
-                (Ok(_), recipe) => RampOrigin::Painted { has_recipe: recipe.is_ok() },
+                (Ok(_), recipe) => {
+                    let findings = read_color_png(&picture).map(|image| lint_ramp(&image, None)).unwrap_or_default();
+                    let has_bands = findings.iter().any(|finding| finding.name == BANDING);
+                    RampOrigin::Painted { has_recipe: recipe.is_ok(), has_bands }
+                }
             }
         };
         let written = if let RampOrigin::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };

@@ -5,7 +5,9 @@ use std::path::Path;
 use eframe::egui::{self, Color32, Ui};
 use egui_gradient::DisplayOptions;
 use glam::Vec2;
+use haze_author::ramp::fit_stops::{RampFit, simplify_rows};
 use haze_author::ramp::{Blend, RampRecipe, RampRow};
+use haze_core::error::FieldError;
 use haze_preset::{AssetFolders, builtin};
 
 use super::gradient_drag::{self, DraggedGradient};
@@ -54,6 +56,12 @@ pub fn editor(
     let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(&read).clone();
     let (editor, index) = session.ramps.editor(ramp.field);
     let mut is_changed = choose(ui, &mut recipe, index);
+    let simplified = if recipe.rows.len() > 1 { simplify_rows_menu(ui, &recipe) } else { None };
+    if let Some(Ok(simple)) = &simplified {
+        recipe = simple.recipe.clone();
+        *index = 0;
+        is_changed = true;
+    }
     let (bins, marks) = if *index < recipe.rows.len() { across } else { up };
     let histograms: Vec<_> = bins.iter().map(|(color, bins)| (*color, bins.as_slice())).collect();
     let options = DisplayOptions { blend: recipe.blend, histograms: &histograms, marks };
@@ -61,6 +69,16 @@ pub fn editor(
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options));
     let (place, edited) = (edited.response.rect, edited.inner);
     let index = *index;
+    match &simplified {
+        Some(Ok(RampFit { recipe: simple, error })) => {
+            session.document.name_gradient_step(ramp.name, "simplify rows");
+            let stops: usize = simple.rows.iter().map(|row| row.stops.len()).sum();
+            let size = format!("{stops} stops in rows: {}", simple.rows.len());
+            session.messages.info("simplify", format!("{}: {size}, largest error {error:.1}/255", ramp.name));
+        }
+        Some(Err(error)) => session.messages.error("simplify", error),
+        None => {}
+    }
     if let Some(dropped) = gradient_drag::dropped(ui, place) {
         session.document.name_gradient_step(ramp.name, "copy a gradient");
         if recipe.rows.len() == 1 && recipe.times.is_empty() {
@@ -181,6 +199,24 @@ fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
     recipe.rows != before
 }
 
+/// Largest errors that the menu of simpler rows offers, steps of 255.
+const ROW_ERRORS: [f32; 4] = [1.5, 3.0, 6.0, 12.0];
+
+/// Draws the menu that fits fewer rows and stops. Returns the chosen recipe.
+fn simplify_rows_menu(ui: &mut Ui, recipe: &RampRecipe) -> Option<Result<RampFit, FieldError>> {
+    let mut chosen = None;
+    let menu = ui.menu_button("Simplify rows", |ui| {
+        for error in ROW_ERRORS {
+            if ui.button(format!("Within {error} of 255")).clicked() {
+                chosen = Some(simplify_rows(recipe, error));
+                ui.close();
+            }
+        }
+    });
+    menu.response.on_hover_text("Fewer rows, and fewer stops in each, with this largest error in any channel");
+    chosen
+}
+
 /// Draws where stops are saved, or a button to get stops.
 pub fn offer_stops(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
     let folders = session.folders();
@@ -192,9 +228,10 @@ pub fn offer_stops(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
                 session.copy_request = Some(CopyRequest { system, name, image });
             }
         }
-        RampOrigin::Painted { has_recipe } => {
+        RampOrigin::Painted { has_recipe, has_bands } => {
+            let (has_recipe, has_bands) = (*has_recipe, *has_bands);
             let recipe = Path::new(ramp.name).with_extension("ramp.json");
-            if *has_recipe {
+            if has_recipe {
                 ui.label(format!(
                     "The image does not match {}: another program changed one of them.",
                     recipe.display()
@@ -203,14 +240,21 @@ pub fn offer_stops(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
                 ui.weak("A painted image has no stops.");
             }
             let about = "Finds stops that make this image. The image stays as it is until you edit a stop.";
-            if button(ui, "Fit stops to image", ramp, about) {
-                match session.ramps.fit(ramp.name) {
-                    Ok((count, error)) => {
-                        let name = ramp.name;
-                        session.messages.info("ramp", format!("{name}: {count} stops, largest error {error:.1}/255"));
-                    }
-                    Err(error) => session.messages.error("ramp", error),
+            let mut fitted = button(ui, "Fit stops to image", ramp, about).then(|| session.ramps.fit(ramp.name));
+            if has_bands {
+                let about = "The gradient has visible steps, because the image has 8 bits a channel. Finds stops that make this \
+                             image, and replaces it by a smooth one of 16 bits.";
+                if button(ui, "Import and bake", ramp, about) {
+                    fitted = Some(session.ramps.import_and_bake(ramp.name));
                 }
+            }
+            match fitted {
+                Some(Ok((count, error))) => {
+                    let name = ramp.name;
+                    session.messages.info("ramp", format!("{name}: {count} stops, largest error {error:.1}/255"));
+                }
+                Some(Err(error)) => session.messages.error("ramp", error),
+                None => {}
             }
         }
         RampOrigin::Recipe(_) => {

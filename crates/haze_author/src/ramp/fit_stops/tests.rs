@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Fits an image and bakes the result; returns the fit and its largest error.
 fn fit_and_bake(name: &str, picture: &DynamicImage) -> (RampFit, f32) {
-    let fitted = fit_image(picture, DEFAULT_MAX_ERROR).unwrap();
+    let fitted = fit_image(picture, None).unwrap();
     let baked = fitted.recipe.bake().unwrap().into_rgb16();
     let picture = picture.to_rgb16();
     let off = (0..picture.height()).flat_map(|y| (0..picture.width()).map(move |x| (x, y))).map(|(x, y)| {
@@ -76,15 +76,49 @@ fn equal_rows_become_one_and_the_width_is_kept() {
     let slope = |x: u32| Rgb([(x * 3) as u8, 90, 200 - (x * 2) as u8]);
     let strip = |width, height| DynamicImage::ImageRgb8(ImageBuffer::from_fn(width, height, |x, _| slope(x)));
     let size = |picture: &DynamicImage| {
-        let recipe = fit_image(picture, DEFAULT_MAX_ERROR).unwrap().recipe;
+        let recipe = fit_image(picture, None).unwrap().recipe;
         (recipe.width, recipe.height, recipe.rows.len())
     };
     assert_eq!(size(&strip(64, 16)), (64, 1, 1));
     assert_eq!(size(&strip(1, 1)), (2, 1, 1));
     assert_eq!(size(&strip(3, 1)), (3, 1, 1));
     // Rows that differ only by dithering become one.
-    let dithered = RampRecipe { bits: 8, height: 8, ..fit_image(&strip(64, 1), 1.0).unwrap().recipe }.bake().unwrap();
+    let dithered =
+        RampRecipe { bits: 8, height: 8, ..fit_image(&strip(64, 1), Some(1.0)).unwrap().recipe }.bake().unwrap();
     assert_eq!(size(&dithered), (64, 1, 1));
-    assert_eq!(fit_image(&strip(64, 1), 0.5).unwrap_err().field, "error");
-    assert_eq!(fit_image(&DynamicImage::new_rgb8(0, 0), 2.0).unwrap_err().field, "picture");
+    assert_eq!(fit_image(&strip(64, 1), Some(0.5)).unwrap_err().field, "error");
+    assert_eq!(fit_image(&DynamicImage::new_rgb8(0, 0), None).unwrap_err().field, "picture");
+}
+
+/// Image of 8 bits with noise of up to two steps in every channel, as of a brush.
+fn noisy(width: u32, height: u32, color: impl Fn(f32, f32) -> [f32; 3]) -> DynamicImage {
+    let mut state = 1_u32;
+    let mut noise = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 16) % 5
+    };
+    let fraction = |texel: u32, count: u32| texel as f32 / (count - 1).max(1) as f32;
+    DynamicImage::ImageRgb8(ImageBuffer::from_fn(width, height, |x, y| {
+        let code = color(fraction(x, width), 1.0 - fraction(y, height));
+        Rgb(code.map(|code| (code.round() + noise() as f32 - 2.0) as u8))
+    }))
+}
+
+#[test]
+fn noise_of_paint_adds_no_stops() {
+    let slope = |u: f32| [20.0 + 200.0 * u, 30.0 + 150.0 * u * u, 90.0 - 60.0 * u];
+    let painted = noisy(256, 32, |u, _| slope(u));
+    let (fitted, off) = fit_and_bake("painted", &painted);
+    let [row] = &fitted.recipe.rows[..] else { panic!("{} rows", fitted.recipe.rows.len()) };
+    assert!(row.stops.len() <= 12 && off <= 6.0, "{} stops, {off} off", row.stops.len());
+    // A bound is kept exactly.
+    let exact = fit_image(&painted, Some(DEFAULT_MAX_ERROR)).unwrap();
+    assert!(exact.recipe.rows.len() > 1 && exact.error <= 2.0, "{}", exact.error);
+    // Noise of one row is as large as that of many.
+    let (one, _) = fit_and_bake("painted strip", &noisy(256, 1, |u, _| slope(u)));
+    assert!(one.recipe.rows[0].stops.len() <= 12, "{}", one.recipe.rows[0].stops.len());
+    // Rows that differ by more than noise stay rows.
+    let (plane, _) = fit_and_bake("painted plane", &noisy(64, 32, |u, v| [40.0 + 150.0 * u, 30.0 + 60.0 * v, 90.0]));
+    let stops: usize = plane.recipe.rows.iter().map(|row| row.stops.len()).sum();
+    assert!((2..=6).contains(&plane.recipe.rows.len()) && stops <= 40, "{} rows", plane.recipe.rows.len());
 }

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use haze::Error;
 use haze_author::finding::Finding;
-use haze_author::ramp::lint::lint_ramp;
+use haze_author::ramp::lint::{BANDING, lint_ramp};
 use haze_author::ramp::response::{DiffuseRamps, Puff};
 use haze_core::assets::image::color_conversion_notes;
 use haze_core::assets::ramp::{Ramp, RampRole};
 use haze_export::file_kind::explain_wrong_kind;
 use haze_export::options::choices;
-use haze_export::output::Failures;
+use haze_export::output::{Failures, one_line};
 use haze_export::recipe_files::has_extension;
 use haze_export::sprite_by_name::{default_sprite, sprite_recipe};
 
@@ -63,6 +63,13 @@ fn print_truth_error(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) 
     Ok(())
 }
 
+/// Returns the commands that replace a PNG of visible steps by a smooth one.
+fn import_and_bake(path: &Path) -> String {
+    let (picture, recipe) = (one_line(path.display()), path.with_extension("ramp.json"));
+    let recipe = one_line(recipe.display());
+    format!("`haze ramp import {picture} -o {recipe}`, then `haze ramp bake --overwrite {recipe}`")
+}
+
 fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> {
     let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
     let role = role.or_else(|| RampRole::from_name(name));
@@ -70,10 +77,16 @@ fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> 
     let mut findings = Vec::new();
     if !has_extension(path, "json") {
         let notes = color_conversion_notes(path)?;
-        findings.extend(notes.into_iter().map(|description| Finding { name: "color_space", description }));
+        let found = |description| Finding { name: "color_space", description, is_warning: false };
+        findings.extend(notes.into_iter().map(found));
     }
     match load_ramp_image(path) {
-        Ok((picture, _)) => findings.extend(lint_ramp(&picture, role)),
+        Ok((picture, recipe)) => {
+            findings.extend(lint_ramp(&picture, role));
+            let cure = if recipe.is_some() { "set bits to 16 in the recipe".into() } else { import_and_bake(path) };
+            let banding = findings.iter_mut().filter(|finding| finding.name == BANDING);
+            banding.for_each(|finding| finding.description += &format!(": {cure}"));
+        }
         // A color space that is refused has been noted already.
         Err(Error::Image { .. }) if !findings.is_empty() => {}
         Err(error) => return Err(explain_wrong_kind(error, path, "ramp", "a PNG or a *.ramp.json file")),

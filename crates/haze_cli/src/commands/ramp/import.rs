@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze_author::ramp::fit_stops::{DEFAULT_MAX_ERROR, MAX_ERROR_RANGE};
+use haze_author::ramp::fit_stops::MAX_ERROR_RANGE;
 use haze_author::ramp::import_gradient::{ImportedGradient, import_gradient};
 use haze_export::options::number;
 use haze_export::output::{FileChecks, print_error, print_line};
@@ -20,10 +20,10 @@ pub struct Arguments {
     /// Recipe to write.
     #[arg(short, long, value_name = "NAME.ramp.json")]
     output: PathBuf,
-    /// Greatest error of a channel, in steps of 1/255, at least 1. A larger error gives fewer stops.
-    #[arg(long, value_name = "STEPS", default_value_t = DEFAULT_MAX_ERROR, allow_hyphen_values = true)]
-    #[arg(value_parser = number(MAX_ERROR_RANGE))]
-    error: f32,
+    /// Greatest error of a channel, in steps of 1/255, at least 1. A larger error gives fewer stops. Default: 1.5, and more for a
+    /// PNG whose paint is noisy; rows that differ only by noise then become one row.
+    #[arg(long, value_name = "STEPS", allow_hyphen_values = true, value_parser = number(MAX_ERROR_RANGE))]
+    error: Option<f32>,
     /// Gradient to read of a file with several: its id in SVG, that of its sub-resource in Godot, its name in Photoshop. Without,
     /// the first.
     #[arg(long, value_name = "ID")]

@@ -45,8 +45,8 @@ enum RampCommand {
     Sheet(sheet::Arguments),
     /// Show a ramp and its luminance curve in the terminal, or write them as an image.
     Show(show::Arguments),
-    /// Report visible flaws: banding, steps, seams, specular ramps that do not end in black, wrong color spaces. Exits
-    /// with 1 if there are any.
+    /// Report visible flaws: steps, seams, specular ramps that do not end in black, wrong color spaces. Exits with 1 if
+    /// there are any. Banding is a warning, with the commands that cure it.
     Check(check::Arguments),
 }
 

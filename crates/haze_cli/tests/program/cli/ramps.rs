@@ -118,12 +118,19 @@ fn ramp_check_reports_findings_and_exits_with_1() {
         [
             "specular_gray.png: ends: brightness 90 of 255 at amount 0, the bottom row",
             "specular_gray.png: ends: brightness 90 of 255 at distance 1, the last column",
-            "a.png: banding: visible steps at 0.10 across",
+            "a.png: warning: banding: visible steps at 0.10 across",
             "age.png: color_space: transparent texels",
         ]
     );
     let output = haze(folder.path(), &["ramp", "check", "--as", "diffuse", "specular_gray.png"]);
     assert!(output.status.success());
+    // A warning names its cure, which removes it.
+    let warned = stdout_of(folder.path(), &["ramp", "check", "a.png"]);
+    let cure = "`haze ramp import a.png -o a.ramp.json`, then `haze ramp bake --overwrite a.ramp.json`\n";
+    assert!(warned.ends_with(cure), "{warned}");
+    stdout_of(folder.path(), &["ramp", "import", "a.png", "-o", "a.ramp.json"]);
+    stdout_of(folder.path(), &["ramp", "bake", "--overwrite", "a.ramp.json"]);
+    assert_eq!(stdout_of(folder.path(), &["ramp", "check", "a.png"]), "a.png: good\n");
     // A file that cannot be read is bad input.
     assert!(refusal(folder.path(), &["ramp", "check", "gone.png"]).starts_with("haze: gone.png: "));
     fs::write(folder.path().join("a.ggr"), "GIMP Gradient\n").unwrap();

@@ -34,6 +34,44 @@ fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
 }
 
 #[test]
+fn a_painted_gradient_of_visible_steps_is_imported_and_baked() {
+    let folder = Folder::new();
+    std::fs::remove_file(folder.path("mine.ramp.json")).unwrap();
+    let code = |x: u32| [40 + x * 40 / 256, 30 + x * 30 / 256, 60].map(|code| code as u8);
+    let steps = image::RgbImage::from_fn(256, 1, |x, _| image::Rgb(code(x)));
+    steps.save(folder.path("mine.png")).unwrap();
+    let mut harness = folder.open();
+    harness.get_by_label("Import and bake: mine.png").click();
+    wait(&mut harness);
+    assert!(harness.query_by_label("stop 1").is_some() && folder.is_baked());
+    let baked = read_color_png(&folder.path("mine.png")).unwrap();
+    assert_eq!(lint_ramp(&baked, None), []);
+    let off = baked.to_rgb8().iter().zip(steps.iter()).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(off <= Some(2), "{off:?}");
+}
+
+#[test]
+fn rows_of_a_ramp_are_simplified_in_one_step() {
+    let folder = Folder::new();
+    let stops = |red: u8| [0.0, 0.5, 1.0].map(|at| RampStop::new(at, HexColor([red, (200.0 * at) as u8, 40])));
+    let row = |index: u8| RampRow { at: f32::from(index) / 8.0, stops: stops(20 * index).into(), ..RampRow::default() };
+    let recipe =
+        RampRecipe { height: 32, rows: (0..=8).map(row).collect(), blend: Blend::Srgb, ..RampRecipe::default() };
+    std::fs::write(folder.path("mine.ramp.json"), recipe.to_json()).unwrap();
+    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
+    let mut harness = folder.open();
+    click(&mut harness, "Simplify rows");
+    click(&mut harness, "Within 3 of 255");
+    let simple = folder.recipe();
+    assert!(simple.rows.len() <= 5 && folder.is_baked(), "{} rows", simple.rows.len());
+    assert!(harness.query_all_by_label_contains("largest error").next().is_some());
+    assert_eq!(harness.state().session.document.history().undo_name(), Some("Simplify rows: mine.png"));
+    harness.state_mut().session.undo();
+    harness.run_steps(4);
+    assert_eq!(folder.recipe(), recipe);
+}
+
+#[test]
 fn files_are_compared_after_a_write_and_before_they_are_overwritten() {
     let folder = Folder::new();
     let folders = AssetFolders::for_preset_file(&folder.preset());
