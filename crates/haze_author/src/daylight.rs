@@ -2,6 +2,8 @@
 //!
 //! - Illuminance of the ground, by day, in twilight and under a full moon: polynomials of Seidelmann (ed.), "Explanatory
 //!   Supplement to the Astronomical Almanac", 1992, table 9.1.
+//! - Illuminance of the ground by a clear sky: IES Calculation Procedures Committee, "Recommended practice for the calculation of
+//!   daylight availability", 1984.
 //! - Sunlight that the air lets through: Beer–Lambert over the air mass of Kasten and Young, "Revised optical air mass tables and
 //!   approximation formula", 1989.
 //! - Color of the sky: sunlight scattered once in even air (Chandrasekhar, "Radiative Transfer", 1960), dimmed by ozone, which
@@ -88,8 +90,9 @@ const HAZE: Vec3 = Vec3::new(0.076, 0.1, 0.134);
 const SUN_KELVIN: f32 = 5778.0;
 /// Illuminance of the sun above the air, lux.
 const SUN_LUX: f32 = 133_300.0;
-/// Limit that the light of the sky nears, lux. Clear skies give 8 000 to 15 000; the table's midday has bright clouds.
-const SKY_LUX: f32 = 40_000.0;
+/// Illuminance by a clear sky, lux: the first number plus the second times the root of the sine of the sun's elevation. What the
+/// table leaves beside direct sunlight is far too little for a sun at 15° to 45°: the ground would be brighter than the sky.
+const CLEAR_SKY_LUX: [f32; 2] = [800.0, 15_500.0];
 /// Color of moonlight in the picture.
 const MOON_COLOR: Vec3 = Vec3::new(0.45, 0.62, 1.0);
 /// Color of the sky by moonlight, overhead and at the horizon.
@@ -188,8 +191,8 @@ fn measured(body: Body, elevation: f32) -> Measured {
             // The last of the disc sets at -0.8°. Haze and hills take its light from 3° on.
             let risen = ((elevation + 0.8) / 3.8).clamp(0.0, 1.0);
             let direct = SUN_LUX * luminance(transmission(mass) * hue(sun)) * risen * risen;
-            let sky = (all - direct * sine).max(0.1 * all);
-            let sky = sky / (1.0 + sky / SKY_LUX);
+            // Near the horizon and below, the sky gives nearly all light.
+            let sky = (CLEAR_SKY_LUX[0] + CLEAR_SKY_LUX[1] * sine.sqrt()).min(all);
             // Weakly from 10° down: the sky is brightest around a low sun.
             let low = ((10.0 - elevation) / 10.0).clamp(0.0, 1.0);
             let direct = direct + GLOW * low * low * sky;
@@ -397,6 +400,21 @@ mod tests {
         let ratio = moon.intensity * luminance(moon.color) / (noon.intensity * luminance(noon.color));
         assert!((0.01..0.15).contains(&ratio), "{ratio}");
         assert!(moon.color.z > moon.color.x && luminance(moon.sky) < 0.1 * luminance(noon.sky), "{moon:?}");
+    }
+
+    #[test]
+    fn the_sky_is_brighter_than_the_ground() {
+        for tenths in ELEVATIONS {
+            let light = sun(tenths);
+            let [sky, ground] = [light.sky, light.ground].map(luminance);
+            assert!(sky > ground, "{tenths}: {sky} {ground}");
+        }
+        // The sky of a day is a color and not a dark gray.
+        for tenths in 150..=900 {
+            let light = sun(tenths);
+            let share = luminance(light.sky) / (light.intensity * luminance(light.color));
+            assert!((0.1..0.25).contains(&share), "{tenths}: {share}");
+        }
     }
 
     fn light_of(kind: LightKind, role: LightRole) -> Light {

@@ -6,6 +6,7 @@ use haze::{Light, LightKind, LightRole};
 use haze_author::daylight::{Body, SUN_ELEVATION, TIMES_OF_DAY, body_of, set_time, sun_of};
 use haze_author::light_angles::{Angles, MAX_ELEVATION, to_angles};
 use haze_core::frame::MAX_LIGHTS;
+use haze_core::settings::Backlight;
 use haze_preset::Preset;
 
 use super::rows::setting_rows::RowContext;
@@ -26,10 +27,10 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
         ui.horizontal_wrapped(|ui| {
             let can_add = preset.lights.len() < MAX_LIGHTS;
             let button = ui.add_enabled(can_add, eframe::egui::Button::new("Add a sun"));
-            if button.on_hover_text("Adds a sun as the key light, with a sky to match. Other lights stay.").clicked() {
+            if button.on_hover_text("Adds a sun as the key light, with a sky to match, and turns on the backlight ramps. Other lights stay.").clicked() {
                 add(preset, shown, place);
             }
-            ui.weak("No key light of this preset is a sun.");
+            ui.weak("This preset has no sun.");
         });
         return;
     };
@@ -92,6 +93,10 @@ fn add(preset: &mut Preset, shown: &mut LightView, place: Vec3) {
         ..Light::default()
     };
     shown.insert(preset, end, sun);
+    for system in &mut preset.systems {
+        // Smoke in front of the sun shows the light that comes through it.
+        system.settings.diffuse.backlight = Backlight::Ramp;
+    }
     keep_one_key(&mut preset.lights, end);
     let angles = Angles { elevation: NEW_SUN, ..to_angles(direction) };
     set_time(preset, end, Body::Sun, angles, place);
@@ -182,6 +187,8 @@ mod tests {
         let lights = preset(&harness).lights;
         assert_eq!((lights.len(), sun_of(&lights)), (4, Some(3)));
         assert_eq!(lights[0].role, LightRole::None);
+        let systems = preset(&harness).systems;
+        assert!(systems.iter().all(|system| system.settings.diffuse.backlight == Backlight::Ramp));
         assert_eq!(lights[3].color, Daylight::new(Body::Sun, NEW_SUN).color);
         click(&mut harness, "Dusk");
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);

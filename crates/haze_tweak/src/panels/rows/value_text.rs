@@ -39,7 +39,7 @@ pub fn suffix(unit: &str) -> String {
     match unit {
         "" => String::new(),
         "degrees" => "°".into(),
-        "half sides" => " side/2".into(),
+        "half sides" => " × half size".into(),
         "pixels" => " px".into(),
         unit => format!(" {unit}"),
     }
@@ -97,7 +97,8 @@ mod tests {
     fn numbers_can_be_typed_with_or_without_a_unit() {
         assert_eq!(parse(" 2.5 m/s ", "m/s"), Some(2.5));
         assert_eq!(parse("1e-3", ""), Some(0.001));
-        assert_eq!((parse("0.2 side/2", "half sides"), parse("0.2 half sides", "half sides")), (Some(0.2), Some(0.2)));
+        assert_eq!(parse("0.2 × half size", "half sides"), Some(0.2));
+        assert_eq!(parse("0.2 half sides", "half sides"), Some(0.2));
         assert_eq!((parse("35°", "degrees"), parse("35 degrees", "degrees")), (Some(35.0), Some(35.0)));
         for wrong in ["nan", "inf", "2,5", "", "m/s", "two"] {
             assert_eq!(parse(wrong, "m/s"), None, "{wrong}");
