@@ -79,7 +79,11 @@ const MOVES: [&str; 2] = ["camera.position", "camera.target"];
 /// Returns a name for the step between two presets: "Boost of smoke", "Color of Sun 2", "Camera", "3 settings of smoke",
 /// "Light added".
 pub fn step_name(before: &Preset, after: &Preset) -> String {
-    let changed = changed_fields(before, after);
+    let mut changed = changed_fields(before, after);
+    if after.lights.len() < before.lights.len() {
+        // The lamp goes with the light that it holds.
+        changed.retain(|path| path != "environment.lamp");
+    }
     let Some(first) = changed.first() else { return "Change".into() };
     let (owner, of) = (owner_of(first), of_owner(after, first));
     let length = |preset| lists(preset).into_iter().find(|(list, _)| list == first).map(|(_, length)| length);

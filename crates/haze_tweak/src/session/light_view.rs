@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
-use haze::{Light, LightRole};
+use haze::{Light, LightKind, LightRole};
 use haze_core::frame::MAX_LIGHTS;
 use haze_preset::Preset;
 
@@ -30,6 +30,10 @@ pub struct LightTurn {
     /// Angle from the positions in the preset, radians.
     pub angle: f32,
 }
+
+/// Glowing body of the yard's lamp, and the distance within which a light is that of the lamp, metres.
+const LAMP_HEAD: Vec3 = Vec3::new(1.1, 2.48, -2.4);
+const NEAR_LAMP: f32 = 0.3;
 
 /// Duration of one turn, seconds.
 const TURN_SECONDS: f32 = 5.0;
@@ -190,11 +194,18 @@ impl LightView {
         }
     }
 
-    /// Removes a light and its keyframes. If it was selected, none is selected afterwards.
+    /// Removes a light and its keyframes, and the lamp of the yard with its light. If it was selected, none is selected
+    /// afterwards.
     pub fn remove(&mut self, preset: &mut Preset, index: usize) {
         if index < preset.lights.len() {
             self.follow(&preset.lights);
-            preset.lights.remove(index);
+            let removed = preset.lights.remove(index);
+            let is_at_lamp =
+                |light: &Light| light.kind != LightKind::Directional && light.position.distance(LAMP_HEAD) < NEAR_LAMP;
+            if is_at_lamp(&removed) && !preset.lights.iter().any(is_at_lamp) {
+                // The lamp of the yard would glow without light.
+                preset.environment.lamp = false;
+            }
             self.entries.remove(index);
             let place = |place| (place != index).then(|| place - usize::from(place > index));
             self.renumber(place);
@@ -210,9 +221,8 @@ pub fn name_in_image(names: &[String], index: usize) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use haze::LightKind;
-
     use super::*;
+    use crate::document::preset_diff::step_name;
 
     fn lights(intensities: &[f32]) -> Vec<Light> {
         intensities.iter().map(|&intensity| Light { intensity, ..Light::default() }).collect()
@@ -337,6 +347,22 @@ mod tests {
         }
         let closed = turn.turned(&light);
         assert!(closed.position.distance(light.position) < 1e-3 && closed.direction.distance(light.direction) < 1e-3);
+    }
+
+    #[test]
+    fn the_lamp_goes_with_its_light() {
+        let mut column = Preset::load("column").unwrap();
+        let mut shown = LightView::default();
+        shown.remove(&mut column, 0);
+        assert!(column.environment.lamp);
+        let lamp = column.lights.iter().position(|light| light.position.distance(LAMP_HEAD) < NEAR_LAMP).unwrap();
+        shown.duplicate(&mut column, lamp);
+        shown.remove(&mut column, lamp);
+        assert!(column.environment.lamp, "another light is in it");
+        let before = column.clone();
+        shown.remove(&mut column, lamp);
+        assert!(!column.environment.lamp);
+        assert_eq!(step_name(&before, &column), "Light removed");
     }
 
     #[test]

@@ -154,6 +154,8 @@ fn gesture(button: PointerButton, held: Modifiers) -> Option<Gesture> {
     Some(match button {
         PointerButton::Middle if held.alt || held.shift => Gesture::Pan,
         PointerButton::Middle if held.command => Gesture::Dolly,
+        // Reserved for painting on the smoke, while the inspector is on.
+        PointerButton::Primary if held.command => return None,
         PointerButton::Primary | PointerButton::Middle => Gesture::Orbit,
         PointerButton::Secondary if held.alt => Gesture::Dolly,
         PointerButton::Secondary => Gesture::Fly,

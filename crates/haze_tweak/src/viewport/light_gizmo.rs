@@ -11,6 +11,7 @@ use super::light_marker::{self, light_position};
 use super::outlined_painter::{AXES, HOVERED, OutlinedPainter, PLAIN, SELECTED};
 use super::screen_projection::ScreenProjection;
 use crate::session::Session;
+use crate::session::view_options::Tab;
 
 /// Dragged and hovered handle.
 #[derive(Default)]
@@ -74,6 +75,9 @@ impl LightGizmo {
             let lights: Vec<_> =
                 session.document.preset.lights.iter().map(|light| session.view.lights.turned(light)).collect();
             session.view.lights.selected = light_marker::pick(&lights, projection, at);
+            if session.view.lights.selected.is_some() {
+                session.view.tab = Tab::Light;
+            }
         }
         self.is_busy || was_busy
     }

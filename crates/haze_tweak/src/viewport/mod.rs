@@ -75,6 +75,9 @@ impl Viewport {
             false => self.gizmo.interact(ui, &response, &projection, session),
         };
         if !is_taken {
+            if !session.inspect.is_on {
+                smoke_paint::explain(ui, &response, session);
+            }
             self.steer(ui, &response, &projection, session);
         }
         self.menu(&response, &projection, session);

@@ -42,7 +42,7 @@ struct Lookup {
 impl SmokePaint {
     /// Paints while the inspector is on and a drag with Ctrl is in progress. Returns true meanwhile.
     pub fn interact(&mut self, ui: &Ui, response: &Response, session: &mut Session) -> bool {
-        if response.drag_started_by(PointerButton::Primary) && ui.input(|input| input.modifiers.command) {
+        if is_begun(ui, response) {
             self.is_active = session.inspect.is_on;
             self.stroke = self.is_active.then(|| begin(session)).flatten();
         }
@@ -56,6 +56,18 @@ impl SmokePaint {
         stroke.moved += if is_new { response.total_drag_delta().unwrap_or_default() } else { response.drag_delta() };
         stroke.apply(session);
         true
+    }
+}
+
+/// True in the frame in which a drag with Ctrl begins.
+fn is_begun(ui: &Ui, response: &Response) -> bool {
+    response.drag_started_by(PointerButton::Primary) && ui.input(|input| input.modifiers.command)
+}
+
+/// Says how to paint if a drag with Ctrl begins while the inspector is off.
+pub fn explain(ui: &Ui, response: &Response, session: &mut Session) {
+    if is_begun(ui, response) {
+        session.messages.info(SUBJECT, "Ctrl + drag paints on the smoke while Inspect is on");
     }
 }
 

@@ -81,6 +81,18 @@ fn wheel_steps_are_one_undo_step_and_zoom_towards_the_pointer() {
 }
 
 #[test]
+fn a_drag_with_ctrl_moves_no_camera_and_says_when_it_paints() {
+    let mut harness = lit(Light::default());
+    let before = camera(&harness);
+    let from = viewport(&harness).center() + vec2(-180.0, 60.0);
+    harness.event(Event::ModifiersChanged(Modifiers::COMMAND));
+    drag(&mut harness, PointerButton::Primary, &[from, from + vec2(0.0, 20.0), from + vec2(0.0, 60.0)]);
+    assert_eq!(camera(&harness), before);
+    let message = harness.state().session.messages.latest().map(|message| message.text.clone());
+    assert_eq!(message.as_deref(), Some("Ctrl + drag paints on the smoke while Inspect is on"));
+}
+
+#[test]
 fn the_right_button_with_wasd_flies() {
     let mut harness = lit(Light::default());
     let before = camera(&harness);

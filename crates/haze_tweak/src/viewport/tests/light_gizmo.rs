@@ -8,6 +8,7 @@ use haze_preset::KeyValue;
 
 use super::{camera, drag, flick, handle, light, lit, projection, undo_name};
 use crate::document::keyframes::set_key;
+use crate::session::view_options::Tab;
 use crate::viewport::light_handle::{Handle, Shape, handles};
 use crate::window::Window;
 
@@ -168,6 +169,7 @@ fn a_click_selects_a_light_and_a_click_elsewhere_deselects() {
     let selected = |harness: &Harness<'_, Window>| harness.state().session.view.lights.selected;
     drag(&mut harness, PointerButton::Primary, &[at + vec2(6.0, 4.0)]);
     assert_eq!(selected(&harness), Some(0));
+    assert_eq!(harness.state().session.view.tab, Tab::Light, "its settings are shown");
     // A drag elsewhere turns the camera and keeps the selection.
     let beside = at + vec2(-200.0, 140.0);
     let before = camera(&harness);
