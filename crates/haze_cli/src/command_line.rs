@@ -126,8 +126,8 @@ fn run_arguments(arguments: Vec<OsString>) -> ExitCode {
     })
 }
 
-/// Inserts `tweak` before the name of a preset or a link: `haze PRESET` is `haze tweak PRESET`. A subcommand of the same name
-/// takes precedence.
+/// Inserts `tweak` before the name of a preset, a link or an option of the tweaker: `haze PRESET --size 800x600` is `haze tweak
+/// PRESET --size 800x600`. A subcommand of the same name takes precedence.
 fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_preset = |name: &OsString| {
         let path = Path::new(name);
@@ -136,7 +136,11 @@ fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
         let is_link = name.to_str().and_then(share_link::fragment).is_some();
         !is_command && (is_built_in || is_link || path.is_file() || has_extension(path, "json"))
     };
-    if arguments.get(1).is_some_and(is_preset) {
+    let is_option = |argument: &OsString| {
+        let is_own = |name| ["-h", "--help", "-V", "--version"].contains(&name);
+        argument.to_str().is_some_and(|name| name.starts_with('-') && !is_own(name))
+    };
+    if arguments.get(1).is_some_and(|argument| is_option(argument) || is_preset(argument)) {
         arguments.insert(1, "tweak".into());
     }
     arguments
@@ -224,6 +228,20 @@ mod tests {
         for command in command.get_subcommands() {
             number_options(command, &[words, &[command.get_name().to_owned()]].concat(), found);
         }
+    }
+
+    #[test]
+    fn options_of_the_tweaker_need_no_subcommand() {
+        let completed = |words: &[&str]| {
+            let words = with_subcommand(words.iter().map(OsString::from).collect());
+            words.into_iter().map(|word| word.into_string().unwrap()).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(completed(&["haze", "--size", "800x600"]), "haze tweak --size 800x600");
+        assert_eq!(completed(&["haze", "fence", "--size", "800x600"]), "haze tweak fence --size 800x600");
+        for own in ["--help", "-h", "--version", "-V", "render", "nonsense"] {
+            assert_eq!(completed(&["haze", own]), format!("haze {own}"));
+        }
+        assert!(Cli::try_parse_from(with_subcommand(["haze", "--size", "800x600"].map(OsString::from).into())).is_ok());
     }
 
     #[test]

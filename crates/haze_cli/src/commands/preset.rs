@@ -54,9 +54,9 @@ enum Command {
     New {
         /// File to write; .json is added to a name without extension.
         file: PathBuf,
-        /// Preset to copy: a name, a path, or a link, whose ramps are written beside the file.
-        #[arg(long, value_name = "PRESET", default_value = "column")]
-        from: PathBuf,
+        /// Preset to copy: a name, a path, or a link, whose ramps are written beside the file. Default: column.
+        #[arg(long, value_name = "PRESET")]
+        from: Option<PathBuf>,
     },
     /// Print the JSON schema of preset files.
     Schema,
@@ -86,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
             return Failures::new(failures).into_result();
         }
         Command::Show { preset, changed } => show(&NamedPreset::load(preset, None)?.preset, *changed)?,
-        Command::New { file, from } => new(file, from)?,
+        Command::New { file, from } => new(file, from.as_deref())?,
         Command::Schema => write_text(haze_author::preset::schema())?,
         Command::Settings => write_text(haze_author::preset::settings_page().trim_end())?,
     }
@@ -174,7 +174,7 @@ fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
 }
 
 /// Writes a copy of a preset, and of its images beside it.
-fn new(file: &Path, from: &Path) -> Result<(), Error> {
+fn new(file: &Path, from: Option<&Path>) -> Result<(), Error> {
     if fragment_of_name(file).is_some() {
         let problem = "it is a link";
         return Err(FieldError::from_problem("FILE", problem, "a name that ends in .json, then --from LINK").into());
@@ -189,6 +189,8 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
             FieldError::from_problem("FILE", problem, "a name that does not exist yet: no file is replaced").into()
         );
     }
+    let more = if from.is_none() { "; --from copies another" } else { "" };
+    let from = from.unwrap_or(Path::new("column"));
     let NamedPreset { mut preset, path: from, ramps, .. } = NamedPreset::load(from, None)?;
     if let Some(name) = path.file_stem() {
         preset.name = name.to_string_lossy().into_owned();
@@ -197,7 +199,7 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
     write_ramps(&ramps, &folder(&path))?;
     copy_assets(&preset, &folder(&from), &folder(&path))?;
     write_file(&path, preset.to_json("").as_bytes())?;
-    print_line!("{}: a copy of {}; open it with `haze {0}`", path.display(), from.display())
+    print_line!("{}: a copy of {}{more}; open it with `haze {0}`", path.display(), from.display())
 }
 
 /// Writes the ramps of a link with their recipes. No file is replaced.

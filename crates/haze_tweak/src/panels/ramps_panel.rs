@@ -5,7 +5,7 @@ use glam::UVec2;
 use haze::MaterialAssets;
 use haze_core::assets::ramp::Ramp;
 use haze_core::formula::color::luminance;
-use haze_core::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze_core::formula::ramp::sample_ramp_2d;
 use haze_core::settings::{ImageRole, RampFilter, set_field};
 use haze_reference::SystemProbe;
 
@@ -23,6 +23,8 @@ use crate::viewport_renderer::compared_side::ComparedSide;
 /// Heights of a ramp and of a histogram, points.
 const RAMP_HEIGHT: f32 = 20.0;
 const HISTOGRAM_HEIGHT: f32 = 56.0;
+/// Largest number of rows that a strip shows.
+const MAX_STRIP_ROWS: u32 = 20;
 /// Largest width of a ramp with two axes, points.
 const PLANE_WIDTH: f32 = 220.0;
 
@@ -96,6 +98,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let edited = ramp_stops::editor(ui, session, ramp, &across, &AxisSamples::default());
         let at = edited.map(|place| place.map(|place| place.x)).unwrap_or_else(|| {
             let at = strip(ui, &spoken, picture, filter, &across.1);
+            let rows = picture.size().y;
+            if is_diffuse(field) && rows > 1 {
+                ui.weak(format!("{rows} rows by amount: thin smoke at the bottom"));
+            }
             let name = if is_diffuse(field) { "Histogram of N·L" } else { "Histogram of amounts" };
             histogram(ui, (name, ui.available_width()), &across.0);
             at
@@ -381,8 +387,12 @@ fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
 
 /// Draws a ramp from left to right with marks. Returns the coordinate under the pointer.
 fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32, Color32)]) -> Option<f32> {
-    let (rect, at) = space(ui, Vec2::new(ui.available_width(), RAMP_HEIGHT), name);
-    picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, filter, at.x));
+    let rows = ramp.size().y;
+    let height = if rows > 1 { 2.0 * RAMP_HEIGHT } else { RAMP_HEIGHT };
+    let (rect, at) = space(ui, Vec2::new(ui.available_width(), height), name);
+    picture(ui, rect, UVec2::new(128, rows.min(MAX_STRIP_ROWS)), |at| {
+        sample_ramp_2d(ramp, filter, glam::Vec2::new(at.x, 1.0 - at.y))
+    });
     for &(coordinate, color) in marks {
         let x = rect.left() + coordinate * rect.width();
         for (width, color) in [(4.0, Color32::BLACK), (2.0, color)] {
