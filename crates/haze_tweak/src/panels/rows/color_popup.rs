@@ -31,7 +31,7 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
         ui.painter().rect_stroke(rect, visuals.corner_radius, visuals.bg_stroke, egui::StrokeKind::Inside);
     }
     let before = *value;
-    let popup = Popup::from_toggle_button_response(&button);
+    let popup = beside_row(ui, Popup::from_toggle_button_response(&button), rect);
     let popup = popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let opened_with = button.id.with("opened with");
     let is_open = popup.show(|ui| popup_content(ui, value, button.id)).is_some();
@@ -58,6 +58,20 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
         button.mark_changed();
     }
     button
+}
+
+/// Moves a popup to the left of the panel if it fits neither below nor above its button, where it would hide the row that it
+/// edits.
+fn beside_row<'a>(ui: &Ui, popup: Popup<'a>, button: egui::Rect) -> Popup<'a> {
+    let Some(size) = popup.get_expected_size() else { return popup };
+    let (window, gap) = (ui.ctx().content_rect(), ui.spacing().item_spacing.x);
+    let has_room = button.bottom() + gap + size.y <= window.bottom() || button.top() - gap - size.y >= window.top();
+    let left = ui.clip_rect().left() - 2.0 * gap - size.x;
+    if has_room || left < window.left() {
+        return popup;
+    }
+    let top = button.top().min(window.bottom() - size.y).max(window.top());
+    popup.anchor(egui::PopupAnchor::Position(egui::pos2(left, top)))
 }
 
 /// Returns what a color is divided by to be shown: its brightest channel if that exceeds 1.
@@ -205,6 +219,25 @@ mod tests {
         harness.get_by_role(Role::ColorWell).click();
         harness.run();
         harness
+    }
+
+    #[test]
+    fn a_popup_without_room_above_and_below_is_beside_the_panel() {
+        let panel = egui::Rect::from_min_max(egui::pos2(500.0, 0.0), egui::pos2(800.0, 420.0));
+        let draw = move |ui: &mut Ui, value: &mut Vec3| {
+            let mut panel_ui = ui.new_child(egui::UiBuilder::new().max_rect(panel));
+            panel_ui.set_clip_rect(panel);
+            panel_ui.add_space(200.0);
+            swatch(&mut panel_ui, value, &(0.0..=100.0)).accessible_name("Tint");
+        };
+        let mut harness = Harness::builder().with_size(vec2(800.0, 420.0)).build_ui_state(draw, Vec3::ONE);
+        harness.ctx.add_glyph_rasterizer(super::super::copy_icon::rasterizer());
+        harness.get_by_role(Role::ColorWell).click();
+        harness.run();
+        for name in ["Hex", "Brightness"] {
+            let field = harness.get_all_by_label(name).next().unwrap().rect();
+            assert!(field.right() < panel.left(), "{name}: {field}");
+        }
     }
 
     fn type_into(harness: &mut Harness<'_, Vec3>, role: Role, name: &str, text: &str) {
