@@ -285,6 +285,29 @@ mod tests {
     }
 
     #[test]
+    fn a_code_typed_into_a_color_popup_scrolls_no_tab() {
+        let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+        harness.get_by_label("Light").click();
+        harness.run_steps(3);
+        harness.get_by_label("Key (Point 1)").click();
+        harness.run_steps(3);
+        let place = harness.get_by_label("Add light").rect();
+        let wells: Vec<_> = harness.get_all_by_role(Role::ColorWell).collect();
+        // The color of the selected light, in the middle of the window.
+        wells[3].click();
+        harness.run_steps(8);
+        harness.get_by_role_and_label(Role::TextInput, "Hex").click();
+        harness.run_steps(3);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.event(egui::Event::Text("#00ff00".into()));
+        harness.run_steps(20);
+        assert_eq!(harness.get_by_label("Add light").rect(), place);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert_eq!(harness.state().session.document.preset.lights[0].color, glam::Vec3::Y);
+    }
+
+    #[test]
     fn a_selected_light_does_not_widen_the_narrowest_panel() {
         let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
         // Numbers with many digits.

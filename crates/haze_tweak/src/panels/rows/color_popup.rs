@@ -34,7 +34,9 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
     let popup = beside_row(ui, Popup::from_toggle_button_response(&button), rect);
     let popup = popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let opened_with = button.id.with("opened with");
-    let is_open = popup.show(|ui| popup_content(ui, value, button.id)).is_some();
+    // The area keeps the text field's request to scroll from the panel, which would scroll away from under the popup.
+    let content = |ui: &mut Ui| egui::ScrollArea::neither().show(ui, |ui| popup_content(ui, value, button.id));
+    let is_open = popup.show(content).is_some();
     if is_open {
         ui.data_mut(|data| *data.get_temp_mut_or(opened_with, before));
     } else if ui.data_mut(|data| data.remove_temp::<Vec3>(opened_with)).is_some_and(|opened| opened != *value) {
