@@ -46,13 +46,18 @@ pub fn can_test(capability: &str, is_available: bool) -> bool {
 
 /// Returns true if the path `tiled` is available: it needs compute shaders, which the library does not use on OpenGL.
 pub fn is_tiled_available() -> bool {
-    can_test("compute", gpu().adapter.get_info().backend != wgpu::Backend::Gl)
+    can_test("compute", !is_opengl())
+}
+
+/// Returns true if the tests run on OpenGL.
+pub fn is_opengl() -> bool {
+    gpu().adapter.get_info().backend == wgpu::Backend::Gl
 }
 
 /// Returns true if the adapter's devices are independent. On OpenGL they share one context: resources that are dropped with
 /// one device are lost for the others.
 pub fn has_independent_devices() -> bool {
-    can_test("devices", gpu().adapter.get_info().backend != wgpu::Backend::Gl)
+    can_test("devices", !is_opengl())
 }
 
 /// Counts the texels that contain a NaN or an infinity, within the first `size` texels of a texture.

@@ -11,7 +11,7 @@ use haze_core::view_setup::MAX_TARGET_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{PipelineStore, Shader};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
-use crate::renderer::pipeline_variants::{PipelineKey, PipelineVariants};
+use crate::renderer::pipeline_variants::PipelineVariants;
 use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, single_target};
 
 /// Variants of tile_accumulate.
