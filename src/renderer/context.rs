@@ -73,7 +73,7 @@ impl Shared {
 }
 
 impl Context {
-    /// Compiles the shader modules. Pipelines are compiled by the first `prepare` that needs them, or in advance by
+    /// Creates the layouts. Shader modules and pipelines are compiled by the first `prepare` that needs them, or in advance by
     /// [`Renderer::warm_up`](crate::Renderer::warm_up).
     ///
     /// `queue` must be the queue of `device`. Encoders, passes, textures and buffers that the host passes to haze must

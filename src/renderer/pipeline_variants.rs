@@ -139,7 +139,7 @@ macro_rules! pipeline_set {
         }
 
         impl $set {
-            /// Creates the shader modules and pipeline layouts. `shader` returns the shader of a pass by name.
+            /// Composes the shaders and creates pipeline layouts. `shader` returns the shader of a pass by name.
             fn new<E>(
                 store: &$crate::renderer::gpu::pipeline::PipelineStore,
                 layouts: &$crate::renderer::layouts::Layouts,

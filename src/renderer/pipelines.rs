@@ -52,7 +52,7 @@ pub(crate) struct Pipelines {
 }
 
 impl Pipelines {
-    /// Creates the shader modules and pipeline layouts. `shader` returns the shader of a pass by name.
+    /// Composes the shaders and creates pipeline layouts. `shader` returns the shader of a pass by name.
     pub fn new<E>(
         store: &PipelineStore,
         layouts: &Layouts,

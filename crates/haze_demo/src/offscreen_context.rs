@@ -29,7 +29,7 @@ pub struct OffscreenContext {
 }
 
 impl OffscreenContext {
-    /// Compiles the shaders of the scene and of haze.
+    /// Creates shaders and layouts of the scene and of haze. Pipelines are compiled on first use.
     pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
         let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
