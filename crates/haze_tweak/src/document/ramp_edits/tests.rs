@@ -29,8 +29,10 @@ impl Folder {
         let folder = Self(tempfile::tempdir().unwrap());
         let mut preset = Preset::load("column").unwrap();
         preset.systems[0].material.diffuse_ramp = "mine.png".into();
-        // In shadow, light on the far side hardly shows.
+        // In shadow, or beside other light, that of the ramp hardly shows on the far side.
         preset.systems[0].settings.shadow.strength = 0.0;
+        preset.systems[0].settings.ambient.intensity = 0.0;
+        preset.systems[0].settings.diffuse.intensity = 3.0;
         std::fs::write(folder.preset(), serde_json::to_string(&preset).unwrap()).unwrap();
         let recipe = Template::find("neutral").unwrap().recipe();
         std::fs::write(folder.path("mine.ramp.json"), recipe.to_json()).unwrap();

@@ -34,9 +34,12 @@ fn files_changed_by_another_program_are_not_overwritten_until_requested() {
 #[test]
 fn a_built_in_sprite_is_copied_beside_the_preset() {
     let folder = Folder::new();
-    folder.write_preset(&Preset::load("column").unwrap());
+    let name = "puff";
+    let mut preset = Preset::load("column").unwrap();
+    preset.systems[0].material.sprite = name.into();
+    folder.write_preset(&preset);
     let mut harness = folder.open();
-    let (name, sprite) = ("puff", used(&harness));
+    let sprite = used(&harness);
     assert!(slider(&harness, "Erosion").accesskit_node().is_disabled());
     harness.get_by_label("Make my own…").click();
     harness.run_steps(4);
@@ -153,6 +156,8 @@ fn closing_the_window_waits_for_the_bake_to_be_written() {
 #[test]
 fn a_built_in_preset_must_be_saved_before_a_sprite_is_copied() {
     let mut harness = page_of("column");
+    let name = harness.state().session.document.preset.systems[0].material.sprite.clone();
+    let copy = format!("{name}_mine.png");
     harness.get_by_label("Make my own…").click();
     harness.run_steps(4);
     harness.get_by_label("Save Preset and Copy…").click();
@@ -160,8 +165,8 @@ fn a_built_in_preset_must_be_saved_before_a_sprite_is_copied() {
     let folder = tempfile::tempdir().unwrap();
     let Window { file_actions, session, .. } = harness.state_mut();
     file_actions.finish_typing(Some(&folder.path().join("mine.json")), session);
-    until(&mut harness, |_| folder.path().join("puff_mine.png").is_file());
-    assert_eq!(harness.state().session.document.preset.systems[0].material.sprite, "puff_mine.png");
+    until(&mut harness, |_| folder.path().join(&copy).is_file());
+    assert_eq!(harness.state().session.document.preset.systems[0].material.sprite, copy);
 }
 
 #[test]
