@@ -36,6 +36,12 @@ const PAINTED: Vec3 = vec3(0.20, 0.21, 0.20);
 /// Reflectance of a photographic gray card.
 const GRAY: Vec3 = Vec3::splat(0.18);
 
+/// The glowing body of the yard's lamp.
+const LAMP_BODY_FOOT: Vec3 = vec3(1.1, 2.36, -2.4);
+const LAMP_BODY_SIZE: Vec3 = vec3(0.2, 0.24, 0.2);
+/// Middle of the glowing body of the yard's lamp, where its light belongs.
+pub const LAMP_HEAD: Vec3 = vec3(LAMP_BODY_FOOT.x, LAMP_BODY_FOOT.y + 0.5 * LAMP_BODY_SIZE.y, LAMP_BODY_FOOT.z);
+
 fn pillar(boxes: &mut Vec<SceneBox>, foot: Vec3, height: f32) {
     boxes.push(box_on_ground(foot, vec3(0.8, 0.3, 0.8), 0.0, STONE, Surface::Plaster));
     boxes.push(box_on_ground(foot, vec3(0.52, height, 0.52), 0.0, STONE, Surface::Plaster));
@@ -86,7 +92,7 @@ fn yard(environment: &Environment) -> Vec<SceneBox> {
     if environment.lamp {
         boxes.push(box_on_ground(at(1.1, 0.0, -2.4), vec3(0.3, 0.14, 0.3), 0.0, IRON, Surface::Plain));
         boxes.push(box_on_ground(at(1.1, 0.0, -2.4), vec3(0.09, 2.35, 0.09), 0.0, IRON, Surface::Plain));
-        boxes.push(box_on_ground(at(1.1, 2.36, -2.4), vec3(0.2, 0.24, 0.2), 0.0, vec3(9.0, 6.4, 3.6), Surface::Glow));
+        boxes.push(box_on_ground(LAMP_BODY_FOOT, LAMP_BODY_SIZE, 0.0, vec3(9.0, 6.4, 3.6), Surface::Glow));
         boxes.push(box_on_ground(at(1.1, 2.62, -2.4), vec3(0.36, 0.06, 0.36), 0.0, IRON, Surface::Plain));
     }
 

@@ -30,3 +30,5 @@ pub mod shot;
 mod texture_readback;
 pub mod tonemap_pass;
 mod uploaded_backdrop;
+
+pub use layout::LAMP_HEAD;

@@ -25,7 +25,7 @@ use haze::shader;
 use haze_author::backdrop::Backdrop;
 use wgpu::util::DeviceExt as _;
 
-/// Formats of the color targets of a pass, of which most have one.
+/// Formats of the color targets of a pass. Most passes have one.
 const COLOR: [wgpu::TextureFormat; 4] = [COLOR_FORMAT; 4];
 
 /// Compiled on first use: a scene draws half of the pipelines.

@@ -18,6 +18,12 @@ fn the_preset_of_the_examples_is_the_built_in_one() {
     assert_eq!(PRESET, include_str!("../../../../presets/column.json"));
 }
 
+/// The preset with a part of its text changed.
+fn changed(from: &str, to: &str) -> String {
+    assert!(PRESET.contains(from), "{from}");
+    PRESET.replace(from, to)
+}
+
 /// Updates until the condition holds.
 fn wait(host: &mut Host, condition: impl Fn(&World) -> bool) {
     let started = Instant::now();
@@ -60,7 +66,7 @@ fn a_broken_preset_keeps_the_last_picture_and_a_good_one_replaces_it() {
     let handle = load(&mut host, "own.smoke.json");
     let first = host.picture();
 
-    write(folder.path(), "own.smoke.json", &PRESET.replace("\"boost\": 1.5", "\"boost\": -1"));
+    write(folder.path(), "own.smoke.json", &changed("\"boost\": 1.5", "\"boost\": -1"));
     host.app.world().resource::<AssetServer>().reload("own.smoke.json");
     let id = handle.id();
     wait(&mut host, |world| matches!(world.resource::<AssetServer>().load_state(id), LoadState::Failed(_)));
@@ -70,7 +76,7 @@ fn a_broken_preset_keeps_the_last_picture_and_a_good_one_replaces_it() {
     let all = vec![true; first.pixels.len()];
     assert!(broken.psnr(&first, &all) > 60.0);
 
-    write(folder.path(), "own.smoke.json", &PRESET.replace("\"rate\": 34.0", "\"rate\": 0.0"));
+    write(folder.path(), "own.smoke.json", &changed("\"rate\": 37.0", "\"rate\": 0.0"));
     host.app.world().resource::<AssetServer>().reload("own.smoke.json");
     wait(&mut host, |world| {
         let assets = world.resource::<Assets<SmokeAsset>>();
@@ -85,7 +91,7 @@ fn images_beside_a_preset_are_read_by_the_asset_server() {
     let folder = tempfile::tempdir().unwrap();
     let images = folder.path().join("smoke/ramps");
     std::fs::create_dir_all(&images).unwrap();
-    let named = PRESET.replace("\"diffuse_soft\"", "\"ramps/red.png\"");
+    let named = changed("\"diffuse_soft\"", "\"ramps/red.png\"");
     write(folder.path(), "smoke/own.smoke.json", &named);
     let mut host = host(folder.path());
     host.camera();
@@ -114,16 +120,16 @@ fn images_beside_a_preset_are_read_by_the_asset_server() {
 #[test]
 fn files_that_are_no_presets_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let particles = PRESET.replace("\"name\": \"smoke\",", "\"name\": \"smoke\", \"cache\": {\"path\": \"a.ply\"},");
-    let no_sprite = PRESET.replace("\"sprite\": \"puff\"", "\"sprite\": \"absent.png\"");
-    let unknown = PRESET.replace("\"sprite\": \"puff\"", "\"sprite\": \"pufff\"");
-    let outside = PRESET.replace("\"diffuse_soft\"", "\"../red.png\"");
+    let particles = changed("\"name\": \"smoke\",", "\"name\": \"smoke\", \"cache\": {\"path\": \"a.ply\"},");
+    let no_sprite = changed("\"sprite\": \"billow\"", "\"sprite\": \"absent.png\"");
+    let unknown = changed("\"sprite\": \"billow\"", "\"sprite\": \"billoww\"");
+    let outside = changed("\"diffuse_soft\"", "\"../red.png\"");
     let mut host = host(folder.path());
     for (name, text, expected) in [
         ("cut.smoke.json", &PRESET[..200], "cut.smoke.json:"),
         ("particles.smoke.json", &particles, "systems[0].cache.path"),
         ("sprite.smoke.json", &no_sprite, "material.sprite"),
-        ("unknown.smoke.json", &unknown, "pufff"),
+        ("unknown.smoke.json", &unknown, "billoww"),
         ("outside.smoke.json", &outside, "material.diffuse_ramp"),
     ] {
         write(folder.path(), name, text);

@@ -250,6 +250,7 @@ fn smoke_flows_around_an_obstacle() {
     assert!(through.iter().filter(inside).count() > 20);
     let around = at(&Emitter { obstacle_margin: 0.4, ..emitter }, 20.0);
     let inside = around.iter().filter(inside).count();
+    // The steps of a path may cut a corner; none was seen.
     assert!(inside <= around.len() / 200, "{inside} of {}", around.len());
     // It gets past, on both sides.
     for side in [Vec3::X, Vec3::NEG_X] {

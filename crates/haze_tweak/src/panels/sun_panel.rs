@@ -27,7 +27,8 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
         ui.horizontal_wrapped(|ui| {
             let can_add = preset.lights.len() < MAX_LIGHTS;
             let button = ui.add_enabled(can_add, eframe::egui::Button::new("Add a sun"));
-            if button.on_hover_text("Adds a sun as the key light, with a sky to match, and turns on the backlight ramps. Other lights stay.").clicked() {
+            let about = "Adds a sun as the key light, with a sky to match, and turns on the backlight ramps. Other lights stay.";
+            if button.on_hover_text(about).clicked() {
                 add(preset, shown, place);
             }
             ui.weak("This preset has no sun.");

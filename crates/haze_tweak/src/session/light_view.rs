@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 use glam::{Quat, Vec3};
 use haze::{Light, LightKind, LightRole};
 use haze_core::frame::MAX_LIGHTS;
+use haze_demo::LAMP_HEAD;
 use haze_preset::Preset;
 
 use crate::document::keyframes::{copy_light_tracks, renumber_lights};
@@ -31,8 +32,7 @@ pub struct LightTurn {
     pub angle: f32,
 }
 
-/// Glowing body of the yard's lamp, and the distance within which a light is that of the lamp, metres.
-const LAMP_HEAD: Vec3 = Vec3::new(1.1, 2.48, -2.4);
+/// Distance from the yard's lamp within which a light is that of the lamp, metres.
 const NEAR_LAMP: f32 = 0.3;
 
 /// Duration of one turn, seconds.
