@@ -40,7 +40,8 @@ fn evaluate(criterion: &mut Criterion) {
 /// CPU time of `prepare` in a steady frame. The difference between `sorted` and `weighted` is the sort.
 fn prepare(criterion: &mut Criterion) {
     let gpu = Headless::new().unwrap();
-    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue));
+    let device = &gpu.device;
+    let context = Context::new(&gpu.device, &gpu.queue);
     let size = UVec2::new(640, 360);
     let depth = gpu.target("depth", size, wgpu::TextureFormat::Depth32Float).create_view(&Default::default());
     let view = Shot::load("column", size).unwrap().preset.camera.view(size);

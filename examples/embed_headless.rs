@@ -31,7 +31,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let color = target(COLOR, wgpu::TextureUsages::COPY_SRC);
     let depth = target(DEPTH, wgpu::TextureUsages::TEXTURE_BINDING); // haze reads the depth
-    let (color_view, depth_view) = (color.create_view(&Default::default()), depth.create_view(&Default::default()));
+    let color_view = color.create_view(&Default::default());
+    let depth_view = depth.create_view(&Default::default());
     let view = View::new(
         rh::view::look_at_mat4(vec3(0.0, 1.6, 6.5), vec3(0.0, 1.7, 0.0), Vec3::Y),
         rh::proj::directx::perspective(0.8, SIZE.x as f32 / SIZE.y as f32, 0.1, 100.0),
@@ -48,7 +49,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // haze work of one frame.
     let mut particles = Vec::new();
     haze::emitter::Emitter::default().evaluate(8.0, &mut particles);
-    let (settings, orange) = (Settings::default(), vec3(1.0, 0.7, 0.4));
+    let settings = Settings::default();
+    let orange = vec3(1.0, 0.7, 0.4);
     let frame = FrameInput {
         lights: &[Light { position: vec3(-3.0, 3.0, 3.0), color: orange, intensity: 12.0, ..Light::default() }],
         systems: &[ParticleSystem::new(0, Particles::Slice(&particles), &settings, &material)],

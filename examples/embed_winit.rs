@@ -112,7 +112,8 @@ impl Host {
         let smoke = Renderer::new(&context, &descriptor)?;
         let material = context.create_material(&MaterialSources::default().load(ImageSource::BuiltIn)?)?;
         let depth = depth_target(&device, &configuration);
-        let (start, settings) = (Instant::now(), Settings::default());
+        let start = Instant::now();
+        let settings = Settings::default();
         Ok(Self {
             window,
             surface,
@@ -131,7 +132,8 @@ impl Host {
     fn resize(&mut self, size: UVec2) {
         // A minimised window has size 0, and configuring a surface of size 0 panics.
         if size.min_element() > 0 {
-            (self.configuration.width, self.configuration.height) = (size.x, size.y);
+            self.configuration.width = size.x;
+            self.configuration.height = size.y;
             self.surface.configure(&self.device, &self.configuration);
             self.depth = depth_target(&self.device, &self.configuration);
         }

@@ -33,6 +33,8 @@ override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override WEIGHTED: bool = false;
 // True: the traversal stops where the smoke is opaque.
 override STOPS: bool = true;
+// True: an invocation has 2x2 texels, not one below the other. See `quads`.
+override QUADS: bool = false;
 
 // Transmittance at which the traversal may stop: 2⁻¹⁰, a quarter of an 8-bit step.
 const OPAQUE: f32 = 0.0009765625;
@@ -63,13 +65,25 @@ fn init_texel(place: vec2u) -> Texel {
 }
 
 // Returns the texel with one more sprite, behind all accumulated ones. `values`: those of the sprite. `uv`: position in its
-// square.
-fn accumulate_sprite(texel: Texel, sprite: TileSprite, values: SpriteValues, uv: vec2f, is_touched: bool) -> Texel {
+// square. `is_cover`: the scene fades it nowhere in the tile.
+fn accumulate_sprite(
+    texel: Texel,
+    sprite: TileSprite,
+    values: SpriteValues,
+    uv: vec2f,
+    is_touched: bool,
+    is_cover: bool,
+) -> Texel {
     var in = fragment_of(sprite, texel.place, texel.ray, uv);
     if STRETCH {
         in.stretch = unpack2x16snorm(values.stretch);
     }
-    let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
+    var fragment: SpriteFragment;
+    if is_cover {
+        fragment = unfaded_fragment(in, frames_of(sprite));
+    } else {
+        fragment = technique_fragment(in, frames_of(sprite), texel.scene);
+    }
     let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
     let seen = select(texel.transmittance, 1.0, WEIGHTED);
     var next = texel;
@@ -117,9 +131,13 @@ fn sprite_index(list: vec2u, at: u32) -> u32 {
 }
 
 // Cooperative traversal, for adapters with cheap barriers: a workgroup reads a batch of sprites once and shares it in
-// workgroup memory. Each invocation has two texels, one below the other, so that it has other work while it waits for a
-// texture lookup.
+// workgroup memory. Each invocation has two texels, one below the other, or 2x2, so that it has other work while it waits
+// for a texture lookup.
 const TILE: vec2u = vec2u(8u, 16u);
+// Texels of a workgroup of `quads`, and of 32 of its invocations, which many GPUs run side by side. On a large target, where
+// fewer invocations suffice to keep the adapter busy, more texels share what is done once a sprite.
+const QUAD_TILE: vec2u = vec2u(32u, 16u);
+const QUAD_BLOCK: vec2u = vec2u(16u, 8u);
 // Parts of the list that a workgroup of `split` or `split_finely` traverses at the same time, where a target has too few
 // texels to keep the adapter busy: most of the time is then spent waiting for lookups. A tile of `split_finely` is 8x8 texels.
 const SPLIT: u32 = 4u;
@@ -137,19 +155,32 @@ var<workgroup> unfinished: atomic<u32>;
 var<workgroup> fronts: array<f32, FINE_SPLIT>;
 // Bits of the farthest view depth of the scene in the tile. It is positive, so that its bits order as an integer.
 var<workgroup> farthest: atomic<u32>;
+// The same of the nearest one, inverted.
+var<workgroup> nearest: atomic<u32>;
 // Texels of one part, as the targets' textures. The amount's place has the transmittance.
 var<workgroup> behind: array<array<vec4f, MAX_TARGET_ATTACHMENTS>, 64>;
 
-// Two texels, one below the other.
-struct TexelPair {
+// Texels of an invocation: a above b. If QUADS, also c above d, to their right.
+struct Texels {
     a: Texel,
     b: Texel,
+    c: Texel,
+    d: Texel,
 }
 
 @compute @workgroup_size(8, 8)
 fn cooperative(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
     let low = workgroup.xy * TILE;
     write_pair(first_texel(low, local), traverse_part(low, TILE, local, 1u));
+}
+
+@compute @workgroup_size(8, 4, 4)
+fn quads(@builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) workgroup: vec3u) {
+    let low = workgroup.xy * QUAD_TILE;
+    let place = first_texel(low, local);
+    let texels = traverse_part(low, QUAD_TILE, local, 1u);
+    write_pair(place, texels);
+    write_pair(place + vec2u(1u, 0u), Texels(texels.c, texels.d, texels.c, texels.d));
 }
 
 @compute @workgroup_size(8, 8, SPLIT)
@@ -191,6 +222,9 @@ fn traverse_parts(low: vec2u, tile: vec2u, local: vec3u, parts: u32) {
 }
 
 fn first_texel(low: vec2u, local: vec3u) -> vec2u {
+    if QUADS {
+        return low + vec2u(local.z & 1u, local.z >> 1u) * QUAD_BLOCK + local.xy * 2u;
+    }
     return low + local.xy * vec2u(1u, 2u);
 }
 
@@ -212,7 +246,7 @@ fn with_behind(texel: Texel, slots: array<vec4f, MAX_TARGET_ATTACHMENTS>) -> Tex
     return next;
 }
 
-fn write_pair(place: vec2u, texels: TexelPair) {
+fn write_pair(place: vec2u, texels: Texels) {
     let size = vec2u(system.target_size);
     let below = place + vec2u(0u, 1u);
     if all(place < size) {
@@ -225,14 +259,22 @@ fn write_pair(place: vec2u, texels: TexelPair) {
 
 // Traverses a part of a tile's list: that of the invocation, of so many parts. All invocations of a workgroup call it.
 // `low`: first texel of the tile.
-fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> TexelPair {
-    let size = vec2u(system.target_size);
-    let part = local_place.z;
-    let local = local_place.y * 8u + local_place.x;
+fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Texels {
+    let last_texel = vec2u(system.target_size) - 1u;
+    let part = select(local_place.z, 0u, QUADS);
+    let local = select(0u, local_place.z * 32u, QUADS) + local_place.y * 8u + local_place.x;
     let place = first_texel(low, local_place);
-    var a = init_texel(min(place, size - 1u));
-    var b = init_texel(min(place + vec2u(0u, 1u), size - 1u));
-    atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
+    var a = init_texel(min(place, last_texel));
+    var b = init_texel(min(place + vec2u(0u, 1u), last_texel));
+    var c = a;
+    var d = b;
+    if QUADS {
+        c = init_texel(min(place + vec2u(1u, 0u), last_texel));
+        d = init_texel(min(place + vec2u(1u, 1u), last_texel));
+        let scene = min(min(a.scene, b.scene), min(c.scene, d.scene));
+        atomicMax(&nearest, ~bitcast<u32>(max(scene, 0.0)));
+    }
+    atomicMax(&farthest, bitcast<u32>(max(max(max(a.scene, b.scene), max(c.scene, d.scene)), 0.0)));
     let bin = low / tiles.bin_side;
     let list = bins[bin.y * tiles.columns + bin.x];
     // Far from where the counter of the loop would wrap.
@@ -244,6 +286,7 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
     let stop = min(start + length, entries);
     let middle = vec2f(low) + 0.5 * vec2f(tile);
     workgroupBarrier();
+    let begin = bitcast<f32>(~atomicLoad(&nearest));
     let end = bitcast<f32>(atomicLoad(&farthest)) + system.show_through_distance;
     for (var first = 0u; first < length; first += share) {
         if local == 0u && part == 0u {
@@ -251,7 +294,9 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
             atomicStore(&touching[1], 0u);
         }
         let front = fronts[part];
-        if start + first < stop && !(is_opaque_or_occluded(a, front) && is_opaque_or_occluded(b, front)) {
+        let is_over = is_opaque_or_occluded(a, front) && is_opaque_or_occluded(b, front) &&
+            (!QUADS || (is_opaque_or_occluded(c, front) && is_opaque_or_occluded(d, front)));
+        if start + first < stop && !is_over {
             atomicStore(&unfinished, 1u);
         }
         if workgroupUniformLoad(&unfinished) == 0u {
@@ -261,7 +306,7 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
         var values: SpriteValues;
         var is_kept = false;
         if local < share && start + first + local < stop {
-            // `debug_loop`: repeats the list.
+            // `debug.draw_count`: repeats the list.
             let index = sprite_index(list, (start + first + local) % list.y);
             if local == 0u {
                 fronts[part] = sprite_front(sprites[index].center_radius);
@@ -274,8 +319,14 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
                 }
                 // Only texel centers count.
                 let reach = reach_in_square(sprite, 0.5 * vec2f(tile - 1u));
-                let meets = is_sphere() || square_fills(sprite, uv_in_square(sprite, middle), reach);
+                let uv = uv_in_square(sprite, middle);
+                let meets = is_sphere() || square_fills(sprite, uv, reach);
                 is_kept = meets && sprite_front(sprite.center_radius) <= end;
+                if QUADS && is_full_between(sprite.filled, uv - reach, uv + reach) &&
+                    is_unfaded(begin, -sprite.center_radius.z) {
+                    // The mark of a sprite that covers the tile. Any other that meets it has a filled cell.
+                    sprite.filled = vec2u(0u);
+                }
             }
         }
         let entry = part * share + local;
@@ -300,10 +351,11 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
         // which tests use.
         for (
             var at = count_below(kept, part * share);
-            at < last && (EXACT_FILTERING || !(is_opaque(a) && is_opaque(b)));
+            at < last && (EXACT_FILTERING || !are_opaque(a, b, c, d));
             at++
         ) {
-            let is_done = is_opaque(a) && is_opaque(b);
+            // Otherwise, the loop has ended.
+            let is_done = EXACT_FILTERING && are_opaque(a, b, c, d);
             let sprite = batch[at];
             var values: SpriteValues;
             if has_values() {
@@ -311,15 +363,35 @@ fn traverse_part(low: vec2u, tile: vec2u, local_place: vec3u, parts: u32) -> Tex
             }
             let in_a = uv_in_square(sprite, a.place);
             let in_b = in_a + sprite.uv_from_texels.yw;
+            let in_c = in_a + sprite.uv_from_texels.xz;
+            let in_d = in_c + sprite.uv_from_texels.yw;
+            if QUADS && !is_done && !is_sphere() && all(sprite.filled == vec2u(0u)) {
+                a = accumulate_sprite(a, sprite, values, in_a, true, true);
+                b = accumulate_sprite(b, sprite, values, in_b, true, true);
+                c = accumulate_sprite(c, sprite, values, in_c, true, true);
+                d = accumulate_sprite(d, sprite, values, in_d, true, true);
+                continue;
+            }
             let touches_a = !is_done && touches(sprite, in_a);
             let touches_b = !is_done && touches(sprite, in_b);
-            if touches_a || touches_b {
-                a = accumulate_sprite(a, sprite, values, in_a, touches_a);
-                b = accumulate_sprite(b, sprite, values, in_b, touches_b);
+            let touches_c = QUADS && !is_done && touches(sprite, in_c);
+            let touches_d = QUADS && !is_done && touches(sprite, in_d);
+            if touches_a || touches_b || touches_c || touches_d {
+                a = accumulate_sprite(a, sprite, values, in_a, touches_a, false);
+                b = accumulate_sprite(b, sprite, values, in_b, touches_b, false);
+                if QUADS {
+                    c = accumulate_sprite(c, sprite, values, in_c, touches_c, false);
+                    d = accumulate_sprite(d, sprite, values, in_d, touches_d, false);
+                }
             }
         }
     }
-    return TexelPair(a, b);
+    return Texels(a, b, c, d);
+}
+
+// True if the smoke in front hides all further sprites from an invocation's texels.
+fn are_opaque(a: Texel, b: Texel, c: Texel, d: Texel) -> bool {
+    return is_opaque(a) && is_opaque(b) && (!QUADS || (is_opaque(c) && is_opaque(d)));
 }
 
 // Number of bits below a bit of 0 to 64.
@@ -372,7 +444,7 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
     var batch = 0u;
     var next = 0u;
     loop {
-        // Skips to the next batch that has a sprite of this tile; repeats the list for `debug_loop`.
+        // Skips to the next batch that has a sprite of this tile; repeats the list for `debug.draw_count`.
         while bits == 0u && next < end {
             batch = next % length;
             bits = bits_of(list, batch, part.y * PARTS.x + part.x);
@@ -391,10 +463,10 @@ fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(loc
             let in_b = in_a + sprite.uv_from_texels.yw;
             let in_c = in_b + sprite.uv_from_texels.yw;
             let in_d = in_c + sprite.uv_from_texels.yw;
-            a = accumulate_sprite(a, sprite, values, in_a, !is_opaque(a) && covers(in_a));
-            b = accumulate_sprite(b, sprite, values, in_b, !is_opaque(b) && covers(in_b));
-            c = accumulate_sprite(c, sprite, values, in_c, !is_opaque(c) && covers(in_c));
-            d = accumulate_sprite(d, sprite, values, in_d, !is_opaque(d) && covers(in_d));
+            a = accumulate_sprite(a, sprite, values, in_a, !is_opaque(a) && covers(in_a), false);
+            b = accumulate_sprite(b, sprite, values, in_b, !is_opaque(b) && covers(in_b), false);
+            c = accumulate_sprite(c, sprite, values, in_c, !is_opaque(c) && covers(in_c), false);
+            d = accumulate_sprite(d, sprite, values, in_d, !is_opaque(d) && covers(in_d), false);
             last_front = sprite_front(sprite.center_radius);
         }
         if STOPS || is_flat() {

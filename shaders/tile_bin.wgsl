@@ -216,3 +216,8 @@ fn fill(@builtin(global_invocation_id) invocation: vec3u) {
         }
     }
 }
+
+// True if a list of `length` words that starts at `first` fits.
+fn list_fits(first: u32, length: u32, capacity: u32) -> bool {
+    return length <= capacity && first <= capacity - length;
+}

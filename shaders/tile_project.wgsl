@@ -105,3 +105,22 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     keys[backwards] = select(HIDDEN_KEY, front_to_back_bits(center.z), visible);
     indices[backwards] = index;
 }
+
+// Returns the position in the target, texels, that a ray goes through.
+fn texel_of_ray(ray: vec2f) -> vec2f {
+    return texel_of_ndc((ray - view.ray_offset) / view.ray_scale);
+}
+
+// Returns the position in the target, texels, of the view's NDC.
+fn texel_of_ndc(ndc: vec2f) -> vec2f {
+    return pixel_from_ndc(ndc, view.size) / f32(system.scale) - system.target_origin;
+}
+
+// Returns the filled cells of a sprite's frames at its mip level.
+fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
+    let cells = alpha_bounds_texel(frames.first, lod).xy;
+    if frames.blend > 0.0 {
+        return cells | alpha_bounds_texel(frames.second, lod).xy;
+    }
+    return cells;
+}

@@ -51,14 +51,15 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     let accumulated = sample_target(accumulation, pixel);
     let amount = accumulated.a;
+    if amount <= 0.0 {
+        discard;
+    }
     if DEBUG_VIEW == DEBUG_VIEW_OVERDRAW {
         return vec4f(overdraw_color(amount * 255.0), 1.0);
     }
+    // White smoke: over black, the amount of all systems.
     if DEBUG_VIEW == DEBUG_VIEW_AMOUNT {
-        return vec4f(vec3f(amount), 1.0);
-    }
-    if amount <= 0.0 {
-        discard;
+        return vec4f(amount);
     }
     let covered = smoke_coverage(amount);
     let surface = shaded_surface(accumulated, sample_attachments(pixel), pixel);

@@ -58,15 +58,16 @@
 //! };
 //! smoke.prepare(&mut encoder, &frame)?;
 //! smoke.render(&mut pass_with_read_only_depth(&mut encoder));
-//! # Ok::<(), haze::Error>(())
+//! # Ok::<(), haze::PrepareError>(())
 //! ```
 //!
 //! # Versions
 //! haze follows semantic versioning; before 1.0 the minor version takes the place of the major one. wgpu's and glam's types
 //! are part of the interface, so a new version of either that changes types comes with a new major version of haze;
 //! [`wgpu`] and [`glam`] are the versions in use. A new major version may add fields and variants; structs that are created with
-//! `..Default::default()` or `..FrameInput::new(…)`, and a `match` with a wildcard arm, compile with it as they are. Messages of
-//! errors may change in any version.
+//! `..Default::default()` or `..FrameInput::new(…)`, and a `match` with a wildcard arm, compile with it as they are. Types that are
+//! `non_exhaustive` may gain fields and variants in a minor version too: errors, and what haze reports ([`PathModel`],
+//! [`MemoryUse`], [`TargetViews`] and others). Messages of errors may change in any version.
 //!
 //! # Features
 //! - `preset` (default): [`preset`] and [`builtin`], and with them 1.7 MB of images. [`MaterialAssets::default`] needs neither.
@@ -95,7 +96,7 @@ pub use frame::{AliveCount, FrameInput, Material, ParticleBuffer, ParticleSystem
 #[doc(inline)]
 pub use haze_core::assets::material_assets::MaterialAssets;
 #[doc(inline)]
-pub use haze_core::error::{Error, FieldError};
+pub use haze_core::error::{AssetError, FieldError, PrepareError};
 #[doc(inline)]
 pub use haze_core::formula::ambient::hemisphere_light;
 #[doc(inline)]
@@ -160,12 +161,12 @@ pub mod settings {
     #[doc(inline)]
     pub use haze_core::settings::{
         Accumulate, AccumulationFormat, Ambient, BackdropKind, Backlight, BlendMode, BlendOrder, Budget,
-        COARSEST_AUTO_SCALE, Choice, CoverageMode, Curve, CurveError, DebugView, Density, DepthDownsample, DepthSource,
-        Diffuse, DiffuseMode, FadeCurve, FieldHeading, FieldRef, FieldValue, FieldVisitor, Fields, Fire, Grain,
-        ImageRole, Lighting, LightingResolution, MAX_CURVE_POINTS, NormalDecode, NormalEncoding, ParseChoiceError,
-        PathStep, RampFilter, RenderPath, ScaleBudget, ScaleMode, Shadow, SoftFade, SoftScatter, SoftScatterMode,
-        SpecularScatter, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Traversal, Upsample,
-        Volumetric, field_path, field_values, for_each_field, set_field, validate, write_field_path,
+        COARSEST_AUTO_SCALE, Choice, CoverageMode, Curve, CurveError, DebugSettings, DebugView, DepthDownsample,
+        DepthSource, Diffuse, DiffuseMode, Exponential, FadeCurve, FieldHeading, FieldRef, FieldValue, FieldVisitor,
+        Fields, Fire, Grain, ImageRole, Lighting, LightingResolution, MAX_CURVE_POINTS, NormalDecode, NormalEncoding,
+        ParseChoiceError, PathStep, RampFilter, RenderPath, ScaleBudget, ScaleMode, Shadow, SoftFade, SoftScatter,
+        SoftScatterMode, SpecularScatter, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Traversal,
+        Upsample, Volumetric, field_path, field_values, for_each_field, set_field, validate, write_field_path,
     };
 }
 

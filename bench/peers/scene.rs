@@ -94,7 +94,8 @@ pub fn app<M>(options: &Options, plugins: impl Plugins<M>) -> (App, Entity) {
     app.cleanup();
 
     let extent = Extent3d { width: options.size.x, height: options.size.y, depth_or_array_layers: 1 };
-    let (format, usages) = (TextureFormat::Rgba16Float, RenderAssetUsages::default());
+    let format = TextureFormat::Rgba16Float;
+    let usages = RenderAssetUsages::default();
     let mut image = Image::new_fill(extent, TextureDimension::D2, &[0; 8], format, usages);
     image.texture_descriptor.usage = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
     let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
@@ -119,7 +120,8 @@ pub fn centers(layers: u32) -> impl Iterator<Item = Vec3> {
 /// Normal (0 to 1 in each direction) and amount of a texel of the sprite: bumps in a sheet that is nowhere clear.
 pub fn texel(index: u32) -> ([u8; 3], u8) {
     let [u, v] = [index % SPRITE_SIZE, index / SPRITE_SIZE].map(|at| (at as f32 + 0.5) / SPRITE_SIZE as f32);
-    let (x, y) = (0.4 * (19.0 * u).cos(), 0.4 * (23.0 * v).sin());
+    let x = 0.4 * (19.0 * u).cos();
+    let y = 0.4 * (23.0 * v).sin();
     let normal = Vec3::new(x, y, (1.0 - x * x - y * y).sqrt());
     let byte = |value: f32| (value * 255.0).round() as u8;
     let amount = 0.07 + 0.03 * (13.0 * u).sin() * (11.0 * v).cos();

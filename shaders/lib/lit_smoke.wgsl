@@ -107,7 +107,7 @@ fn surface_from_accumulation(accumulated: vec4f, attachments: Attachments) -> Su
 // Surface at a pixel, past the scene's shadow and open to the sky.
 fn shaded_surface(accumulated: vec4f, attachments: Attachments, pixel: vec2f) -> Surface {
     var surface = surface_from_accumulation(accumulated, attachments);
-    if DEPTH_SLOT != 0u {
+    if SHADOW && DEPTH_SLOT != 0u {
         surface.shade = shade_on_ray(surface.shade.optical_depths, ray_of_pixel(pixel), surface.depth);
     }
     return surface;

@@ -104,8 +104,7 @@ fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> S
     var motion = vec2f(0.0);
     let is_depth_sprite = TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_HARD || TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_SOFT;
     if is_depth_sprite || MOTION {
-        let lod = max(in.amount_lod_frame_erosion.y - system.detail_lod, 0.0);
-        let texel = sample_detail(detail, linear_sampler, in.uv, frames, lod);
+        let texel = detail_at(in, in.uv, frames);
         motion = texel.yz * system.motion;
         if is_depth_sprite {
             texel_depth = depth_sprite_depth(view_depth, texel.x, radius);
@@ -134,6 +133,32 @@ fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> S
         fragment.amount *= amount * fade;
     }
     return fragment;
+}
+
+// Fragment of a sprite that the scene neither fades nor hides: see is_unfaded().
+fn unfaded_fragment(in: SpriteVertex, frames: FlipbookFrames) -> SpriteFragment {
+    var motion = vec2f(0.0);
+    if MOTION {
+        motion = detail_at(in, in.uv, frames).yz * system.motion;
+    }
+    var fragment = sprite_texel(in, in.uv, frames, motion);
+    fragment.amount *= in.amount_lod_frame_erosion.x;
+    return fragment;
+}
+
+// True if the scene, nowhere nearer than `scene`, neither fades nor hides a sprite. False also where that is not known.
+fn is_unfaded(scene: f32, view_depth: f32) -> bool {
+    switch TECHNIQUE {
+        case TECHNIQUE_HARD: { return scene >= view_depth; }
+        case TECHNIQUE_SOFT, TECHNIQUE_SOFT_LINEAR: { return fade_before(scene, view_depth) >= 1.0; }
+        default: { return false; }
+    }
+}
+
+// Texel of the detail map at a position on a sprite: see sample_detail().
+fn detail_at(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames) -> vec3f {
+    let lod = max(in.amount_lod_frame_erosion.y - system.detail_lod, 0.0);
+    return sample_detail(detail, linear_sampler, uv, frames, lod);
 }
 
 fn fade_before(scene: f32, view_depth: f32) -> f32 {
@@ -185,7 +210,7 @@ fn clean_texel(
         return SpriteFragment(vec3f(0.0, 0.0, 1.0), turned, positive.a, positive.a, false);
     }
     var texel = checkerboard(uv);
-    if !DEBUG_SPRITE {
+    if !CHECKERBOARD {
         texel = sample_sprite(sprite, linear_sampler, uv, frames, motion, lod);
     }
     var normal = texel.xyz;
@@ -220,8 +245,7 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
     let place = unrotate(interval.axis.xy, in.rotation) / radius;
     var motion = vec2f(0.0);
     if MOTION {
-        let lod = max(in.amount_lod_frame_erosion.y - system.detail_lod, 0.0);
-        motion = sample_detail(detail, linear_sampler, sprite_uv(place), frames, lod).yz * system.motion;
+        motion = detail_at(in, sprite_uv(place), frames).yz * system.motion;
     }
     var fragment = sprite_texel(in, sprite_uv(place), frames, motion);
     let density = system.billboard_density * fragment.amount * amount;

@@ -40,7 +40,7 @@ struct SpriteVertex {
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
 override SPRITE_ANIMATION: u32 = SPRITE_ANIMATION_FLIPBOOK;
-override DEBUG_SPRITE: bool = false;
+override CHECKERBOARD: bool = false;
 // True: sprites are lit by six-way maps, and their normals are not read.
 override SIX_WAY: bool = false;
 // True if sprite.motion is not 0.
@@ -230,7 +230,7 @@ const FULL_ALPHA_BOUNDS: vec4u = vec4u(0xffffffffu);
 // Part of a frame that is not clear, at a sprite's mip level: a bit for each cell in xy, the extent in z.
 // AlphaBoundsTexel in crates/haze_core/src/assets/sprite/alpha_bounds.rs.
 fn alpha_bounds_texel(frame: i32, lod: f32) -> vec4u {
-    if DEBUG_SPRITE || MOTION {
+    if CHECKERBOARD || MOTION {
         return FULL_ALPHA_BOUNDS;
     }
     let level = min(i32(lod), i32(textureDimensions(sprite_alpha_bounds).x) - 1);

@@ -58,15 +58,6 @@ fn lod_of(sprite: TileSprite) -> f32 {
     return f32(sprite.frames_lod >> 24u);
 }
 
-// Returns the filled cells of a sprite's frames at its mip level.
-fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
-    let cells = alpha_bounds_texel(frames.first, lod).xy;
-    if frames.blend > 0.0 {
-        return cells | alpha_bounds_texel(frames.second, lod).xy;
-    }
-    return cells;
-}
-
 // Returns the cell of the sprite image at uv, or the nearest one.
 fn cell_at(uv: vec2f) -> vec2u {
     // Converts to signed integers first: CPUs have no instruction for a direct conversion to unsigned ones.
@@ -93,6 +84,11 @@ fn is_filled_between(cells: vec2u, low: vec2f, high: vec2f) -> bool {
     return any((cells & vec2u(upper, lower) & vec2u(columns)) != vec2u(0u));
 }
 
+// True if both corners, in uv, are inside the image and all cells between them are filled.
+fn is_full_between(cells: vec2u, low: vec2f, high: vec2f) -> bool {
+    return all(low >= vec2f(0.0)) && all(high < vec2f(1.0)) && !is_filled_between(~cells, low, high);
+}
+
 // Returns a word whose lowest `count` bytes are set, up to four. Shifts twice, because WGSL takes shift amounts modulo
 // 32.
 fn bytes_below(count: u32) -> u32 {
@@ -103,16 +99,6 @@ fn bytes_below(count: u32) -> u32 {
 fn ray_through_texel(texel: vec2f) -> vec2f {
     let pixel = (texel + system.target_origin) * f32(system.scale);
     return ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
-}
-
-// Returns the position in the target, texels, that a ray goes through.
-fn texel_of_ray(ray: vec2f) -> vec2f {
-    return texel_of_ndc((ray - view.ray_offset) / view.ray_scale);
-}
-
-// Returns the position in the target, texels, of the view's NDC.
-fn texel_of_ndc(ndc: vec2f) -> vec2f {
-    return pixel_from_ndc(ndc, view.size) / f32(system.scale) - system.target_origin;
 }
 
 // Returns the uv in a sprite's square at a texel.

@@ -76,8 +76,3 @@ fn front_to_back_bits(view_z: f32) -> u32 {
     let bits = bitcast<u32>(view_z);
     return select(0x7fffffffu - bits, bits, bits >> 31u == 1u);
 }
-
-// True if a list of `length` words that starts at `first` fits.
-fn list_fits(first: u32, length: u32, capacity: u32) -> bool {
-    return length <= capacity && first <= capacity - length;
-}

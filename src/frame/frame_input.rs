@@ -29,7 +29,7 @@ pub struct FrameInput<'a> {
     pub scene_ambient: Option<Vec3>,
     /// Particle systems, in any order. They are drawn by
     /// [`sort_priority`](crate::Settings::sort_priority), then far to near.
-    pub systems: &'a [ParticleSystem<'a>],
+    pub systems: &'a [ParticleSystem<'a, 'a>],
     /// Multiplies all light that the smoke sends to the viewer, for hosts whose target holds exposed light. 1 leaves it
     /// in the units of the lights. From 0 on.
     pub exposure: f32,
@@ -112,13 +112,14 @@ impl<'a> SceneDepth<'a> {
     }
 }
 
-/// One particle system: sprites that are accumulated together and lit as one body.
+/// One particle system: sprites that are accumulated together and lit as one body. `'p`: of the particles, which a host may
+/// make anew in every frame; `'a`: of settings and material.
 #[derive(Clone, Copy, Debug)]
-pub struct ParticleSystem<'a> {
+pub struct ParticleSystem<'p, 'a> {
     /// Identifies the system from frame to frame, whatever its position in the list. Must be unique within a frame.
     pub key: u64,
     /// The sprites, in any order.
-    pub particles: Particles<'a>,
+    pub particles: Particles<'p>,
     /// Places the particles in the world: rotation, translation and a uniform scale, which also multiplies their radii.
     /// An emitter that moves as a whole, or a simulation in local space, needs no work on the CPU.
     pub world_from_particles: Mat4,
@@ -139,9 +140,9 @@ pub struct ParticleSystem<'a> {
     pub material: &'a Material,
 }
 
-impl<'a> ParticleSystem<'a> {
+impl<'p, 'a> ParticleSystem<'p, 'a> {
     /// System with a measured box. `key`: any number that the frame's other systems do not have.
-    pub const fn new(key: u64, particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
+    pub const fn new(key: u64, particles: Particles<'p>, settings: &'a Settings, material: &'a Material) -> Self {
         Self { key, particles, world_from_particles: Mat4::IDENTITY, bounds: None, depth: None, settings, material }
     }
 }

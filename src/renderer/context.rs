@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::ramp::Ramp;
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 use haze_core::glam::{UVec2, Vec3};
 use haze_core::view_setup::Support;
 
@@ -107,8 +107,8 @@ impl Context {
     /// frames of presets take up to 1.34 times as long as with the embedded ones, whose loops are known to end.
     ///
     /// # Errors
-    /// [`Error::Shader`]: the first error, with its line and column in the file that contains it.
-    pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
+    /// [`PrepareError::Shader`]: the first error, with its line and column in the file that contains it.
+    pub fn with_shaders(&self, sources: &Sources) -> Result<Self, PrepareError> {
         let Shared { device, queue, device_number, pipelines, .. } = self.shared();
         let layouts = Layouts::new(device);
         let store = PipelineStore::new(device, pipelines.store.cache.as_ref());
@@ -140,8 +140,8 @@ impl Context {
             number,
             device_number: device_number.unwrap_or(number),
             textures: SharedTextures::new(&Gpu { device: &device, queue }),
-            no_ramp: upload_ramp(&Gpu { device: &device, queue }, "haze no ramp", &white, &mut 0),
-            no_shadow: volume(&device, "haze no shadow", (1, 1), wgpu::TextureUsages::empty()),
+            no_ramp: upload_ramp(&Gpu { device: &device, queue }, "haze no ramp", &white).view,
+            no_shadow: volume(&device, "haze no shadow", 1, 1, wgpu::TextureUsages::empty()),
             read_only_depth: read_only_depth_is_supported(&device),
             max_volume_depth: device.limits().max_texture_dimension_3d,
             support: Support {
@@ -171,15 +171,21 @@ impl Context {
         &self.0.layouts.scene_shadow
     }
 
-    /// Uploads ramps and sprite images. Create each material once and keep it; all renderers of this context can use
-    /// it.
+    /// Uploads ramps and sprite images, but those that another material of this context holds: clones of an image are
+    /// uploaded once. Create each material once and keep it; all renderers of this context can use it.
     ///
     /// # Errors
-    /// [`Error::Field`] names an image that is too large for the device, or six-way maps whose size differs from the
+    /// [`PrepareError::Field`] names an image that is too large for the device, or six-way maps whose size differs from the
     /// sprite's.
-    pub fn create_material(&self, assets: &MaterialAssets) -> Result<Material, Error> {
+    pub fn create_material(&self, assets: &MaterialAssets) -> Result<Material, PrepareError> {
         let Shared { layouts, textures, number, .. } = &*self.0;
         Ok(create_material(&self.0.gpu(), layouts, textures, *number, assets)?)
+    }
+
+    /// Returns the GPU memory of the images that materials of this context hold, bytes. An image that several share counts
+    /// once.
+    pub fn material_memory(&self) -> u64 {
+        self.0.textures.images.bytes()
     }
 
     /// Creates timestamp queries, which measure the passes of this device's renderers. `None` if the device lacks
@@ -210,8 +216,8 @@ impl Context {
     /// figures.
     ///
     /// # Errors
-    /// [`Error::Field`] names a cost that is negative or not finite, or `cores` if it is 0.
-    pub fn set_path_model(&self, model: PathModel) -> Result<(), Error> {
+    /// [`PrepareError::Field`] names a cost that is negative or not finite, or `cores` if it is 0.
+    pub fn set_path_model(&self, model: PathModel) -> Result<(), PrepareError> {
         model.validate()?;
         *self.0.path_model.lock().unwrap_or_else(PoisonError::into_inner) = model;
         Ok(())
@@ -221,7 +227,9 @@ impl Context {
     /// default on GPUs), false for per invocation (default on CPUs). For tests and measurements of the variant that is
     /// not the device's default. Both give the same image.
     pub fn set_cooperative_traversal(&self, cooperative: bool) {
-        self.0.pipelines.tiled.iter().for_each(|tiled| tiled.set_cooperative(cooperative));
+        if let Some(tiled) = &self.0.pipelines.tiled {
+            tiled.set_cooperative(cooperative);
+        }
     }
 
     pub(crate) fn shared(&self) -> &Shared {

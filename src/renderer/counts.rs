@@ -6,7 +6,7 @@
 pub struct FrameCounts {
     /// Visible systems.
     pub systems: u64,
-    /// Their sprites, times `debug_loop`. Of a slice, only visible particles count; of a buffer, all particles; of an
+    /// Their sprites, times `debug.draw_count`. Of a slice, only visible particles count; of a buffer, all particles; of an
     /// emitter that the GPU evaluates, all births that may be alive.
     pub sprites: u64,
     /// Texels in use in the accumulation targets; 0 for forward systems.

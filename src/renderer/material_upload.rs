@@ -1,5 +1,8 @@
 //! Upload of materials: sprite images, ramps and noise.
 
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
@@ -11,7 +14,7 @@ use haze_core::glam::UVec2;
 use super::gpu::Gpu;
 use super::gpu::capabilities::array_layers;
 use super::layouts::{LIGHTING_BINDINGS, Layouts, SPRITE_BINDINGS};
-use crate::frame::Material;
+use crate::frame::{Material, UploadedImage};
 
 /// Samplers and textures that every material binds.
 #[derive(Debug)]
@@ -22,6 +25,8 @@ pub(crate) struct SharedTextures {
     repeat: wgpu::Sampler,
     /// Placeholder for a missing detail map. No shader reads it, but the binding must be filled.
     no_detail: wgpu::TextureView,
+    /// Images of materials.
+    pub images: UploadedImages,
 }
 
 impl SharedTextures {
@@ -42,12 +47,46 @@ impl SharedTextures {
         Self {
             linear: sampler("haze linear", wgpu::AddressMode::ClampToEdge),
             repeat: sampler("haze repeat", wgpu::AddressMode::Repeat),
-            no_detail: upload_sprite(gpu, "haze no detail", &no_detail, None, &mut 0),
+            no_detail: upload_sprite(gpu, "haze no detail", &no_detail, None).view,
+            images: UploadedImages::default(),
         }
     }
 }
 
-/// Uploads the images and binds them.
+/// Images that materials of a context hold.
+#[derive(Debug, Default)]
+pub(crate) struct UploadedImages(Mutex<HashMap<ImageKey, Weak<UploadedImage>>>);
+
+/// Images that an uploaded one was made of, by number.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+enum ImageKey {
+    Single(u64),
+    /// A sprite, and the six-way maps that follow its frames.
+    Sprite(u64, Option<u64>),
+    AlphaBounds(u64, Option<u64>),
+}
+
+impl UploadedImages {
+    /// Returns the size of the images that materials hold, bytes.
+    pub fn bytes(&self) -> u64 {
+        let images = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        images.values().filter_map(Weak::upgrade).map(|image| image.bytes).sum()
+    }
+
+    /// Returns an image that a material holds already, or uploads it.
+    fn get_or_upload(&self, key: ImageKey, upload: impl FnOnce() -> UploadedImage) -> Arc<UploadedImage> {
+        let mut images = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(image) = images.get(&key).and_then(Weak::upgrade) {
+            return image;
+        }
+        images.retain(|_, image| image.strong_count() > 0);
+        let image = Arc::new(upload());
+        images.insert(key, Arc::downgrade(&image));
+        image
+    }
+}
+
+/// Uploads the images that no other material of the context holds, and binds all.
 ///
 /// # Errors
 /// Names an image that is too large for the device, or six-way maps that do not fit the sprite.
@@ -59,13 +98,22 @@ pub(crate) fn create_material(
     assets: &MaterialAssets,
 ) -> Result<Material, FieldError> {
     validate_sizes(&gpu.device.limits(), assets)?;
-    let mut bytes = 0;
-    let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, assets.six_way.as_ref(), &mut bytes);
+    let uploaded = &shared.images;
+    let six_way = assets.six_way.as_ref();
+    let maps = six_way.map(Sprite::number);
+    let number = assets.sprite.number();
+    let upload = || upload_sprite(gpu, "haze sprite", &assets.sprite, six_way);
+    let sprite = uploaded.get_or_upload(ImageKey::Sprite(number, maps), upload);
     let info = assets.info();
-    let alpha_bounds = upload_filled(gpu, &info.alpha_bounds, &mut bytes);
-    let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, None, &mut bytes));
-    let noise = upload_noise(gpu, &assets.noise, &mut bytes);
-    let mut ramp = |label, ramp| upload_ramp(gpu, label, ramp, &mut bytes);
+    let upload = || upload_filled(gpu, &info.alpha_bounds);
+    let alpha_bounds = uploaded.get_or_upload(ImageKey::AlphaBounds(number, maps), upload);
+    let detail = assets.detail.as_ref().map(|detail| {
+        uploaded.get_or_upload(ImageKey::Single(detail.number()), || upload_sprite(gpu, "haze detail", detail, None))
+    });
+    let noise = &assets.noise;
+    let noise = uploaded.get_or_upload(ImageKey::Single(noise.number()), || upload_noise(gpu, noise));
+    let ramp =
+        |label, ramp: &Ramp| uploaded.get_or_upload(ImageKey::Single(ramp.number()), || upload_ramp(gpu, label, ramp));
     let diffuse_ramp = ramp("haze diffuse_ramp", &assets.diffuse_ramp);
     let soft_scatter_ramp = ramp("haze soft_scatter_ramp", &assets.soft_scatter_ramp);
     let specular_ramp = ramp("haze specular_ramp", &assets.specular_ramp);
@@ -80,36 +128,35 @@ pub(crate) fn create_material(
     let sampler =
         |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
     let entries = [
-        texture(0, &sprite),
-        texture(1, &diffuse_ramp),
-        texture(2, &soft_scatter_ramp),
-        texture(3, &specular_ramp),
-        texture(4, &motif),
+        texture(0, &sprite.view),
+        texture(1, &diffuse_ramp.view),
+        texture(2, &soft_scatter_ramp.view),
+        texture(3, &specular_ramp.view),
+        texture(4, &motif.view),
         sampler(5, &shared.linear),
-        texture(6, detail.as_ref().unwrap_or(&shared.no_detail)),
-        texture(7, &age_ramp),
-        texture(8, &noise),
+        texture(6, detail.as_ref().map_or(&shared.no_detail, |detail| &detail.view)),
+        texture(7, &age_ramp.view),
+        texture(8, &noise.view),
         sampler(9, &shared.repeat),
-        texture(10, &coverage_ramp),
-        texture(11, &alpha_bounds),
-        texture(12, &backlight_ramp),
-        texture(13, &shadow_ramp),
-        texture(14, &heat_ramp),
-        texture(15, &fire_ramp),
+        texture(10, &coverage_ramp.view),
+        texture(11, &alpha_bounds.view),
+        texture(12, &backlight_ramp.view),
+        texture(13, &shadow_ramp.view),
+        texture(14, &heat_ramp.view),
+        texture(15, &fire_ramp.view),
     ];
     let bind = |label, layout, entries: &[wgpu::BindGroupEntry<'_>]| {
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
     };
     let of_sprites = SPRITE_BINDINGS.map(|binding| entries[binding as usize].clone());
     let lighting = LIGHTING_BINDINGS.map(|binding| entries[binding as usize].clone());
-    Ok(Material {
-        context,
-        bind_group: bind("haze material", &layouts.material, &of_sprites),
-        lighting: bind("haze material lighting", &layouts.lighting, &lighting),
-        shadow_ramp,
-        info,
-        bytes,
-    })
+    let bind_group = bind("haze material", &layouts.material, &of_sprites);
+    let lighting = bind("haze material lighting", &layouts.lighting, &lighting);
+    let mut images = vec![sprite, alpha_bounds, noise];
+    images.extend(detail);
+    images.extend([diffuse_ramp, soft_scatter_ramp, specular_ramp, motif, age_ramp]);
+    images.extend([heat_ramp, fire_ramp, coverage_ramp, backlight_ramp]);
+    Ok(Material { context, bind_group, lighting, shadow_ramp, images, info })
 }
 
 /// Refuses images that are too large for the device, and six-way maps that do not fit the sprite.
@@ -122,7 +169,8 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         Err(FieldError::from_problem(format!("material.{name}"), problem, format!("at most {max} on this device")))
     };
     let side = "texels along a side";
-    let (flat, max_layers) = (limits.max_texture_dimension_2d, limits.max_texture_array_layers);
+    let flat = limits.max_texture_dimension_2d;
+    let max_layers = limits.max_texture_array_layers;
     let ramps = [
         ("diffuse_ramp", &assets.diffuse_ramp),
         ("soft_scatter_ramp", &assets.soft_scatter_ramp),
@@ -155,7 +203,7 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
     check("noise", assets.noise.size(), side, limits.max_texture_dimension_3d)
 }
 
-pub(crate) fn upload_ramp(gpu: &Gpu<'_>, label: &str, ramp: &Ramp, bytes: &mut u64) -> wgpu::TextureView {
+pub(crate) fn upload_ramp(gpu: &Gpu<'_>, label: &str, ramp: &Ramp) -> UploadedImage {
     let size = extent(ramp.size(), 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -168,12 +216,12 @@ pub(crate) fn upload_ramp(gpu: &Gpu<'_>, label: &str, ramp: &Ramp, bytes: &mut u
         view_formats: &[],
     });
     let data = ramp.bytes();
-    *bytes += data.len() as u64;
     gpu.queue.write_texture(texture.as_image_copy(), &data, layout(8 * size.width, size.height), size);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    UploadedImage { view, bytes: data.len() as u64 }
 }
 
-fn upload_noise(gpu: &Gpu<'_>, noise: &NoiseVolume, bytes: &mut u64) -> wgpu::TextureView {
+fn upload_noise(gpu: &Gpu<'_>, noise: &NoiseVolume) -> UploadedImage {
     let size = extent(UVec2::splat(noise.size()), noise.size());
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("haze noise"),
@@ -185,19 +233,14 @@ fn upload_noise(gpu: &Gpu<'_>, noise: &NoiseVolume, bytes: &mut u64) -> wgpu::Te
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    *bytes += noise.bytes().len() as u64;
     gpu.queue.write_texture(texture.as_image_copy(), noise.bytes(), layout(4 * size.width, size.height), size);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    UploadedImage { view, bytes: noise.bytes().len() as u64 }
 }
 
 /// Uploads a sprite as an array texture with all mip levels. `after`: further frames of the same size, appended.
-fn upload_sprite(
-    gpu: &Gpu<'_>,
-    label: &str,
-    sprite: &Sprite,
-    after: Option<&Sprite>,
-    bytes: &mut u64,
-) -> wgpu::TextureView {
+fn upload_sprite(gpu: &Gpu<'_>, label: &str, sprite: &Sprite, after: Option<&Sprite>) -> UploadedImage {
+    let mut bytes = 0;
     let layers = array_layers(sprite.frame_count() + after.map_or(0, Sprite::frame_count));
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -211,7 +254,7 @@ fn upload_sprite(
     });
     for level in 0..sprite.level_count() {
         let size = sprite.level_size(level);
-        *bytes += 4 * u64::from(size) * u64::from(size) * u64::from(layers);
+        bytes += 4 * u64::from(size) * u64::from(size) * u64::from(layers);
         let mut first = 0;
         for sprite in std::iter::once(sprite).chain(after) {
             let origin = wgpu::Origin3d { z: first, ..wgpu::Origin3d::ZERO };
@@ -224,14 +267,15 @@ fn upload_sprite(
             first += sprite.frame_count();
         }
     }
-    texture.create_view(&wgpu::TextureViewDescriptor {
+    let view = texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
-    })
+    });
+    UploadedImage { view, bytes }
 }
 
 /// Uploads the alpha bounds of a sprite: one texel per mip level and frame.
-fn upload_filled(gpu: &Gpu<'_>, alpha_bounds: &AlphaBounds, bytes: &mut u64) -> wgpu::TextureView {
+fn upload_filled(gpu: &Gpu<'_>, alpha_bounds: &AlphaBounds) -> UploadedImage {
     let size = extent(alpha_bounds.size(), 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("haze sprite filled"),
@@ -244,9 +288,9 @@ fn upload_filled(gpu: &Gpu<'_>, alpha_bounds: &AlphaBounds, bytes: &mut u64) -> 
         view_formats: &[],
     });
     let data = alpha_bounds.bytes();
-    *bytes += data.len() as u64;
     gpu.queue.write_texture(texture.as_image_copy(), data, layout(16 * size.width, size.height), size);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    UploadedImage { view, bytes: data.len() as u64 }
 }
 
 fn extent(size: UVec2, layers: u32) -> wgpu::Extent3d {

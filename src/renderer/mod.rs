@@ -31,7 +31,7 @@ mod validate_frame;
 mod warm_up;
 
 use haze_core::assets::ramp_steps::RampSteps;
-use haze_core::error::{Error, FieldError};
+use haze_core::error::{FieldError, PrepareError};
 use haze_core::formula::shadow::SHADOWED_LIGHTS;
 use haze_core::settings::DebugView;
 use haze_core::view_setup::{AttachmentSet, DrawOrder, ResolvedSettings, ViewGeometry};
@@ -110,8 +110,8 @@ impl Renderer {
     /// by [`warm_up`](Self::warm_up).
     ///
     /// # Errors
-    /// [`Error::Field`] names the property that the device does not support: a format, or the sample count.
-    pub fn new(context: &Context, descriptor: &RendererDescriptor<'_>) -> Result<Self, Error> {
+    /// [`PrepareError::Field`] names the property that the device does not support: a format, or the sample count.
+    pub fn new(context: &Context, descriptor: &RendererDescriptor<'_>) -> Result<Self, PrepareError> {
         let device = &context.shared().device;
         let host = descriptor.host_pass(device)?;
         Ok(Self {
@@ -146,9 +146,9 @@ impl Renderer {
     /// [`RendererDescriptor`].
     ///
     /// # Errors
-    /// [`Error::Field`] names the view or setting that is not valid. [`Error::Shader`] names the file of a pass whose
+    /// [`PrepareError::Field`] names the view or setting that is not valid. [`PrepareError::Shader`] names the file of a pass whose
     /// pipeline the device rejects, because of a shader of [`Context::with_shaders`] or a driver error.
-    pub fn warm_up(&self, expected: &WarmUp<'_>) -> Result<(), Error> {
+    pub fn warm_up(&self, expected: &WarmUp<'_>) -> Result<(), PrepareError> {
         let view = ViewGeometry::new(&expected.view)?;
         let inputs = self.pipeline_inputs(&view, expected.scene_depth, expected.debug_views);
         let shared = self.context.shared();
@@ -186,10 +186,10 @@ impl Renderer {
     /// frame creates nothing. Memory that has not been needed for 120 frames is released.
     ///
     /// # Errors
-    /// [`Error::Field`] names the view, light, setting or system that is not valid. It names `prepare` if the commands
+    /// [`PrepareError::Field`] names the view, light, setting or system that is not valid. It names `prepare` if the commands
     /// of the previous call were neither submitted nor dropped. After an error, [`render`](Self::render) draws nothing
     /// until a `prepare` succeeds.
-    pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
+    pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), PrepareError> {
         let encoder = &mut FrameEncoder::new(encoder, self.timing.clone());
         if std::mem::take(&mut self.has_cast) && self.submission.is_outstanding() {
             self.submission.track(encoder.commands());
@@ -255,7 +255,11 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`prepare`](Self::prepare).
-    pub fn prepare_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &FrameInput<'_>) -> Result<(), Error> {
+    pub fn prepare_shadow(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &FrameInput<'_>,
+    ) -> Result<(), PrepareError> {
         self.prepare_systems(&mut FrameEncoder::new(encoder, self.timing.clone()), frame)?;
         self.has_cast = true;
         Ok(())
@@ -350,8 +354,8 @@ impl Renderer {
     /// state, measures nothing and costs nothing.
     ///
     /// # Errors
-    /// [`Error::Field`] if the `Timing` was created on another device.
-    pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
+    /// [`PrepareError::Field`] if the `Timing` was created on another device.
+    pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), PrepareError> {
         if timing.is_some_and(|timing| timing.device_number() != self.context.shared().device_number) {
             let expected = "a Timing of the renderer's context, or of one with other shaders";
             return Err(FieldError::from_problem("timing", "was created on another device", expected).into());

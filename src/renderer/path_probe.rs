@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use haze_core::assets::material_assets::MaterialAssets;
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 use haze_core::frame::{Particle, View};
 use haze_core::glam::camera::rh::proj::directx::perspective;
 use haze_core::glam::{Mat4, UVec2, Vec3};
@@ -41,10 +41,10 @@ impl Context {
     ///
     /// # Errors
     /// Those of [`Renderer::prepare`] and of `submit`.
-    pub fn measure_paths(
+    pub fn measure_paths<E: From<PrepareError>>(
         &self,
-        mut submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
-    ) -> Result<PathModel, Error> {
+        mut submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), E>,
+    ) -> Result<PathModel, E> {
         if self.shared().tiles().is_none() {
             return Ok(self.path_model());
         }
@@ -76,7 +76,7 @@ struct ProbeScene {
 }
 
 impl ProbeScene {
-    fn new(context: &Context) -> Result<Self, Error> {
+    fn new(context: &Context) -> Result<Self, PrepareError> {
         let renderer = Renderer::new(context, &RendererDescriptor::default())?;
         let material = context.create_material(&MaterialAssets::default())?;
         let depth = context.device().create_texture(&wgpu::TextureDescriptor {
@@ -107,25 +107,15 @@ impl ProbeScene {
 
     /// Returns the workload of the last frame, which drew all sprites once.
     fn workload(&self) -> PathWorkload {
-        PathWorkload {
-            technique: Settings::default().technique,
-            sprites: f64::from(SPRITES),
-            fragments: self.renderer.overdraw().fragments,
-            size: SIZE,
-            optical_depth: 0.0,
-            scale: 1,
-            attachments: 1,
-            grain_octaves: 0,
-            lookups: 0.0,
-            is_assumed: false,
-        }
+        let fragments = self.renderer.overdraw().fragments;
+        PathWorkload::new(Settings::default().technique, SIZE, f64::from(SPRITES), fragments)
     }
 
     /// Measures one pass over all sprites by `raster` and by `tiled`, in seconds.
-    fn seconds(
+    fn seconds<E: From<PrepareError>>(
         &mut self,
-        submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
-    ) -> Result<[f64; 2], Error> {
+        submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), E>,
+    ) -> Result<[f64; 2], E> {
         let mut loops = [2; 2];
         for (path, loops) in PATHS.into_iter().zip(&mut loops) {
             // The first frame compiles pipelines and is not measured.
@@ -151,12 +141,12 @@ impl ProbeScene {
     }
 
     /// Returns the time of the shortest of a few frames: a single delayed frame could pass for a long one.
-    fn shortest(
+    fn shortest<E: From<PrepareError>>(
         &mut self,
         path: RenderPath,
         loops: u32,
-        submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
-    ) -> Result<Duration, Error> {
+        submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), E>,
+    ) -> Result<Duration, E> {
         let mut shortest = Duration::MAX;
         for _ in 0..SEARCH_ROUNDS {
             shortest = shortest.min(self.frame(path, loops, submit)?);
@@ -165,15 +155,15 @@ impl ProbeScene {
     }
 
     /// Draws all sprites `loops` times. Returns the time from submission to completion.
-    fn frame(
+    fn frame<E: From<PrepareError>>(
         &mut self,
         path: RenderPath,
         loops: u32,
-        submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
-    ) -> Result<Duration, Error> {
+        submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), E>,
+    ) -> Result<Duration, E> {
         let mut settings = Settings { path, ..Settings::default() };
-        settings.sprite.debug_loop = loops;
-        settings.accumulate.scale = 1;
+        settings.debug.draw_count = loops;
+        settings.accumulate.downscale = 1;
         // Without early stops of the traversal, the time does not depend on the sprites' opacity.
         settings.accumulate.layers = Traversal::All;
         let mut encoder =

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use haze_core::error::{Error, one_line};
+use haze_core::error::{PrepareError, one_line};
 
 use super::gpu::binding::{bind_group_layout, bind_resources};
 use super::gpu::error_scopes::with_error_scopes;
@@ -91,7 +91,7 @@ impl<K: PipelineKey> PipelineVariants<K> {
     }
 
     /// Compiles the pipeline for `key`, or returns the shader error.
-    pub fn check(&self, key: K) -> Result<(), Error> {
+    pub fn check(&self, key: K) -> Result<(), PrepareError> {
         if self.lock().contains_key(&key) {
             return Ok(());
         }
@@ -99,7 +99,7 @@ impl<K: PipelineKey> PipelineVariants<K> {
             let stages = [("VERTEX", "vertex"), ("FRAGMENT", "fragment"), ("COMPUTE", "compute")];
             let plain = |text: String, (stage, name): (&str, _)| text.replace(&format!("ShaderStages({stage})"), name);
             let reason = one_line(stages.into_iter().fold(reason, plain));
-            Error::Shader { path: self.common.shader.path.clone(), line: 1, column: 1, reason }
+            PrepareError::Shader { path: self.common.shader.path.clone(), line: 1, column: 1, reason }
         })?;
         self.keep(key, compiled);
         Ok(())

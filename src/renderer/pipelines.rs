@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 
 use super::gpu::capabilities::tiles_are_supported;
 use super::gpu::host_pass::HostPass;
@@ -85,7 +85,7 @@ impl Pipelines {
     }
 
     /// Compiles the pipelines of a plan, or returns the shader error.
-    pub fn compile(&self, plan: &Plan<'_>) -> Result<(), Error> {
+    pub fn compile(&self, plan: &Plan<'_>) -> Result<(), PrepareError> {
         self.tiled.as_ref().map_or(Ok(()), TiledPipelines::compile_measure)?;
         if plan.receives_shadow() {
             self.tiled.as_ref().map_or_else(|| self.compile_shadow_slices(), TiledPipelines::compile_shadow)?;
@@ -117,14 +117,14 @@ impl Pipelines {
     }
 
     /// Compiles the shadow of devices without compute shaders.
-    pub fn compile_shadow_slices(&self) -> Result<(), Error> {
+    pub fn compile_shadow_slices(&self) -> Result<(), PrepareError> {
         self.drawn.shadow_march_slice.check(MarchTo::Lights)?;
         self.drawn.shadow_march_slice.check(MarchTo::Sky)?;
         self.drawn.shadow_visibility_slice.check(ShadowVisibilitySliceKey)
     }
 
     /// Compiles the sort of a host's particles, which is needed if they arrive unsorted.
-    fn compile_depth_sort(&self) -> Result<(), Error> {
+    fn compile_depth_sort(&self) -> Result<(), PrepareError> {
         self.tiled.as_ref().map_or(Ok(()), TiledPipelines::compile_depth_sort)
     }
 }

@@ -178,8 +178,11 @@ fn deferred<'a>(
     back_faces: bool,
     reads_linear: bool,
 ) -> DeferredPlan<'a> {
-    let (accumulate, debug_views) = (&settings.accumulate, inputs.debug_views);
-    let (host, ramp_filter, exact_filtering) = (inputs.host, settings.ramp_filter, inputs.exact_filtering);
+    let accumulate = &settings.accumulate;
+    let debug_views = inputs.debug_views;
+    let host = inputs.host;
+    let ramp_filter = settings.ramp_filter;
+    let exact_filtering = inputs.exact_filtering;
     let depth_test = depth_test(inputs, settings);
     let mode = accumulate.depth_downsample;
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
@@ -207,7 +210,8 @@ fn deferred<'a>(
         ramp_filter,
         exact_filtering,
     };
-    let (upsample, coverage) = (accumulate.upsample, settings.coverage);
+    let upsample = accumulate.upsample;
+    let coverage = settings.coverage;
     let drawn = BoundingBoxKey {
         host,
         // Without a depth attachment, the hardware cannot hide the box behind the scene, so front faces have no

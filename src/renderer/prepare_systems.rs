@@ -1,6 +1,6 @@
 //! First part of a frame: systems, and the passes that do not read the scene's depth.
 
-use haze_core::error::{Error, FieldError};
+use haze_core::error::{FieldError, PrepareError};
 use haze_core::formula::shadow::SHADOWED_LIGHTS;
 use haze_core::glam::Vec3;
 use haze_core::view_setup::{SmokeShadow, ViewGeometry};
@@ -19,7 +19,7 @@ impl Renderer {
         &mut self,
         encoder: &mut FrameEncoder<'_>,
         frame: &FrameInput<'_>,
-    ) -> Result<(), Error> {
+    ) -> Result<(), PrepareError> {
         self.order.clear();
         self.view = None;
         self.validate_submitted()?;
@@ -54,7 +54,8 @@ impl Renderer {
         });
         let is_mapped = |light| frame.shadow_maps.iter().any(|map| map.projection.light == light);
         let shadow = SmokeShadow::new(
-            (&view, frame.up.normalize_or(Vec3::Y)),
+            &view,
+            frame.up.normalize_or(Vec3::Y),
             shared.max_volume_depth,
             frame.lights,
             is_mapped,
@@ -75,7 +76,8 @@ impl Renderer {
         if self.screen_shadow.write(shared, frame, &view, shadow.as_ref().filter(|_| grid.is_some())) {
             shared.pipelines.drawn.screen_shadow.check(self.scene_pass)?;
         }
-        let (host_size, bindings) = (host_size(frame), &self.bindings);
+        let host_size = host_size(frame);
+        let bindings = &self.bindings;
         let context =
             FrameContext { gpu, shared, frame, view: &view, host_size, inputs: &inputs, bindings, shadow: grid };
         for system in frame.systems {

@@ -29,7 +29,7 @@ impl SceneShadow {
     pub fn write(&mut self, shared: &Shared, frame: &FrameInput<'_>, shadow: Option<FrameShadow<'_>>) {
         let cast = shadow.and_then(|grid| {
             let (system, _) = grid.shadow.on_scene?;
-            let ramp = &frame.systems.get(system)?.material.shadow_ramp;
+            let ramp = &frame.systems.get(system)?.material.shadow_ramp.view;
             Some((grid.shadow.scene_uniform(), [grid.optical_depths, ramp]))
         });
         let none = [&shared.no_shadow, &shared.no_ramp];

@@ -48,7 +48,7 @@ impl ScreenShadowState {
         }
         let Some((ambient, shadow)) = asked else { return false };
         let inputs = self.inputs.get_or_insert_with(|| Inputs::new(shared));
-        inputs.write(shared, frame, (view, ambient), shadow);
+        inputs.write(shared, frame, view, ambient, shadow);
         true
     }
 
@@ -73,7 +73,8 @@ impl ScreenShadowState {
 
 impl Inputs {
     fn new(shared: &Shared) -> Self {
-        let (device, layouts) = (&shared.device, &shared.layouts);
+        let device = &shared.device;
+        let layouts = &shared.layouts;
         let uniform = uniform_buffer(device, "haze screen_shadow", size_of::<ScreenShadowUniform>() as u64);
         let lights = uniform_buffer(device, "haze lights of the scene", LIGHTS_SIZE);
         let resources = [uniform.as_entire_binding(), lights.as_entire_binding()];
@@ -91,7 +92,8 @@ impl Inputs {
         &mut self,
         shared: &Shared,
         frame: &FrameInput<'_>,
-        (view, ambient): (&ViewGeometry, Vec3),
+        view: &ViewGeometry,
+        ambient: Vec3,
         shadow: &SmokeShadow,
     ) {
         scene_light_uniforms(view, frame.lights, shadow, &mut self.light_uniforms);
@@ -99,6 +101,6 @@ impl Inputs {
         let uniform = ScreenShadowUniform { world_from_view, ambient, light_count: self.light_uniforms.len() as u32 };
         shared.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         shared.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.light_uniforms));
-        self.maps.write(&shared.gpu(), &shared.layouts.shadow_maps, (shadow, 0), frame.shadow_maps, None);
+        self.maps.write(&shared.gpu(), &shared.layouts.shadow_maps, shadow, 0, frame.shadow_maps, None);
     }
 }

@@ -45,7 +45,8 @@ impl ShadowMapBindings {
         &mut self,
         gpu: &Gpu<'_>,
         layout: &wgpu::BindGroupLayout,
-        (shadow, block): (&SmokeShadow, u32),
+        shadow: &SmokeShadow,
+        block: u32,
         maps: &[ShadowMap<'_>],
         volume: Option<&wgpu::TextureView>,
     ) {

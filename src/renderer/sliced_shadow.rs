@@ -61,7 +61,7 @@ impl SlicedShadow {
         let buffers = self.buffers.get_or_insert_with(|| SliceBuffers::new(shared, shadow));
         shared.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&shadow.march));
         for (block, held) in (0..).zip(&mut buffers.maps) {
-            held.write(&shared.gpu(), &shared.layouts.shadow_maps, (shadow, block), maps, None);
+            held.write(&shared.gpu(), &shared.layouts.shadow_maps, shadow, block, maps, None);
         }
         self.steps.clear();
         self.steps.resize(shadow.grid.size.element_product() as usize, 0);
@@ -118,8 +118,10 @@ impl SlicedShadow {
 
 impl SliceBuffers {
     fn new(shared: &Shared, shadow: &SmokeShadow) -> Self {
-        let (device, layouts) = (&shared.device, &shared.layouts);
-        let (resolution, blocks) = (shadow.resolution, shadow.blocks());
+        let device = &shared.device;
+        let layouts = &shared.layouts;
+        let resolution = shadow.resolution;
+        let blocks = shadow.blocks();
         let uniform = uniform_buffer(device, "haze shadow_march", size_of::<ShadowMarchUniform>() as u64);
         let density = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("haze density"),
@@ -132,7 +134,7 @@ impl SliceBuffers {
             view_formats: &[],
         });
         let optical_depths =
-            volume(device, "haze optical depths", (resolution, blocks), wgpu::TextureUsages::RENDER_ATTACHMENT);
+            volume(device, "haze optical depths", resolution, blocks, wgpu::TextureUsages::RENDER_ATTACHMENT);
         let density_view = density.create_view(&wgpu::TextureViewDescriptor::default());
         let resources = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&density_view)];
         let march = shared.pipelines.drawn.shadow_march_slice.bind(resources);

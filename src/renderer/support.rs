@@ -6,7 +6,7 @@ use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES, TiledPipelines};
 use crate::frame::{ParticleBuffer, ParticleSystem, Particles};
 
 /// Returns the reason why the path `auto` cannot choose `tiled` for a system; `None` if it can.
-pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &ParticleSystem<'_>) -> Option<PathReason> {
+pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &ParticleSystem<'_, '_>) -> Option<PathReason> {
     let Some(tiled) = &shared.pipelines.tiled else { return Some(PathReason::TiledUnsupported) };
     let is_readable = match &system.particles {
         Particles::Buffer(particles) => is_readable_by_compute(particles),

@@ -111,7 +111,8 @@ fn validate_shadow_map(shared: &Shared, index: usize, map: &ShadowMap<'_>) -> Re
     if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
         return refuse(format!("has the usage {:?}", texture.usage()), "TEXTURE_BINDING");
     }
-    let (layers, needed) = (texture.depth_or_array_layers(), map.projection.clip_from_world.len() as u64);
+    let layers = texture.depth_or_array_layers();
+    let needed = map.projection.clip_from_world.len() as u64;
     if u64::from(map.first_layer) + needed > u64::from(layers) {
         let problem = format!("has {layers} layers");
         return refuse(problem, "a layer per matrix, from first_layer on");
@@ -164,7 +165,7 @@ fn validate_system(
     shared: &Shared,
     index: usize,
     frame: &FrameInput<'_>,
-    system: &ParticleSystem<'_>,
+    system: &ParticleSystem<'_, '_>,
 ) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
     if !system.settings.is_forward() {
@@ -222,7 +223,7 @@ fn validate_alive_count(alive: &AliveCount<'_>, field: &impl Fn(&str) -> String)
 
 fn validate_particles(
     shared: &Shared,
-    system: &ParticleSystem<'_>,
+    system: &ParticleSystem<'_, '_>,
     field: &impl Fn(&str) -> String,
 ) -> Result<(), FieldError> {
     let size = size_of::<Particle>() as u64;

@@ -1,14 +1,8 @@
-// Browser, server and results of the checks.
+// Browser and server.
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
 import puppeteer from 'puppeteer-core';
-
-export const failures = [];
-export function check(what, isRight, seen) {
-    console.log(`${isRight ? 'ok    ' : 'FAILED'} ${what}: ${seen}`);
-    if (!isRight) failures.push(what);
-}
 
 const types = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm', '.png': 'image/png' };
 export const server = http.createServer((request, response) => {
@@ -45,10 +39,4 @@ export async function openPage(html) {
         throw new Error(`${html}: ${error}; the page said: ${said.join('; ')}`);
     });
     return { page, said };
-}
-
-/** Folders whose names begin so. */
-export function folders(prefix) {
-    const isFolder = name => fs.statSync(name).isDirectory();
-    return fs.readdirSync('.').filter(name => name.startsWith(prefix) && isFolder(name)).sort();
 }

@@ -2,7 +2,8 @@
 import fs from 'node:fs';
 import { PNG } from 'pngjs';
 import { over, psnr, squaredError, toCode } from './arithmetic.mjs';
-import { check, folders, openPage } from './browser.mjs';
+import { openPage } from './browser.mjs';
+import { check, folders } from './checks.mjs';
 
 const SIDE = 128;
 // Sheet and image are dithered to 8 bits, each by its own positions: 60 dB and more were seen.

@@ -3,7 +3,8 @@ import fs from 'node:fs';
 import path from 'node:path';
 import { PNG } from 'pngjs';
 import { mix, toCode, toLinear, unit, worst } from './arithmetic.mjs';
-import { address, browser, check, folders } from './browser.mjs';
+import { address, browser } from './browser.mjs';
+import { check, folders } from './checks.mjs';
 import { formula, GRID, MOST_OFF, spriteTexel } from './formula.mjs';
 
 // Materials that differ in their ramps.
@@ -96,7 +97,7 @@ void light() { DIFFUSE_LIGHT += (${vector}) * 0.3 + 0.3; }
         if (process.env.VERBOSE) console.log('to light', toLight, 'to viewer', views[0], 'color', color);
         for (const name of LIT) {
             const folder = `godot_${name}`;
-            const shader = standing(fs.readFileSync(`${folder}/haze_material.gdshader`, 'utf8'));
+            const shader = withOneFrame(standing(fs.readFileSync(`${folder}/haze_material.gdshader`, 'utf8')));
             const parameters = { haze_sprite: dataUrl(PNG.sync.write(sprite)), haze_heat: '0.3' };
             for (const file of fs.readdirSync(folder).filter(file => file.endsWith('_ramp.png'))) {
                 parameters[`haze_${path.basename(file, '.png')}`] = dataUrl(fs.readFileSync(`${folder}/${file}`));
@@ -132,6 +133,11 @@ void light() { DIFFUSE_LIGHT += (${vector}) * 0.3 + 0.3; }
 // Godot's planes lie; the sprite stands.
 function standing(shader) {
     return shader.replace('void vertex() {', 'void vertex() {\n    VERTEX = vec3(VERTEX.x, -VERTEX.z, 0.0);');
+}
+
+// The sprite of the test has one frame.
+function withOneFrame(shader) {
+    return shader.replace(/haze_sprite_cells = .*;/, 'haze_sprite_cells = vec2(1.0);').replace(/haze_sprite_frames = .*;/, 'haze_sprite_frames = 1.0;');
 }
 
 // Runs in the page. Shows a shader on a square, until frames are drawn.

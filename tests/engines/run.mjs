@@ -1,6 +1,7 @@
 // Opens what haze has exported in engines that run in a browser. scripts/test_engines prepares the folder that it runs in:
 // `flipbook_ENGINE_NAME` with `frame_NAME_N.png` at its times and three between, `sheet_NAME` with `sprite_NAME_N.png`, and materials `godot_NAME`, `three_NAME` and `wgsl_NAME`.
-import { browser, failures, server } from './browser.mjs';
+import { browser, server } from './browser.mjs';
+import { endOfChecks } from './checks.mjs';
 import { testFlipbooks } from './flipbooks.mjs';
 import { testGodot } from './godot.mjs';
 import { testSpriteSheets } from './sprite_sheets.mjs';
@@ -18,7 +19,4 @@ for (const [renderer, page] of [['three.js, WebGPU', 'three_webgpu.html'], ['thr
 await testGodot();
 await browser.close();
 server.close();
-if (failures.length > 0) {
-    console.log(`${failures.length} of the checks failed`);
-    process.exit(1);
-}
+endOfChecks();

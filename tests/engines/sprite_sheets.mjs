@@ -2,7 +2,8 @@
 import fs from 'node:fs';
 import { PNG } from 'pngjs';
 import { psnr } from './arithmetic.mjs';
-import { check, folders, openPage } from './browser.mjs';
+import { openPage } from './browser.mjs';
+import { check, folders } from './checks.mjs';
 
 // Sheet and image are dithered to 8 bits, each by its own positions, and the product with alpha is rounded: 61 dB and more were seen.
 const LEAST_PSNR = 55;

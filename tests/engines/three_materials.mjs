@@ -2,7 +2,8 @@
 import fs from 'node:fs';
 import { PNG } from 'pngjs';
 import { clamp, dot, minus, mix, smoothstep, unit, worst } from './arithmetic.mjs';
-import { address, browser, check, folders } from './browser.mjs';
+import { address, browser } from './browser.mjs';
+import { check, folders } from './checks.mjs';
 import { formula, GRID, MOST_OFF, spriteTexel } from './formula.mjs';
 
 // Size of the modules of a material together, bytes.

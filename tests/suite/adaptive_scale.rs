@@ -26,7 +26,10 @@ fn with_scale(shot: &Shot, scale: Scale) -> Shot {
         let accumulate = &mut system.settings.accumulate;
         match scale {
             Scale::Fixed(pixels) => accumulate.fix_scale(pixels),
-            Scale::Auto(max_error) => (accumulate.scale_mode, accumulate.max_error) = (ScaleMode::Auto, max_error),
+            Scale::Auto(max_error) => {
+                accumulate.scale_mode = ScaleMode::Auto;
+                accumulate.max_error = max_error;
+            }
         }
     }
     shot
@@ -36,7 +39,8 @@ fn with_scale(shot: &Shot, scale: Scale) -> Shot {
 fn error([a, b, behind]: [&Image<Vec4>; 3]) -> f32 {
     let encoded = |texel: Vec4| texel.xyz().to_array().map(|x| srgb_from_linear(x.clamp(0.0, 1.0)));
     let off = |x: [f32; 3], y: [f32; 3]| (0..3).map(|i| (x[i] - y[i]).powi(2)).sum::<f32>() / 3.0;
-    let (mut sum, mut count) = (0.0, 0);
+    let mut sum = 0.0;
+    let mut count = 0;
     for ((a, b), behind) in a.texels.iter().zip(&b.texels).zip(&behind.texels) {
         let [a, b, behind] = [*a, *b, *behind].map(encoded);
         if off(a, behind).max(off(b, behind)) > (1.0 / 255.0_f32).powi(2) {

@@ -8,7 +8,7 @@ use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::sprite::bake::SpriteRecipe;
-use haze_author::sprite::detail::bake_detail_frame;
+use haze_author::sprite::detail::{bake_detail_frame, optical_flow};
 use haze_core::assets::image::read_png;
 use haze_core::settings::CoverageMode;
 use haze_demo::shot::Shot;
@@ -71,7 +71,8 @@ fn soft_coverage_ramp_equals_linear_coverage() {
         let shot = Shot::new(shot.preset, Path::new("column"), shot.size).unwrap();
         tonemap(&shot.render_on_cpu().unwrap(), &shot)
     };
-    let (linear, ramp) = (picture(CoverageMode::Linear), picture(CoverageMode::Ramp));
+    let linear = picture(CoverageMode::Linear);
+    let ramp = picture(CoverageMode::Ramp);
     // Ramp texels are half floats, so an 8-bit value may round to the neighbouring step.
     assert!(linear.iter().zip(ramp.iter()).all(|(a, b)| a.abs_diff(*b) <= 1));
 }
@@ -94,7 +95,7 @@ fn committed_sprites_match_their_recipes() {
 
         // Motion is estimated from the committed frames, so that both sides have the same input.
         let decoded = sprite.sprite().unwrap();
-        let detail = bake_detail_frame(&decoded, frame, &baked.offset);
+        let detail = bake_detail_frame(&decoded, frame, &baked.offset, &optical_flow(&decoded, frame, None));
         let committed = read_png(&file("sprites", &format!("{}.detail.png", sprite.name))).unwrap().to_rgba8();
         let committed = frame_of(&committed, detail.size.x);
         // The baker moves channels of the detail map by up to this much to shrink the file.

@@ -52,7 +52,8 @@ fn gpu_and_cpu_agree_on_a_scene_and_a_sky_from_files() {
         shot.backdrop.scene.take_if(|_| shot.preset.environment.scene_file.is_empty());
         shot.backdrop.sky.take_if(|_| shot.preset.environment.sky_file.is_empty());
         let images = |shot: &Shot| [render_on_gpu(shot, true), shot.render_on_cpu().unwrap()];
-        let (whole, behind) = (images(&shot), images(&without_smoke(&shot)));
+        let whole = images(&shot);
+        let behind = images(&without_smoke(&shot));
         gpu().check().unwrap();
         let black = Image::new(shot.size, Vec4::ZERO);
         let scene = psnr_over(behind.each_ref(), [&black, &black]);
@@ -115,7 +116,8 @@ fn a_scene_hides_smoke_and_is_in_its_shadow() {
         |shot: &Shot| render_on_gpu(shot, true).texels.iter().map(|texel| texel.truncate().element_sum()).sum::<f32>();
     let mut shot = shot(size);
     // From above, with the smoke behind the camera: only its shadow is in the image.
-    (shot.preset.camera.position, shot.preset.camera.target) = (Vec3::new(1.5, 7.0, -1.0), Vec3::new(2.5, 0.0, -1.4));
+    shot.preset.camera.position = Vec3::new(1.5, 7.0, -1.0);
+    shot.preset.camera.target = Vec3::new(2.5, 0.0, -1.4);
     shot.preset.camera.near = 6.0;
     let shaded = light(&shot);
     let bare = light(&without_smoke(&shot));
@@ -124,8 +126,8 @@ fn a_scene_hides_smoke_and_is_in_its_shadow() {
     assert!(light(&on_scene) > 1.01 * shaded, "the shadow on the scene");
     // Behind a wall, no smoke is seen.
     let mut hidden = self::shot(size);
-    (hidden.preset.camera.position, hidden.preset.camera.target) =
-        (Vec3::new(0.0, 0.5, -9.0), Vec3::new(0.0, 0.2, 0.0));
+    hidden.preset.camera.position = Vec3::new(0.0, 0.5, -9.0);
+    hidden.preset.camera.target = Vec3::new(0.0, 0.2, 0.0);
     hidden.preset.camera.fov = 8.0;
     hidden.preset.lights.clear();
     let [seen, bare] = [render_on_gpu(&hidden, true), render_on_gpu(&without_smoke(&hidden), true)];
@@ -151,11 +153,13 @@ fn settings_of_scene_and_sky_have_an_effect_unless_a_reason_is_given() {
     for (scene, sky) in [(true, true), (true, false), (false, true), (false, false)] {
         let mut shot = shot(size);
         if !scene {
-            (shot.backdrop.scene, shot.preset.environment.scene_file) = (None, String::new());
+            shot.backdrop.scene = None;
+            shot.preset.environment.scene_file = String::new();
             shot.preset.camera = Preset::load("column").unwrap().camera;
         }
         if !sky {
-            (shot.backdrop.sky, shot.preset.environment.sky_file) = (None, String::new());
+            shot.backdrop.sky = None;
+            shot.preset.environment.sky_file = String::new();
         }
         let plain = shot.render_on_cpu().unwrap();
         for (field, value) in values {

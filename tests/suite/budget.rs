@@ -67,7 +67,8 @@ proptest! {
     fn a_constant_load_settles_on_the_finest_scale_that_fits(
         fixed in 0.0_f32..4.0, falling in 0.0_f32..64.0, scale in 1_u32..=16, limits in (1_u32..=16, 1_u32..=16),
     ) {
-        let (min_scale, max_scale) = (limits.0.min(limits.1), limits.0.max(limits.1));
+        let min_scale = limits.0.min(limits.1);
+        let max_scale = limits.0.max(limits.1);
         let load = Load { fixed: fixed.max(0.01), falling };
         let mut host = Host::new(Budget { milliseconds: 2.0, min_scale, max_scale }, scale);
         host.scales(4000, |_| load, 0.0);

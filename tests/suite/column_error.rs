@@ -73,7 +73,8 @@ fn compare_medium(medium: &str, size: u32, samples: u32) -> [Response; 4] {
     let path_trace = PathTrace { size, samples, seed: 1 };
     let (traced, kind) = kind_of(medium, path_trace);
     let column = kind.cloud(CloudShape::Column, COLUMN);
-    let (truth, alone) = (column.truth(&ring_of_lights()), puffs_alone(&column, &kind, &traced, path_trace));
+    let truth = column.truth(&ring_of_lights());
+    let alone = puffs_alone(&column, &kind, &traced, path_trace);
     let [ramps, six_way] = materials(&kind, medium).map(|material| column.drawn(&ring_of_lights(), &material).unwrap());
     if let Some(folder) = std::env::var_os("HAZE_LOOK") {
         save(Path::new(&folder), medium, &[&truth, &alone, &ramps, &six_way]);
@@ -190,10 +191,12 @@ fn ground_errors(kind: &PuffKind, medium: &str) -> Vec<(f32, f32)> {
         let suns = [Vec3::Y, vec3(0.5, 1.0, 0.3).normalize()];
         suns.map(|sun| {
             let drawn = cloud.drawn_transmittance(&places, sun, &material).unwrap();
-            let (mut error, mut shadow) = (0.0, 0.0);
+            let mut error = 0.0;
+            let mut shadow = 0.0;
             for (place, drawn) in places.iter().zip(drawn) {
                 let truth = cloud.transmittance(*place, sun);
-                (error, shadow) = (error + (drawn.y - truth).abs(), shadow + 1.0 - truth);
+                error += (drawn.y - truth).abs();
+                shadow = shadow + 1.0 - truth;
             }
             (error / places.len() as f32, shadow / places.len() as f32)
         })

@@ -12,7 +12,6 @@ mod special_paths;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use haze::Error;
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::particle_files;
 use haze_author::ramp::RampRecipe;
@@ -23,12 +22,13 @@ use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use haze_core::emitter;
+use haze_core::error::AssetError;
 use haze_preset::{AssetFolders, Preset};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
 /// Reads a file as the kind that its folder in the corpus names, and uses it as the program would.
-fn read(kind: &str, path: &Path) -> Result<(), Error> {
+fn read(kind: &str, path: &Path) -> Result<(), AssetError> {
     match kind {
         "preset" => {
             let preset = Preset::load(path.to_str().unwrap())?;
@@ -95,7 +95,7 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
 }
 
 /// Checks that an error is one line of reasonable length that names the file and shows no Rust structs.
-fn check_line(path: &Path, error: &Error) {
+fn check_line(path: &Path, error: &AssetError) {
     let line = error.to_string();
     assert!(line.contains(path.to_str().unwrap()), "{line}");
     assert!(!line.chars().any(char::is_control), "{line:?}");
@@ -189,7 +189,9 @@ fn mutate(bytes: &mut Vec<u8>, mutation: &Mutation) {
     match mutation {
         Mutation::Flip(at, bits) => {
             let at = place(at, bytes);
-            bytes.get_mut(at).into_iter().for_each(|byte| *byte ^= bits);
+            if let Some(byte) = bytes.get_mut(at) {
+                *byte ^= bits;
+            }
         }
         Mutation::Truncate(at) => bytes.truncate(place(at, bytes)),
         Mutation::Splice(at, part) => {

@@ -107,7 +107,8 @@ fn written(value: &Value, path: &str, fields: &mut BTreeSet<String>) {
 /// Returns the fields that are only visited, and the fields that are only written.
 fn missing_fields(value: &mut (impl Fields + serde::Serialize)) -> (Vec<String>, Vec<String>) {
     let json = serde_json::to_value(&*value).unwrap();
-    let (mut visited, mut file) = (VisitedFields::default(), BTreeSet::new());
+    let mut visited = VisitedFields::default();
+    let mut file = BTreeSet::new();
     value.visit(&mut visited);
     written(&json, "", &mut file);
     assert!(file.len() > 2);

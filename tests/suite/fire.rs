@@ -41,16 +41,20 @@ fn gpu_and_cpu_draw_the_same_fire() {
         ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
         ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
         ("weighted, tiled", |s| {
-            (s.settings.accumulate.order, s.settings.path) = (BlendOrder::Weighted, RenderPath::Tiled);
+            s.settings.accumulate.order = BlendOrder::Weighted;
+            s.settings.path = RenderPath::Tiled;
         }),
         ("with shadow", |s| s.settings.shadow.strength = 0.8),
         ("with shadow by depth, tiled", |s| {
-            (s.settings.shadow.strength, s.settings.shadow.by_depth, s.settings.path) = (0.8, true, RenderPath::Tiled);
+            s.settings.shadow.strength = 0.8;
+            s.settings.shadow.by_depth = true;
+            s.settings.path = RenderPath::Tiled;
         }),
         ("lit per texel", |s| {
-            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+            s.settings.accumulate.downscale = 3;
+            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
         }),
-        ("guided", |s| (s.settings.accumulate.scale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
+        ("guided", |s| (s.settings.accumulate.downscale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
         ("spheres", |s| s.settings.technique = Technique::SphericalBillboard),
         ("volumetric", |s| s.settings.technique = Technique::VolumetricSoft),
         ("density", |s| s.settings.technique = Technique::Density),
@@ -78,17 +82,21 @@ fn gpu_and_cpu_draw_the_same_colors_by_age() {
         ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
         ("with fire", |s| s.settings.fire.intensity = 1.0),
         ("with fire and shadow, tiled", |s| {
-            (s.settings.fire.intensity, s.settings.shadow.strength, s.settings.path) = (1.0, 0.8, RenderPath::Tiled);
+            s.settings.fire.intensity = 1.0;
+            s.settings.shadow.strength = 0.8;
+            s.settings.path = RenderPath::Tiled;
         }),
         ("cubemap", |s| s.settings.diffuse.mode = DiffuseMode::Cubemap),
         ("lit per texel", |s| {
-            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+            s.settings.accumulate.downscale = 3;
+            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
         }),
         ("steps", |s| s.settings.ramp_filter = RampFilter::Nearest),
     ];
     for (name, change) in changes {
         let mut scene = burning();
-        (scene.settings.fire.intensity, scene.settings.sprite.age_color) = (0.0, 0.9);
+        scene.settings.fire.intensity = 0.0;
+        scene.settings.sprite.age_color = 0.9;
         change(&mut scene);
         if scene.settings.path == RenderPath::Tiled && !is_tiled_available() {
             continue;
@@ -100,17 +108,20 @@ fn gpu_and_cpu_draw_the_same_colors_by_age() {
 #[test]
 fn sprites_in_front_hide_the_colors_behind_them() {
     let mut scene = burning();
-    (scene.settings.fire.intensity, scene.settings.sprite.age_color) = (0.0, 1.0);
+    scene.settings.fire.intensity = 0.0;
+    scene.settings.sprite.age_color = 1.0;
     scene.material.age_ramp = Ramp::from_linear(UVec2::new(2, 1), [vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)]);
     let like = scene.particles[0];
     let reddest = |near: f32, far: f32| {
         let mut scene = scene.clone();
         scene.particles = vec![puff(-6.0, far, 0.8, &like), puff(-5.0, near, 0.8, &like)];
-        (scene.settings.boost, scene.wall_everywhere) = (4.0, true);
+        scene.settings.boost = 4.0;
+        scene.wall_everywhere = true;
         let seen = drawn(&scene).load(IVec2::new(SIZE.x as i32 / 2, SIZE.y as i32 / 2));
         seen.x / (seen.x + seen.y)
     };
-    let (red, green) = (reddest(0.0, 1.0), reddest(1.0, 0.0));
+    let red = reddest(0.0, 1.0);
+    let green = reddest(1.0, 0.0);
     println!("{red} {green}");
     assert!(red > 0.7 && green < 0.3, "{red} {green}");
 }
@@ -124,8 +135,10 @@ fn puff(z: f32, age: f32, amount: f32, like: &Particle) -> Particle {
 fn lit_by_fire() -> TestScene {
     let mut scene = burning();
     scene.lights.clear();
-    (scene.settings.soft_scatter.intensity, scene.settings.boost) = (0.0, 1.0);
-    (scene.settings.accumulate.scale, scene.settings.fire.core) = (1, 0.0);
+    scene.settings.soft_scatter.intensity = 0.0;
+    scene.settings.boost = 1.0;
+    scene.settings.accumulate.downscale = 1;
+    scene.settings.fire.core = 0.0;
     let heat = |x| if x == 0 { Vec3::ONE } else { Vec3::ZERO };
     scene.material.heat_ramp = Ramp::from_linear(UVec2::new(64, 1), (0..64).map(heat));
     scene
@@ -150,7 +163,8 @@ fn smoke_in_front_dims_a_fire_by_its_transmittance() {
     assert!(alone.max_element() > 0.5, "{alone}");
     for layers in 1..=4 {
         let amounts = vec![0.5; layers];
-        let (seen, expected) = (seen_through(&amounts), alone * 0.5_f32.powi(layers as i32));
+        let seen = seen_through(&amounts);
+        let expected = alone * 0.5_f32.powi(layers as i32);
         let error = ((seen - expected) / expected).abs().max_element();
         println!("{layers} layers: {seen}, expected {expected}, off by {:.1} %", 100.0 * error);
         // The alpha of the sprite's image is not exactly 1 in its middle.
@@ -180,8 +194,10 @@ fn one_system_draws_what_fire_and_smoke_draw_in_separate_passes() {
             let others = (!others.is_empty()).then(|| (others.to_vec(), scene.settings));
             drawn(&TestScene { particles: particles.concat(), others: others.into_iter().collect(), ..scene.clone() })
         };
-        let (one, two) = (drawn_with(&[&smoke, &fire], &[]), drawn_with(&[&fire], &smoke));
-        let (fire_alone, smoke_alone) = (drawn_with(&[&fire], &[]), drawn_with(&[&smoke], &[]));
+        let one = drawn_with(&[&smoke, &fire], &[]);
+        let two = drawn_with(&[&fire], &smoke);
+        let fire_alone = drawn_with(&[&fire], &[]);
+        let smoke_alone = drawn_with(&[&smoke], &[]);
         let agreement = psnr(&one, &two);
         // Each layer is rounded to half floats, in one system and in two at other places.
         assert!(agreement >= 60.0, "{path:?}: {agreement}");

@@ -10,7 +10,8 @@ mod warm_up;
 use std::sync::OnceLock;
 
 use glam::UVec2;
-use haze::{Error, Particles, wgpu};
+use haze::{Particles, wgpu};
+use haze_core::error::Error;
 use haze_demo::headless::Headless;
 
 use crate::test_scene::TestScene;
@@ -38,8 +39,8 @@ fn encoder(gpu: &Headless) -> wgpu::CommandEncoder {
 }
 
 /// Returns the field that an error names. Panics if there is no error, or another kind of error.
-fn rejected_field<T>(result: Result<T, Error>) -> String {
-    match result {
+fn rejected_field<T>(result: Result<T, impl Into<Error>>) -> String {
+    match result.map_err(Into::into) {
         Err(Error::Field(error)) => error.field,
         Err(error) => panic!("{error}"),
         Ok(_) => panic!("accepted; expected an error that names a field"),

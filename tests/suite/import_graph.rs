@@ -92,10 +92,12 @@ fn import_graph(files: &[(PathBuf, String)]) -> ImportGraph {
             let mut path = path.as_str();
             let mut base = from.clone();
             if let Some(rest) = path.strip_prefix("crate") {
-                (base, path) = (String::new(), rest.trim_start_matches("::"));
+                base = String::new();
+                path = rest.trim_start_matches("::");
             } else {
                 while let Some(rest) = path.strip_prefix("super") {
-                    (base, path) = (parent(&base), rest.trim_start_matches("::"));
+                    base = parent(&base);
+                    path = rest.trim_start_matches("::");
                 }
                 path = path.strip_prefix("self").unwrap_or(path).trim_start_matches("::");
             }
@@ -152,7 +154,8 @@ fn between_folders(import_graph: &ImportGraph) -> ImportGraph {
 /// Source files of one crate, with paths relative to its `src/`.
 fn sources(crate_folder: &Path) -> Vec<(PathBuf, String)> {
     let root = crate_folder.join("src");
-    let (mut folders, mut files) = (vec![root.clone()], Vec::new());
+    let mut folders = vec![root.clone()];
+    let mut files = Vec::new();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
@@ -244,7 +247,8 @@ fn paths_named_in_documents_exist() {
     }
     let mut named = 0;
     for document in &documents {
-        let (text, document) = (std::fs::read_to_string(root.join(document)).unwrap(), document.display());
+        let text = std::fs::read_to_string(root.join(document)).unwrap();
+        let document = document.display();
         for word in text.split(|c: char| c.is_whitespace() || "`()[]<>,:".contains(c)) {
             let is_path = ["src/", "crates/", "shaders/", "tests/", "docs/", "examples/"]
                 .iter()

@@ -172,7 +172,8 @@ fn narrow_spots_are_as_bright_on_their_axis_as_wide_ones() {
 /// Share of pixels in which a channel differs by more than 1 % of the pixel's brightest channel.
 fn differing_share(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
     let apart = |(a, b): (&Vec4, &Vec4)| {
-        let (a, b) = (a.truncate(), b.truncate());
+        let a = a.truncate();
+        let b = b.truncate();
         (a - b).abs().max_element() > 0.01 * a.max(b).max_element().max(0.05)
     };
     a.texels.iter().zip(&b.texels).filter(|pair| apart(*pair)).count() as f32 / a.texels.len() as f32
@@ -187,8 +188,10 @@ fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
             for intensity in [1.0, 1.0e3, 1.2e5, 1.0e9] {
                 let mut scene = TestScene::new(SIZE);
                 scene.lights = vec![Light { intensity, ..sun }, Light { intensity, ..lamp }];
-                (scene.settings.diffuse.mode, scene.settings.path) = (mode, path);
-                let (on_gpu, on_cpu) = (scene.on_gpu(gpu()).picture, scene.on_cpu());
+                scene.settings.diffuse.mode = mode;
+                scene.settings.path = path;
+                let on_gpu = scene.on_gpu(gpu()).picture;
+                let on_cpu = scene.on_cpu();
                 assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()), "{} {intensity}: not finite", mode.name());
                 let apart = differing_share(&on_gpu, &on_cpu);
                 println!("{} {} {intensity:e}: {apart:.4} of the pixels differ", mode.name(), path.name());
@@ -202,7 +205,8 @@ fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
 fn moved(by: Vec3) -> TestScene {
     let mut scene = TestScene::new(SIZE);
     scene.settings.technique = Technique::VolumetricSoft;
-    (scene.settings.volumetric.noise_size, scene.settings.volumetric.noise_octaves) = (1.5, 3);
+    scene.settings.volumetric.noise_size = 1.5;
+    scene.settings.volumetric.noise_octaves = 3;
     // Wider than the picture: rounding of the light's position moves a small glow visibly.
     scene.settings.specular_scatter.size = 1800.0;
     for particle in &mut scene.particles {
@@ -220,8 +224,10 @@ fn moved(by: Vec3) -> TestScene {
 fn noise_keeps_its_precision_far_from_the_origin() {
     // Whole multiples of the 1.5 m noise tile, so the image must be the same; 49 km.
     let by = vec3(49_152.0, -24_576.0, 49_152.0);
-    let (here, there) = (moved(Vec3::ZERO), moved(by));
-    let (on_cpu, on_gpu) = (psnr(&here.on_cpu(), &there.on_cpu()), psnr(&here.on_cpu(), &there.on_gpu(gpu()).picture));
+    let here = moved(Vec3::ZERO);
+    let there = moved(by);
+    let on_cpu = psnr(&here.on_cpu(), &there.on_cpu());
+    let on_gpu = psnr(&here.on_cpu(), &there.on_gpu(gpu()).picture);
     println!("49 km away: {on_cpu:.1} dB, on the GPU {on_gpu:.1} dB");
     assert!(on_cpu > 90.0 && on_gpu > MIN_PSNR, "CPU {on_cpu} dB, GPU {on_gpu} dB");
 }
@@ -230,7 +236,9 @@ fn noise_keeps_its_precision_far_from_the_origin() {
 fn noise_scrolls_along_the_up_vector() {
     let scrolled = |up: Vec3, time: f64| {
         let mut scene = moved(Vec3::ZERO);
-        (scene.up, scene.time, scene.settings.volumetric.scroll_speed) = (up, time, 0.25);
+        scene.up = up;
+        scene.time = time;
+        scene.settings.volumetric.scroll_speed = 0.25;
         scene.on_cpu()
     };
     let still = scrolled(Vec3::Y, 0.0);
@@ -251,13 +259,15 @@ fn exposure_multiplies_all_light_of_the_smoke() {
         (RenderPath::Forward, DiffuseMode::Ramp),
     ] {
         let mut scene = TestScene::new(SIZE);
-        (scene.settings.path, scene.settings.diffuse.mode) = (path, mode);
+        scene.settings.path = path;
+        scene.settings.diffuse.mode = mode;
         let mut brighter = scene.clone();
         brighter.lights.iter_mut().for_each(|light| light.intensity *= 3.0);
         brighter.settings.soft_scatter.scatter_color *= 3.0;
         brighter.settings.soft_scatter.ambient_color *= 3.0;
         scene.exposure = 3.0;
-        let (on_cpu, on_gpu) = (scene.on_cpu(), scene.on_gpu(gpu()).picture);
+        let on_cpu = scene.on_cpu();
+        let on_gpu = scene.on_gpu(gpu()).picture;
         assert!(largest_difference(&on_cpu, &brighter.on_cpu()) < 1.0e-4, "{mode:?}");
         assert!(psnr(&on_cpu, &on_gpu) > MIN_PSNR, "{path:?} {mode:?}");
     }

@@ -8,6 +8,7 @@ mod adaptive_scale;
 mod anchors;
 mod assets;
 mod backdrop;
+mod bloom;
 mod budget;
 mod column_error;
 mod corpus;

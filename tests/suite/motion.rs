@@ -29,7 +29,8 @@ impl Gray {
         let [width, height] = self.size;
         let along = |gray: &Self, step: [isize; 2]| {
             let value = |index: usize| {
-                let (x, y) = (index % width, index / width);
+                let x = index % width;
+                let y = index / width;
                 let at = |i: isize| {
                     let x = (x as isize + i * step[0]).clamp(0, width as isize - 1);
                     let y = (y as isize + i * step[1]).clamp(0, height as isize - 1);

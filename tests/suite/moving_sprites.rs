@@ -18,9 +18,11 @@ fn moving() -> TestScene {
     let mut scene = TestScene::new(SIZE);
     for (index, particle) in (0u8..).zip(&mut scene.particles) {
         particle.velocity = (particle.position - vec3(0.0, 0.0, -6.0)) * 2.0;
-        (particle.tint, particle.heat) = ([255, 3 * index, 255 - 4 * index], 40 + 3 * index);
+        particle.tint = [255, 3 * index, 255 - 4 * index];
+        particle.heat = 40 + 3 * index;
     }
-    (scene.settings.sprite.stretch, scene.settings.sprite.stretch_limit) = (0.3, 3.0);
+    scene.settings.sprite.stretch = 0.3;
+    scene.settings.sprite.stretch_limit = 3.0;
     scene
 }
 
@@ -31,16 +33,18 @@ const CHANGES: &[(&str, Change)] = &[
     ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
     ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
     ("weighted, tiled", |s| {
-        (s.settings.accumulate.order, s.settings.path) = (BlendOrder::Weighted, RenderPath::Tiled);
+        s.settings.accumulate.order = BlendOrder::Weighted;
+        s.settings.path = RenderPath::Tiled;
     }),
     ("with shadow, tiled", |s| (s.settings.shadow.strength, s.settings.path) = (0.8, RenderPath::Tiled)),
     ("hard", |s| s.settings.technique = Technique::Hard),
     ("density", |s| s.settings.technique = Technique::Density),
     ("depth sprites", |s| s.settings.technique = Technique::DepthSpriteSoft),
     ("depth sprites, tiled", |s| {
-        (s.settings.technique, s.settings.path) = (Technique::DepthSpriteSoft, RenderPath::Tiled);
+        s.settings.technique = Technique::DepthSpriteSoft;
+        s.settings.path = RenderPath::Tiled;
     }),
-    ("coarse", |s| s.settings.accumulate.scale = 3),
+    ("coarse", |s| s.settings.accumulate.downscale = 3),
 ];
 
 fn for_each_change(turn_off: Change, most: f32, start: Change) {
@@ -75,7 +79,9 @@ fn gpu_and_cpu_draw_the_same_particle_heat() {
 fn streak(velocity: Vec3, path: RenderPath) -> TestScene {
     let mut scene = moving();
     scene.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), radius: 0.4, velocity, ..Particle::default() }];
-    (scene.settings.path, scene.settings.accumulate.scale, scene.wall_everywhere) = (path, 1, true);
+    scene.settings.path = path;
+    scene.settings.accumulate.downscale = 1;
+    scene.wall_everywhere = true;
     scene
 }
 
@@ -87,7 +93,8 @@ fn size_of(scene: &TestScene) -> (usize, usize) {
         let at = IVec2::new(x, y);
         (picture.load(at) - empty.load(at)).abs().max_element() > 0.004
     };
-    let (width, height) = (SIZE.x as i32, SIZE.y as i32);
+    let width = SIZE.x as i32;
+    let height = SIZE.y as i32;
     let columns = (0..width).filter(|&x| (0..height).any(|y| differs(x, y))).count();
     let rows = (0..height).filter(|&y| (0..width).any(|x| differs(x, y))).count();
     (columns, rows)
@@ -129,7 +136,8 @@ fn streaks_thinner_than_a_texel_do_not_flicker() {
         scene.bounds = Some(Bounds { min: vec3(-1.0, -1.0, -6.0), max: vec3(1.0, 1.0, -4.0) });
         scene.particles[0].radius = radius;
         scene.particles[0].position += vec3(0.013, 0.017, 0.0) * f32::from(step);
-        (scene.settings.sprite.stretch_limit, scene.settings.boost) = (64.0, 1.0);
+        scene.settings.sprite.stretch_limit = 64.0;
+        scene.settings.boost = 1.0;
         change(&scene)
     };
     for radius in [0.004, 0.008, 0.015] {
@@ -146,10 +154,13 @@ fn ripple(path: RenderPath, seconds: f32) -> f32 {
     let mut scene = streak(Vec3::ZERO, path);
     scene.debug_view = DebugView::Amount;
     scene.material.sprite = builtin::find(builtin::SPRITES, "ball").unwrap().sprite().unwrap();
-    (scene.material.detail, scene.material.six_way) = (None, None);
-    (scene.settings.sprite.stretch, scene.settings.sprite.stretch_limit) = (seconds, 64.0);
+    scene.material.detail = None;
+    scene.material.six_way = None;
+    scene.settings.sprite.stretch = seconds;
+    scene.settings.sprite.stretch_limit = 64.0;
     // Ten are born in a second.
-    let (spacing, first) = (vec3(0.25, 0.0, 0.0), vec3(-4.0, 0.0, -5.0));
+    let spacing = vec3(0.25, 0.0, 0.0);
+    let first = vec3(-4.0, 0.0, -5.0);
     let particle = |index: u16| Particle {
         position: first + spacing * f32::from(index),
         velocity: spacing * 10.0,

@@ -7,7 +7,7 @@ use glam::Vec4;
 use haze::PathModelSource;
 use haze::shader::{self, Sources};
 use haze_core::assets::image::Image;
-use haze_core::settings::{LightingResolution, RenderPath};
+use haze_core::settings::{LightingResolution, RenderPath, SpriteAnimation};
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_preset::builtin;
@@ -86,6 +86,12 @@ const SPLIT_MUTANTS: &[Mutant] = &[
     ("parts that overlap", "tile_accumulate.wgsl", "min(start + length, entries)", "entries"),
 ];
 
+/// Mistakes in the traversal of large targets.
+const QUAD_MUTANTS: &[Mutant] = &[
+    ("the left column twice", "tile_accumulate.wgsl", "Texels(texels.c, texels.d,", "Texels(texels.a, texels.b,"),
+    ("fade where sprites cover a tile", "lib/sprite_fragment.wgsl", "fade_before(scene, view_depth) >= 1.0", "true"),
+];
+
 /// Mistakes in the sort of few sprites by GPUs.
 const RANK_MUTANTS: &[Mutant] = &[
     ("sorted back to front", "sort.wgsl", "keys[other] < key", "keys[other] > key"),
@@ -155,7 +161,8 @@ fn mistakes_in_shaders_fail_golden_images_and_agreement() {
         shots.iter().map(|shot| LazyCell::new(|| without_smoke(shot).render_on_cpu().unwrap())).collect();
     for mutant in MUTANTS {
         let context = context(mutant);
-        let (mut worst_golden, mut worst_psnr) = (0.0_f64, f32::INFINITY);
+        let mut worst_golden = 0.0_f64;
+        let mut worst_psnr = f32::INFINITY;
         for (index, shot) in shots.iter().enumerate() {
             let golden = goldens::difference_to_golden(builtin::PRESETS[index].name, &drawn(&context, shot, false));
             worst_golden = worst_golden.max(golden);
@@ -195,6 +202,34 @@ fn mistakes_in_parts_of_lists_change_the_frame() {
     }
 }
 
+/// A shot whose target has enough tiles for four texels an invocation.
+fn large_shot() -> Shot {
+    let mut shot = shot("inside", glam::UVec2::new(1760, 800));
+    let system = &mut shot.preset.systems[0];
+    system.settings.path = RenderPath::Tiled;
+    system.settings.accumulate.fix_scale(1);
+    // A few large sprites suffice, with one lookup a texel, and soft edges where they meet the yard.
+    system.emitter.rate = 1.0;
+    system.settings.sprite.animation = SpriteAnimation::Still;
+    shot
+}
+
+#[test]
+fn large_targets_are_drawn_as_the_rasterizer_draws_them_and_mistakes_change_them() {
+    if !is_tiled_available() {
+        return;
+    }
+    let shot = large_shot();
+    let tiled = expect_changes_in(&shot, false, QUAD_MUTANTS, drawn_cooperatively);
+    let mut raster = shot.clone();
+    raster.preset.systems[0].settings.path = RenderPath::Raster;
+    let raster = drawn_cooperatively(&clean_context(), &raster, false);
+    let behind = drawn(&clean_context(), &without_smoke(&shot), false);
+    let psnr = psnr_over([&tiled, &raster], [&behind, &behind]);
+    println!("{psnr:.1} dB");
+    assert!(psnr >= MIN_PSNR, "{psnr:.1} dB");
+}
+
 #[test]
 fn mistakes_in_passes_of_gpus_change_the_frame() {
     expect_changes("campfire", false, PIXEL_MUTANTS, drawn_from_computed_pixels);
@@ -226,7 +261,8 @@ fn expect_changes(preset: &str, exact_filtering: bool, mutants: &[Mutant], drawn
     }
 }
 
-fn expect_changes_in(shot: &Shot, exact_filtering: bool, mutants: &[Mutant], drawn: Draw) {
+/// Returns the clean frame.
+fn expect_changes_in(shot: &Shot, exact_filtering: bool, mutants: &[Mutant], drawn: Draw) -> Image<Vec4> {
     let clean = drawn(&clean_context(), shot, exact_filtering);
     for mutant in mutants {
         let psnr = psnr(&drawn(&context(mutant), shot, exact_filtering), &clean);
@@ -234,6 +270,7 @@ fn expect_changes_in(shot: &Shot, exact_filtering: bool, mutants: &[Mutant], dra
         assert!(psnr < CHANGED, "{} leaves the frame as it is: {psnr:.1} dB", mutant.0);
     }
     gpu().check().unwrap();
+    clean
 }
 
 /// Least agreement of computed pixels with drawn ones, dB: they are rounded to half floats before they are blended.

@@ -33,7 +33,7 @@ fn smoke(size: UVec2) -> Shot {
     shot.preset.lights.clear();
     let settings = &mut shot.preset.systems[0].settings;
     settings.fire.intensity = 0.0;
-    settings.accumulate.scale = 1;
+    settings.accumulate.downscale = 1;
     settings.path = RenderPath::Raster;
     settings.soft_scatter.mode = SoftScatterMode::Smoothstep;
     settings.soft_scatter.scatter_color = Vec3::ONE;
@@ -102,7 +102,8 @@ fn pixels() -> impl Iterator<Item = UVec2> {
 
 /// Mean of samples as the scene weights them: a single bright one does not dominate.
 fn mean(samples: impl Iterator<Item = Vec3>) -> Vec3 {
-    let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+    let mut sum = Vec3::ZERO;
+    let mut weights = 0.0;
     for sample in samples {
         let weight = 1.0 / (1.0 + sample.max_element());
         sum += sample * weight;
@@ -128,7 +129,7 @@ fn objects_in_front_of_smoke_keep_their_smooth_outlines() {
         }
         let mut smoke = smoke(SIZE);
         smoke.preset.systems[0].settings.path = path;
-        smoke.preset.systems[0].settings.accumulate.scale = scale;
+        smoke.preset.systems[0].settings.accumulate.downscale = scale;
         let barred = with_bars(smoke.clone(), bars);
         let renderers: [fn(&Shot) -> Image<Vec4>; 2] =
             [|shot| render_on_gpu(shot, true), |shot| shot.render_on_cpu().unwrap()];

@@ -9,6 +9,7 @@ use haze_core::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze_demo::headless::Headless;
 
 use crate::gpu::{can_test, gpu};
+use crate::psnr::{MIN_PSNR, psnr_over};
 use crate::test_host::Host;
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
@@ -17,8 +18,9 @@ const SIZE: UVec2 = UVec2::new(320, 180);
 /// Sprites at scale 1 in front of the whole scene and without near fade, so that no fragment is discarded.
 fn scene() -> TestScene {
     let mut scene = TestScene::new(SIZE);
-    scene.settings.accumulate.scale = 1;
-    (scene.settings.soft_fade.near_fade_start, scene.settings.soft_fade.near_fade_end) = (0.0, 0.0);
+    scene.settings.accumulate.downscale = 1;
+    scene.settings.soft_fade.near_fade_start = 0.0;
+    scene.settings.soft_fade.near_fade_end = 0.0;
     scene.debug_view = DebugView::Overdraw;
     moved(scene, 2.5)
 }
@@ -77,17 +79,14 @@ fn estimated_fragments_match_the_overdraw_view() {
 
 #[test]
 fn mean_overdraw_is_taken_over_the_pixels_of_the_bounding_box() {
-    let scene = scene();
+    // This view shows the whole box.
+    let scene = TestScene { debug_view: DebugView::ReducedDepth, ..scene() };
     let drawn = scene.on_gpu(gpu());
     let found = drawn.renderer.overdraw();
-    let in_box = layers(&drawn.picture);
+    let in_box = drawn.picture.texels.iter().filter(|texel| **texel != BACKDROP).count();
     // Seen head-on, the bounding box is a rectangle; its edges may lie anywhere within their pixels.
     let outline = 2 * (SIZE.x + SIZE.y);
-    assert!(
-        (found.texels - in_box.len() as f64).abs() <= f64::from(outline),
-        "{found:?}, drawn pixels {}",
-        in_box.len()
-    );
+    assert!((found.texels - in_box as f64).abs() <= f64::from(outline), "{found:?}, drawn pixels {in_box}");
     assert_eq!(found.mean(), found.fragments / found.texels);
     assert_eq!(Overdraw::default().mean(), 0.0);
 }
@@ -97,12 +96,12 @@ fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
     let of = |change: &dyn Fn(&mut TestScene)| {
         let mut scene = scene();
         // The debug sprite fills its square at every mip level. Other sprites extend further at coarser levels.
-        scene.settings.sprite.debug_sprite = true;
+        scene.settings.debug.checkerboard = true;
         change(&mut scene);
         overdraw(&scene)
     };
     let whole = of(&|_| {});
-    let coarse = of(&|scene| scene.settings.accumulate.scale = 4);
+    let coarse = of(&|scene| scene.settings.accumulate.downscale = 4);
     // Sprite areas are exact; the box's sides are rounded up to whole texels.
     assert!((16.0 * coarse.fragments / whole.fragments - 1.0).abs() < 1.0e-3, "scale 4 {coarse:?}, scale 1 {whole:?}");
     assert!((coarse.mean() / whole.mean() - 1.0).abs() < 0.05, "scale 4 {coarse:?}, scale 1 {whole:?}");
@@ -116,7 +115,7 @@ fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
     let host_depth =
         of(&|scene| (scene.settings.accumulate.depth_source, scene.depth) = (DepthSource::Host, DepthKind::Both));
     assert!((host_depth.fragments / whole.fragments - 1.0).abs() < 0.01 && host_depth.texels == whole.texels);
-    assert_eq!(of(&|scene| scene.settings.sprite.debug_loop = 3).fragments, 3.0 * whole.fragments);
+    assert_eq!(of(&|scene| scene.settings.debug.draw_count = 3).fragments, 3.0 * whole.fragments);
     // Sprites without amount, out of view, or in a buffer that the CPU cannot read add nothing.
     let hide = |particle: &mut Particle| particle.amount = 0.0;
     assert_eq!(of(&|scene| scene.particles.iter_mut().for_each(hide)), Overdraw::default());
@@ -139,7 +138,8 @@ fn overdraw_of_many_sprites_is_estimated_from_a_sample() {
         ..scene()
     };
     assert!(many.particles.len() > 4096);
-    let (few, many) = (overdraw(&few), overdraw(&many));
+    let few = overdraw(&few);
+    let many = overdraw(&many);
     assert!((many.fragments / (101.0 * few.fragments) - 1.0).abs() < 0.02, "{many:?}, one of each {few:?}");
 }
 
@@ -198,10 +198,12 @@ fn sides(scene: &TestScene) -> Vec<f64> {
 fn estimated_fragments_match_the_gpus_shader_invocations() {
     let Some(gpu) = counting_gpu() else { return };
     let mut scene = moved(scene(), -6.0);
-    (scene.settings.path, scene.debug_view, scene.attach_depth) = (RenderPath::Forward, DebugView::Final, false);
+    scene.settings.path = RenderPath::Forward;
+    scene.debug_view = DebugView::Final;
+    scene.attach_depth = false;
     scene.particles.iter_mut().for_each(|particle| particle.rotation = 0.0);
     // The debug sprite fills its whole square.
-    scene.settings.sprite.debug_sprite = true;
+    scene.settings.debug.checkerboard = true;
     let sides = sides(&scene);
     let (shaded, found) = shaded(&gpu, &scene);
     let blocks = |side: f64| {
@@ -215,4 +217,28 @@ fn estimated_fragments_match_the_gpus_shader_invocations() {
     // One block more or less along a side changes a square by 1/6, and the sum over 60 squares by 1/50. Counting twice
     // or by half would be off by far more.
     assert!(off.iter().any(|off| *off < 0.02), "{found:?}, shaded {shaded}, relative errors {off:?}");
+}
+
+#[test]
+fn amount_and_overdraw_show_all_systems() {
+    let alone = scene();
+    let mut both = alone.clone();
+    // A second system in front, whose box covers all of the first and whose smoke covers little of it.
+    let faint = Particle { position: vec3(0.0, 0.0, -1.0), radius: 0.02, amount: 0.5, ..Particle::default() };
+    let corners = [vec3(-9.0, -9.0, -1.0), vec3(9.0, 9.0, -1.0)].map(|position| Particle { position, ..faint });
+    both.others = vec![([faint].into_iter().chain(corners).collect(), alone.settings)];
+    for debug_view in [DebugView::Amount, DebugView::Overdraw] {
+        let [first, all] = [&alone, &both].map(|scene| {
+            let scene = TestScene { debug_view, ..scene.clone() };
+            let on_gpu = scene.on_gpu(gpu()).picture;
+            let on_cpu = scene.on_cpu();
+            let behind = Image::new(on_gpu.size, scene.backdrop());
+            let found = psnr_over([&on_gpu, &on_cpu], [&behind, &behind]);
+            assert!(found >= MIN_PSNR, "{debug_view:?}: {found:.1} dB");
+            on_gpu
+        });
+        let same = first.texels.iter().zip(&all.texels).filter(|(first, all)| first == all).count();
+        let share = same as f64 / first.texels.len() as f64;
+        assert!(share > 0.9 && share < 1.0, "{debug_view:?}: {share}");
+    }
 }

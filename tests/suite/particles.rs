@@ -27,7 +27,7 @@ fn a_hundred_frames_of_ten_thousand_particles_are_kept_in_memory_and_interpolate
         std::fs::write(folder.path().join(format!("s{number}.ply")), binary(number, 10_000)).unwrap();
     }
     let mut system = PresetSystem::default();
-    system.cache.path = "s#.ply".into();
+    system.particle_files.path = "s#.ply".into();
     let preset = Preset { systems: vec![system], ..Preset::default() };
     let files =
         particle_files::load_particle_files(&preset, "my.json".as_ref(), &AssetFolders::new(folder.path())).unwrap();

@@ -90,7 +90,8 @@ fn agreement(shot: &Shot) -> (f32, Image<Vec4>) {
     let [on_gpu, on_cpu] = on_both(shot);
     let behind = without_smoke(shot);
     let is_same = |last: &Backgrounds| {
-        let (last, now) = (&last.shot, &behind);
+        let last = &last.shot;
+        let now = &behind;
         last.preset == now.preset && last.size == now.size && last.debug_view == now.debug_view
     };
     let behind = match LAST.take().filter(is_same) {
@@ -165,7 +166,8 @@ fn column_of_ply(frame: u32) -> Vec<u8> {
     let head = "ply\nformat binary_little_endian 1.0\nelement vertex 300\n";
     let mut file = format!("{head}{names}property int id\nend_header\n").into_bytes();
     for id in 0..300_i32 {
-        let (angle, height) = (id as f32 * 2.4 + frame as f32 * 0.1, id as f32 + 3.0 * frame as f32);
+        let angle = id as f32 * 2.4 + frame as f32 * 0.1;
+        let height = id as f32 + 3.0 * frame as f32;
         let place = [40.0 * angle.cos(), 40.0 * angle.sin(), height];
         place.iter().chain(&[30.0, 0.2]).for_each(|value| file.extend(value.to_le_bytes()));
         file.extend((299 - id).to_le_bytes());
@@ -180,9 +182,11 @@ fn gpu_and_cpu_agree_on_particles_from_files() {
         std::fs::write(folder.path().join(format!("smoke_{frame:04}.ply")), column_of_ply(frame)).unwrap();
     }
     let mut preset = Preset::load("column").unwrap();
-    let cache = &mut preset.systems[0].cache;
-    (cache.path, cache.up, cache.units) = ("smoke_####.ply".into(), UpAxis::Z, 0.01);
-    cache.after = EndBehavior::Loop;
+    let files = &mut preset.systems[0].particle_files;
+    files.path = "smoke_####.ply".into();
+    files.up = UpAxis::Z;
+    files.units = 0.01;
+    files.after = EndBehavior::Loop;
     let mut shot = Shot::new(preset, &folder.path().join("my.json"), UVec2::new(320, 180)).unwrap();
     let (psnr, seen) = agreement(&shot);
     println!("{psnr:.1} dB");
@@ -260,7 +264,9 @@ fn gpu_and_cpu_agree_on_every_scene() {
     for (scene, (lamp, brazier)) in SceneName::ALL.iter().flat_map(|scene| props.map(|props| (*scene, props))) {
         let mut shot = shot("column", UVec2::new(320, 180));
         let environment = &mut shot.preset.environment;
-        (environment.scene, environment.lamp, environment.brazier) = (scene, lamp, brazier);
+        environment.scene = scene;
+        environment.lamp = lamp;
+        environment.brazier = brazier;
         let scene = format!("{}, lamp {lamp}, brazier {brazier}", scene.name());
         let (psnr, _) = agreement(&shot);
         let (alone, on_cpu) = agreement_of_scene(&shot);
@@ -299,7 +305,8 @@ fn gpu_and_cpu_agree_from_within_and_below_the_ground() {
 fn gpu_and_cpu_clip_the_scene_at_the_same_planes() {
     for (near, far) in [(0.1, 9.0), (6.9, 200.0), (5.0, 7.2)] {
         let mut shot = shot("column", UVec2::new(320, 180));
-        (shot.preset.camera.near, shot.preset.camera.far) = (near, far);
+        shot.preset.camera.near = near;
+        shot.preset.camera.far = far;
         let (psnr, _) = agreement(&shot);
         println!("{near} to {far} m: {psnr:.1} dB");
         assert!(psnr >= MIN_PSNR, "{near} to {far} m: {psnr:.1} dB");
@@ -332,10 +339,14 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         add("soft_fade.curve", curve.name(), with(|s| s.soft_fade.curve = curve));
     }
     for &upsample in Upsample::ALL {
-        add("upsample", upsample.name(), with(|s| (s.accumulate.upsample, s.accumulate.scale) = (upsample, 3)));
+        add("upsample", upsample.name(), with(|s| (s.accumulate.upsample, s.accumulate.downscale) = (upsample, 3)));
     }
     for &mode in DepthDownsample::ALL {
-        add("depth_downsample", mode.name(), with(|s| (s.accumulate.depth_downsample, s.accumulate.scale) = (mode, 4)));
+        add(
+            "depth_downsample",
+            mode.name(),
+            with(|s| (s.accumulate.depth_downsample, s.accumulate.downscale) = (mode, 4)),
+        );
     }
     for &encoding in NormalEncoding::ALL {
         let weighted =
@@ -351,14 +362,16 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
             decode.name(),
             with(|s| {
                 biased(s);
-                (s.accumulate.format, s.accumulate.order) = (AccumulationFormat::Rgba8Unorm, BlendOrder::Sorted);
+                s.accumulate.format = AccumulationFormat::Rgba8Unorm;
+                s.accumulate.order = BlendOrder::Sorted;
             }),
         );
     }
     // Lighting at the target's resolution is a separate pass with its own pipelines.
     let lit = |change: &dyn Fn(&mut Settings)| {
         with(|s| {
-            (s.accumulate.lighting_resolution, s.accumulate.scale) = (LightingResolution::Target, 3);
+            s.accumulate.lighting_resolution = LightingResolution::Target;
+            s.accumulate.downscale = 3;
             change(s);
         })
     };
@@ -369,13 +382,16 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         add("lit target, upsample", upsample.name(), lit(&|s| s.accumulate.upsample = upsample));
     }
     let weighted = |s: &mut Settings| {
-        (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
-        (s.coverage, s.soft_scatter.mode) = (CoverageMode::Ramp, SoftScatterMode::Ramp);
+        s.accumulate.order = BlendOrder::Weighted;
+        s.accumulate.encoding = NormalEncoding::Biased;
+        s.coverage = CoverageMode::Ramp;
+        s.soft_scatter.mode = SoftScatterMode::Ramp;
         s.diffuse.backlight = Backlight::Ramp;
     };
     add("lit target", "with weights and ramps", lit(&weighted));
     let rgba8 = |s: &mut Settings| {
-        (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+        s.accumulate.format = AccumulationFormat::Rgba8Unorm;
+        s.accumulate.encoding = NormalEncoding::Biased;
         s.accumulate.order = BlendOrder::Sorted;
     };
     add("lit target", "rgba8", lit(&rgba8));
@@ -386,7 +402,7 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
         if !haze::read_only_depth_is_supported(&gpu().device) {
             break;
         }
-        let mut shot = with(|s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1));
+        let mut shot = with(|s| (s.accumulate.depth_source, s.accumulate.downscale) = (DepthSource::Host, 1));
         shot.debug_view = stage;
         add("depth_source host", stage.name(), shot);
     }
@@ -447,9 +463,11 @@ fn systems_are_drawn_far_to_near_in_any_list_order() {
 #[test]
 fn image_height_does_not_change_the_look() {
     // Pixel sizes in presets refer to an image height of 720; another height must not change the look.
-    let (small, large) = (shot("column", UVec2::new(160, 90)), shot("column", UVec2::new(320, 180)));
+    let small = shot("column", UVec2::new(160, 90));
+    let large = shot("column", UVec2::new(320, 180));
     let reduced = |shot: &Shot| {
-        let (large, mut reduced) = (on_gpu(shot), Image::new(shot.size / 2, Vec4::ZERO));
+        let large = on_gpu(shot);
+        let mut reduced = Image::new(shot.size / 2, Vec4::ZERO);
         reduced.for_each(|at, texel| {
             let at = at.as_ivec2() * 2;
             let corner = |x, y| large.load(at + glam::IVec2::new(x, y));

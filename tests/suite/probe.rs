@@ -58,11 +58,14 @@ const EDGES: f32 = 0.005;
 
 /// Numbers of pixels that were compared and that differ from the image, and their largest difference.
 fn compare(probed: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Image<Vec4>) -> (u32, u32, f32) {
-    let (mut seen, mut wrong, mut most) = (0, 0, 0.0_f32);
+    let mut seen = 0;
+    let mut wrong = 0;
+    let mut most = 0.0_f32;
     for (probe, at) in probes.iter().zip(pixels()) {
         let Some(probed) = probed(probe) else { continue };
         let difference = difference(probed, drawn.load(at.as_ivec2()).xyz());
-        (seen, most) = (seen + 1, most.max(difference));
+        seen += 1;
+        most = most.max(difference);
         wrong += u32::from(difference > STEPS);
     }
     (seen, wrong, most)
@@ -112,12 +115,14 @@ fn probed_values_match_every_debug_view() {
         |_| {},
         |s| s.accumulate.lighting_resolution = LightingResolution::Target,
         |s| (s.accumulate.encoding, s.accumulate.order) = (NormalEncoding::Biased, BlendOrder::Weighted),
-        |s| (s.accumulate.scale, s.diffuse.mode) = (4, DiffuseMode::Cubemap),
-        |s| (s.accumulate.scale, s.accumulate.depth_source) = (1, DepthSource::Host),
+        |s| (s.accumulate.downscale, s.diffuse.mode) = (4, DiffuseMode::Cubemap),
+        |s| (s.accumulate.downscale, s.accumulate.depth_source) = (1, DepthSource::Host),
         |s| {
-            (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+            s.accumulate.format = AccumulationFormat::Rgba8Unorm;
+            s.accumulate.encoding = NormalEncoding::Biased;
             s.accumulate.order = BlendOrder::Sorted;
-            (s.diffuse.mode, s.soft_scatter.mode) = (DiffuseMode::Motif, SoftScatterMode::Ramp);
+            s.diffuse.mode = DiffuseMode::Motif;
+            s.soft_scatter.mode = SoftScatterMode::Ramp;
             // Lit texels are half floats. Near an amount of 1, where the glow is steep, their last bit is visible.
             s.accumulate.lighting_resolution = LightingResolution::Full;
         },
@@ -181,9 +186,11 @@ fn assert_coordinate_matches_image(
 #[test]
 fn probed_coordinates_of_the_shadow_ramp_match_the_image() {
     let mut shot = Shot::load("column", SIZE).unwrap();
-    let (settings, material) = (&mut shot.preset.systems[0].settings, &mut shot.materials[0]);
+    let settings = &mut shot.preset.systems[0].settings;
+    let material = &mut shot.materials[0];
     settings.ambient.intensity = 0.0;
-    (material.shadow_ramp, material.diffuse_ramp) = (coordinate_ramp(), Ramp::from_linear(UVec2::ONE, [Vec3::ONE]));
+    material.shadow_ramp = coordinate_ramp();
+    material.diffuse_ramp = Ramp::from_linear(UVec2::ONE, [Vec3::ONE]);
     let lights = shot.preset.lights.clone();
     let paths = if is_tiled_available() { &[RenderPath::Raster, RenderPath::Tiled][..] } else { &[] };
     for (&path, (index, light)) in paths.iter().flat_map(|path| lights.iter().enumerate().map(move |of| (path, of))) {
@@ -212,7 +219,9 @@ fn probed_coordinates_of_the_fire_ramp_match_the_image() {
     let mut shot = Shot::load("oil_fire", SIZE).unwrap();
     let settings = &mut shot.preset.systems[0].settings;
     // Only fire gives light.
-    (settings.diffuse.intensity, settings.soft_scatter.intensity, settings.shadow.strength) = (0.0, 0.0, 0.0);
+    settings.diffuse.intensity = 0.0;
+    settings.soft_scatter.intensity = 0.0;
+    settings.shadow.strength = 0.0;
     settings.specular_scatter.intensity = 0.0;
     settings.accumulate.lighting_resolution = LightingResolution::Full;
     shot.materials[0].fire_ramp = coordinate_ramp();
@@ -231,7 +240,7 @@ fn captured_texels_of_another_shot_are_an_error() {
     let shot = Shot::load("column", SIZE).unwrap();
     let Some((captured, _)) = render_and_capture(&shot, &[DebugView::Final]) else { return };
     let mut other = shot.clone();
-    other.preset.systems[0].settings.accumulate.scale = 3;
+    other.preset.systems[0].settings.accumulate.downscale = 3;
     let error = captured.clone().with_shot(other).probe(&[UVec2::ONE]).unwrap_err().to_string();
     assert!(error.starts_with("texels: "), "{error}");
     let other = Shot { size: SIZE * 2, ..shot };

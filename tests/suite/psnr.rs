@@ -31,7 +31,8 @@ pub fn psnr_over(pictures: [&Image<Vec4>; 2], behind: [&Image<Vec4>; 2]) -> f32 
     let differs = |a: Vec4, b: Vec4| (a - b).abs().max_element() > 1.0 / 255.0;
     let smoke = (0..a.len()).filter(|&i| differs(a[i], behind_a[i]) || differs(b[i], behind_b[i]));
     let peaks = Vec4::new(4.0, 4.0, 4.0, 1.0);
-    let (mut sum, mut pixels) = (0.0, 0_u32);
+    let mut sum = 0.0;
+    let mut pixels = 0_u32;
     for i in smoke {
         let [a, b] = [a[i], b[i]].map(|texel| texel.clamp(Vec4::ZERO, peaks) / peaks);
         sum += f64::from((a - b).length_squared());

@@ -7,9 +7,10 @@ use glam::{IVec2, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze::Light;
 use haze_core::assets::image::Image;
 use haze_core::assets::noise::{pcg3d, unit};
-use haze_core::formula::tonemap::tonemapped;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_core::settings::*;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::display_transform;
 use haze_preset::{AssetFolders, MaterialSources, Preset, builtin};
 
 use crate::gpu::{gpu, is_tiled_available};
@@ -45,7 +46,8 @@ impl RandomValues {
 
     /// Returns a value near the old one, in some cases an end of the range.
     fn number_in(&mut self, value: f32, range: &RangeInclusive<f32>) -> f32 {
-        let (least, most) = (*range.start(), *range.end());
+        let least = *range.start();
+        let most = *range.end();
         if self.random() < 0.1 {
             return least;
         }
@@ -66,7 +68,7 @@ impl FieldVisitor for RandomValues {
     }
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
         // The format has one version, and a loop multiplies the time of the test.
-        let most = if name == "debug_loop" { 3 } else { *range.end() };
+        let most = if name == "draw_count" { 3 } else { *range.end() };
         if self.is_selected() && name != "version" {
             let moved = self.number_in(*value as f32, &(*range.start() as f32..=most as f32));
             *value = (moved.round() as u32).clamp(*range.start(), most);
@@ -151,10 +153,10 @@ const MAX_EDGE_SHARE: f32 = 0.02;
 /// Returns the PSNR of two images as displayed, dB, and the share of the pixels that it leaves out. A rasterizer snaps
 /// edges to 1/256 pixel, so an edge may lie one pixel further in one image. Such a pixel differs, but each of its two
 /// values lies between the values around it in the other image.
-fn displayed_psnr(images: [&Image<Vec4>; 2], exposure: f32) -> (f32, f32) {
+fn displayed_psnr(images: [&Image<Vec4>; 2], transform: DisplayTransform) -> (f32, f32) {
     let codes = images.map(|image| {
         let mut codes = Image::new(image.size, Vec3::ZERO);
-        codes.for_each(|at, code| *code = tonemapped(image.load(at.as_ivec2()).xyz(), exposure));
+        codes.for_each(|at, code| *code = transform.code(image.load(at.as_ivec2()).xyz()));
         codes
     });
     let last = images[0].size.as_ivec2() - 1;
@@ -164,7 +166,9 @@ fn displayed_psnr(images: [&Image<Vec4>; 2], exposure: f32) -> (f32, f32) {
         let tolerance = Vec3::splat(2.0 / 255.0);
         code.cmpge(low - tolerance).all() && code.cmple(high + tolerance).all()
     };
-    let (mut sum, mut pixels, mut edges) = (0.0, 0_u32, 0_u32);
+    let mut sum = 0.0;
+    let mut pixels = 0_u32;
+    let mut edges = 0_u32;
     for i in 0..codes[0].texels.len() as i32 {
         let at = IVec2::new(i % (last.x + 1), i / (last.x + 1));
         let [a, b] = codes.each_ref().map(|codes| codes.load(at));
@@ -197,9 +201,9 @@ fn gpu_and_cpu_agree_on_random_presets() {
     for seed in seeds() {
         let shot = random_shot(seed);
         let images = [render_on_gpu(&shot, true), shot.render_on_cpu().unwrap()];
-        let (psnr, edges) = displayed_psnr(images.each_ref(), shot.preset.camera.exposure.exp2());
+        let (psnr, edges) = displayed_psnr(images.each_ref(), display_transform(&shot));
         println!("{seed}: {psnr:.1} dB, edges {:.2} %, {}", 100.0 * edges, shot.preset.name);
-        let has_checks = shot.preset.systems.iter().any(|system| system.settings.sprite.debug_sprite);
+        let has_checks = shot.preset.systems.iter().any(|system| system.settings.debug.checkerboard);
         let least = if has_checks { MIN_DISPLAYED_PSNR_OF_CHECKS } else { MIN_DISPLAYED_PSNR };
         if psnr < least || edges > MAX_EDGE_SHARE {
             failures.push(seed);
@@ -221,7 +225,8 @@ fn the_scene_is_the_same_on_both_renderers_with_a_close_near_plane_and_a_light_i
         shot.preset.camera.near = 0.001;
         shot.preset.lights = vec![Light { position: Vec3::ZERO, intensity: 20.0, range: 60.0, ..Light::default() }];
         let images = [render_on_gpu(&shot, true), shot.render_on_cpu().unwrap()];
-        let (psnr, edges) = displayed_psnr(images.each_ref(), 1.0);
+        let (psnr, edges) =
+            displayed_psnr(images.each_ref(), DisplayTransform { exposure: 1.0, tonemap: Tonemap::Aces });
         println!("{name}: {psnr:.1} dB, edges {:.2} %", 100.0 * edges);
         assert!(psnr >= MIN_DISPLAYED_PSNR && edges <= MAX_EDGE_SHARE);
     }

@@ -31,6 +31,21 @@ fn every_shader_file_validates_without_optional_capabilities() {
     }
 }
 
+#[test]
+fn uniform_buffers_have_sizes_that_webgl_takes() {
+    // WebGL 2 binds multiples of 16 bytes. Others make a pass invalid, which draws nothing.
+    let of_demo = ("tonemap_pass.wgsl", include_str!("../../crates/haze_demo/src/tonemap_pass.wgsl"));
+    let of_library = shader::sources().iter().filter(|(file, _)| !file.starts_with("lib/"));
+    for (file, text) in of_library.copied().chain([of_demo]) {
+        let module = parse(file, &shader::compose(text).unwrap());
+        let uniforms = module.global_variables.iter().filter(|(_, held)| held.space == naga::AddressSpace::Uniform);
+        for (_, uniform) in uniforms {
+            let size = module.types[uniform.ty].inner.size(module.to_ctx());
+            assert_eq!(size % 16, 0, "{file}: {:?} has {size} bytes", uniform.name);
+        }
+    }
+}
+
 /// Override constants of a target with as many textures as it can have, for the shaders that read them.
 fn full_target(module: &naga::Module) -> naga::back::PipelineConstants {
     let constants = [("ATTACHMENT_COUNT", 4.0), ("SIX_WAY_SLOT", 2.0), ("WEIGHTS_SLOT", 3.0)];
@@ -250,5 +265,6 @@ fn wgsl_constants_of_setting_enums_match_rust() {
     assert_choices!(accumulate, "SPRITE_ANIMATION", settings::SpriteAnimation);
     assert_choices!(composed("depth_downsample.wgsl"), "DEPTH_DOWNSAMPLE", settings::DepthDownsample);
     assert_choices!(composed("forward.wgsl"), "BLEND_MODE", settings::BlendMode);
+    assert_choices!(composed("lib/tonemap.wgsl"), "TONEMAP", settings::Tonemap);
     assert_choices!(composed("lib/flight.wgsl"), "EMITTER_SHAPE", haze_core::emitter::EmitterShape);
 }

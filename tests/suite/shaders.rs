@@ -4,9 +4,10 @@ use std::path::Path;
 
 use glam::{UVec2, Vec4};
 use haze::shader::{self, Sources};
-use haze::{Context, Error, SceneDepthKind, WarmUp, read_only_depth_is_supported, wgpu};
+use haze::{Context, SceneDepthKind, WarmUp, read_only_depth_is_supported, wgpu};
 use haze_core::assets::image::Image;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
 use haze_core::settings::{DebugView, Lighting, RenderPath, Settings, SpriteAnimation};
 use tempfile::TempDir;
 
@@ -40,7 +41,7 @@ impl ShaderFolder {
     }
 
     fn context(&self) -> Result<Context, Error> {
-        shared_context().with_shaders(&Sources::from_folder(self.0.path())?)
+        Ok(shared_context().with_shaders(&Sources::from_folder(self.0.path())?)?)
     }
 
     fn picture(&self) -> Image<Vec4> {
@@ -60,7 +61,8 @@ fn puffs(size: UVec2) -> TestScene {
     let mut scene = TestScene::new(size);
     let layout = SpriteLayout { columns: 4, rows: 2, y_down: false };
     scene.material.sprite = Sprite::load(Path::new("sprites/puff.png"), layout).unwrap();
-    (scene.material.six_way, scene.material.detail) = (Some(six_way_of(&scene.material.sprite)), None);
+    scene.material.six_way = Some(six_way_of(&scene.material.sprite));
+    scene.material.detail = None;
     (0..).zip(&mut scene.particles).for_each(|(index, particle)| particle.frame = index as f32 * 0.37);
     scene
 }
@@ -68,7 +70,7 @@ fn puffs(size: UVec2) -> TestScene {
 #[test]
 fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
     let folder = ShaderFolder::new();
-    let whole = folder.edit("lib/sprite_vertex.wgsl", "if DEBUG_SPRITE || MOTION {", "if true {").context().unwrap();
+    let whole = folder.edit("lib/sprite_vertex.wgsl", "if CHECKERBOARD || MOTION {", "if true {").context().unwrap();
     type Change = fn(&mut Settings);
     let changes: [(&str, Change); 4] = [
         ("soft", |_| ()),

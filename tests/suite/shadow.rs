@@ -53,15 +53,18 @@ fn gpu_and_cpu_draw_the_same_shadow() {
         ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
         ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
         ("weighted, tiled", |s| {
-            (s.settings.accumulate.order, s.settings.path) = (BlendOrder::Weighted, RenderPath::Tiled);
+            s.settings.accumulate.order = BlendOrder::Weighted;
+            s.settings.path = RenderPath::Tiled;
         }),
         ("six-way, weighted", |s| {
-            (s.settings.accumulate.order, s.settings.lighting) = (BlendOrder::Weighted, Lighting::SixWay);
+            s.settings.accumulate.order = BlendOrder::Weighted;
+            s.settings.lighting = Lighting::SixWay;
         }),
         ("lit per texel", |s| {
-            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+            s.settings.accumulate.downscale = 3;
+            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
         }),
-        ("guided", |s| (s.settings.accumulate.scale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
+        ("guided", |s| (s.settings.accumulate.downscale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
         ("spheres", |s| s.settings.technique = Technique::SphericalBillboard),
         ("fine", |s| s.settings.shadow.resolution = 64),
         ("coarse", |s| s.settings.shadow.resolution = 4),
@@ -85,7 +88,8 @@ fn gpu_and_cpu_draw_the_same_shadow() {
 /// Keeps one particle, in the middle of the picture.
 fn keep_one_particle(scene: &mut TestScene) {
     scene.particles.truncate(1);
-    (scene.particles[0].position, scene.particles[0].amount) = (vec3(-0.5, 0.0, -5.0), 0.5);
+    scene.particles[0].position = vec3(-0.5, 0.0, -5.0);
+    scene.particles[0].amount = 0.5;
 }
 
 #[test]
@@ -146,7 +150,8 @@ fn shadow_falls_on_the_far_side_of_the_smoke() {
         let direction = if from_left { Vec3::X } else { Vec3::NEG_X };
         scene.lights = vec![Light { kind: LightKind::Directional, direction, ..Light::default() }];
         // Thin enough that the clouds hardly shade themselves.
-        (scene.settings.shadow.density, scene.settings.soft_scatter.intensity) = (0.08, 0.0);
+        scene.settings.shadow.density = 0.08;
+        scene.settings.soft_scatter.intensity = 0.0;
         scene.wall_everywhere = true;
         let shadowed = drawn(&scene);
         scene.settings.shadow.strength = 0.0;
@@ -158,7 +163,8 @@ fn shadow_falls_on_the_far_side_of_the_smoke() {
         };
         [59, 101].map(|column| sum(&shadowed, column) / sum(&plain, column))
     };
-    let ([lit, dark], [dark_too, lit_too]) = (brightness(true), brightness(false));
+    let [lit, dark] = brightness(true);
+    let [dark_too, lit_too] = brightness(false);
     println!("{lit} {dark}, {dark_too} {lit_too}");
     assert!(dark < 0.9 * lit && dark_too < 0.9 * lit_too, "{lit} {dark}, {dark_too} {lit_too}");
 }
@@ -185,7 +191,8 @@ fn smoke_of_one_system_shades_another() {
         let place = |i: u32| UVec2::new(60 + i % 40, 20 + i / 40).as_ivec2();
         (0..40 * 50).map(|i| picture.load(place(i)).truncate().element_sum()).sum::<f32>()
     };
-    let (before, after) = (brightness(&alone), brightness(&shaded));
+    let before = brightness(&alone);
+    let after = brightness(&shaded);
     assert!(after < 0.97 * before, "{before} {after}");
 }
 
@@ -231,19 +238,22 @@ fn gpu_and_cpu_draw_the_same_shadow_of_the_scene() {
         ("raster", |_| {}),
         ("forward", |s| s.settings.path = RenderPath::Forward),
         ("forward, spheres", |s| {
-            (s.settings.path, s.settings.technique) = (RenderPath::Forward, Technique::SphericalBillboard);
+            s.settings.path = RenderPath::Forward;
+            s.settings.technique = Technique::SphericalBillboard;
         }),
         ("tiled", |s| s.settings.path = RenderPath::Tiled),
         ("six-way", |s| s.settings.lighting = Lighting::SixWay),
         ("six-way, tiled", |s| (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Tiled)),
         ("weighted", |s| s.settings.accumulate.order = BlendOrder::Weighted),
         ("weighted, tiled", |s| {
-            (s.settings.accumulate.order, s.settings.path) = (BlendOrder::Weighted, RenderPath::Tiled);
+            s.settings.accumulate.order = BlendOrder::Weighted;
+            s.settings.path = RenderPath::Tiled;
         }),
         ("lit per texel", |s| {
-            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+            s.settings.accumulate.downscale = 3;
+            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
         }),
-        ("guided", |s| (s.settings.accumulate.scale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
+        ("guided", |s| (s.settings.accumulate.downscale, s.settings.accumulate.upsample) = (3, Upsample::Guided)),
         ("reversed", |s| {
             let map = &mut s.shadow_maps[0];
             map.reversed = true;
@@ -274,7 +284,8 @@ fn gpu_and_cpu_draw_the_same_views_of_shadow() {
     for view in [DebugView::Shadow, DebugView::ShadowSlice] {
         for path in available_paths().filter(|path| *path != RenderPath::Forward) {
             let mut scene = under_a_roof();
-            (scene.debug_view, scene.settings.path) = (view, path);
+            scene.debug_view = view;
+            scene.settings.path = path;
             let name = format!("{}, {}", view.name(), path.name());
             assert_agreement_and_effect(&name, scene, |s| s.settings.shadow.strength = 0.0, 40.0);
         }
@@ -302,7 +313,8 @@ fn gpu_and_cpu_draw_the_same_shadow_of_many_lights() {
         ("without maps", |s| s.shadow_maps.clear()),
         ("with ambient light", |s| s.settings.ambient.intensity = 1.0),
         ("lit per texel", |s| {
-            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+            s.settings.accumulate.downscale = 3;
+            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
         }),
         ("large lamps", |s| s.lights.iter_mut().for_each(|light| light.radius = 2.0)),
     ];
@@ -507,7 +519,8 @@ fn gpu_and_cpu_draw_the_same_ambient_light() {
         ("tiled", |s| s.settings.path = RenderPath::Tiled),
         ("six-way", |s| s.settings.lighting = Lighting::SixWay),
         ("lit per texel", |s| {
-            (s.settings.accumulate.scale, s.settings.accumulate.lighting_resolution) = (3, LightingResolution::Target);
+            s.settings.accumulate.downscale = 3;
+            s.settings.accumulate.lighting_resolution = LightingResolution::Target;
         }),
         ("another up", |s| s.up = vec3(0.5, -0.7, 0.3)),
         ("exposed", |s| s.exposure = 1.7),
@@ -528,7 +541,8 @@ fn gpu_and_cpu_draw_the_same_ambient_light() {
 #[test]
 fn sky_lights_the_top_of_smoke_and_not_its_inside() {
     let mut scene = under_a_roof();
-    (scene.shadow_maps, scene.lights) = (Vec::new(), Vec::new());
+    scene.shadow_maps = Vec::new();
+    scene.lights = Vec::new();
     scene.settings.soft_scatter.intensity = 0.0;
     scene.settings.ambient = Ambient { intensity: 1.0, sky_color: Vec3::ONE, ground_color: Vec3::ZERO };
     // A dense column in the middle of the picture.
@@ -553,7 +567,8 @@ fn sky_lights_the_top_of_smoke_and_not_its_inside() {
 #[test]
 fn smoke_under_a_roof_is_dark() {
     let mut scene = under_a_roof();
-    (scene.settings.soft_scatter.intensity, scene.wall_everywhere) = (0.0, false);
+    scene.settings.soft_scatter.intensity = 0.0;
+    scene.wall_everywhere = false;
     let light = |picture: &Image<Vec4>, left: bool| {
         let half = |index: usize| ((index as u32 % SIZE.x) < SIZE.x / 2) == left;
         let seen = picture.texels.iter().enumerate().filter(|(index, _)| half(*index));
@@ -648,7 +663,8 @@ fn beside_hidden_smoke(path: RenderPath) -> TestScene {
 fn smoke_out_of_sight_casts_shadow() {
     for path in available_paths() {
         let mut scene = beside_hidden_smoke(path);
-        let (seen, reference) = (drawn(&scene), scene.on_cpu());
+        let seen = drawn(&scene);
+        let reference = scene.on_cpu();
         let same = psnr(&seen, &reference);
         let mut host = Host::new(gpu(), &scene).unwrap();
         (0..3).for_each(|_| host.draw(gpu(), &scene).unwrap());
@@ -663,9 +679,15 @@ fn smoke_out_of_sight_casts_shadow() {
 
 #[test]
 fn mean_depth_of_the_smoke_is_in_a_texture_of_the_target() {
-    for path in available_paths().filter(|path| *path != RenderPath::Forward) {
+    let modes = [(1.0, DiffuseMode::Ramp), (0.0, DiffuseMode::Ramp), (0.0, DiffuseMode::Cubemap)];
+    let paths = available_paths().filter(|path| *path != RenderPath::Forward);
+    for (path, (strength, mode)) in paths.flat_map(|path| modes.map(|mode| (path, mode))) {
         let mut scene = shaded();
-        (scene.settings.path, scene.settings.shadow.by_depth, scene.wall_everywhere) = (path, true, true);
+        scene.settings.shadow.strength = strength;
+        scene.settings.diffuse.mode = mode;
+        scene.settings.path = path;
+        scene.settings.shadow.by_depth = true;
+        scene.wall_everywhere = true;
         let puff = |x: f32, z: f32| Particle { position: vec3(x, 0.0, z), radius: 0.8, ..scene.particles[0] };
         scene.particles = vec![puff(-1.5, -6.0), puff(1.5, -4.0)];
         let frame = scene.on_gpu(gpu());
@@ -680,7 +702,11 @@ fn mean_depth_of_the_smoke_is_in_a_texture_of_the_target() {
             let texel = (pixel / targets.scale as f32).floor().as_ivec2() - targets.origin;
             let depth = texels[texel.y as usize * width as usize + texel.x as usize];
             let mean = near + (far - near) * depth.x / depth.w;
-            assert!((mean + particle.position.z).abs() < 0.05, "{path:?}: {mean} at {}", particle.position);
+            assert!(
+                (mean + particle.position.z).abs() < 0.05,
+                "{path:?}, {strength}, {mode:?}: {mean} at {}",
+                particle.position
+            );
         }
     }
 }

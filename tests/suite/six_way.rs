@@ -14,7 +14,8 @@ use crate::tiled;
 
 fn scene() -> TestScene {
     let mut scene = TestScene::new(UVec2::new(160, 90));
-    (scene.settings.lighting, scene.settings.path) = (Lighting::SixWay, RenderPath::Raster);
+    scene.settings.lighting = Lighting::SixWay;
+    scene.settings.path = RenderPath::Raster;
     scene.settings.boost = 1.0;
     for (index, particle) in (0..).zip(&mut scene.particles) {
         particle.rotation = index as f32 * 0.7;
@@ -23,7 +24,8 @@ fn scene() -> TestScene {
 }
 
 fn assert_agreement(name: &str, scene: &TestScene) {
-    let (on_gpu, on_cpu) = (scene.on_gpu(gpu()).picture, scene.on_cpu());
+    let on_gpu = scene.on_gpu(gpu()).picture;
+    let on_cpu = scene.on_cpu();
     let psnr = psnr(&on_gpu, &on_cpu);
     println!("{name}: {psnr:.1} dB");
     assert!(psnr >= MIN_PSNR, "{name}: {psnr:.1} dB");
@@ -36,11 +38,12 @@ const MODES: &[(&str, Change)] = &[
     ("sorted", |_| {}),
     ("weighted", |s| s.accumulate.order = BlendOrder::Weighted),
     ("weighted and biased", |s| {
-        (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
+        s.accumulate.order = BlendOrder::Weighted;
+        s.accumulate.encoding = NormalEncoding::Biased;
     }),
-    ("scale 1", |s| s.accumulate.scale = 1),
+    ("scale 1", |s| s.accumulate.downscale = 1),
     ("lit at the target's resolution", |s| s.accumulate.lighting_resolution = LightingResolution::Target),
-    ("host depth", |s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1)),
+    ("host depth", |s| (s.accumulate.depth_source, s.accumulate.downscale) = (DepthSource::Host, 1)),
     ("anisotropy", |s| s.diffuse.six_way_anisotropy = 0.7),
     ("color", |s| s.diffuse.six_way_color = vec3(0.2, 0.5, 1.0)),
     // Modes that bake light by normal have no effect here.
@@ -74,7 +77,8 @@ fn gpu_and_cpu_agree_in_every_accumulation_mode() {
     assert_agreement(
         "8 bits",
         &changed(|s| {
-            (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+            s.accumulate.format = AccumulationFormat::Rgba8Unorm;
+            s.accumulate.encoding = NormalEncoding::Biased;
         }),
     );
     for &technique in Technique::ALL {
@@ -108,7 +112,8 @@ fn tiled_path_agrees_on_six_way_lighting() {
     // The tiled path rounds one of the two light textures to 8 bits, once. Raster rounds both after every layer, so it
     // is no reference. One step of 255 is 48 dB.
     let mut bytes = changed(|s| {
-        (s.path, s.accumulate.encoding) = (RenderPath::Tiled, NormalEncoding::Biased);
+        s.path = RenderPath::Tiled;
+        s.accumulate.encoding = NormalEncoding::Biased;
         s.accumulate.format = AccumulationFormat::Rgba8Unorm;
     });
     let eight = bytes.on_gpu(gpu()).picture;
@@ -134,9 +139,11 @@ fn six_way_lighting_does_not_change_alpha() {
 fn light_from(side: Vec3, rotation: f32) -> f32 {
     let mut scene = scene();
     scene.particles.truncate(1);
-    (scene.particles[0].position, scene.particles[0].rotation) = (vec3(0.0, 0.0, -6.0), rotation);
+    scene.particles[0].position = vec3(0.0, 0.0, -6.0);
+    scene.particles[0].rotation = rotation;
     scene.lights = vec![Light { kind: LightKind::Directional, direction: -side, intensity: 1.0, ..Light::default() }];
-    (scene.settings.soft_scatter.intensity, scene.settings.specular_scatter.intensity) = (0.0, 0.0);
+    scene.settings.soft_scatter.intensity = 0.0;
+    scene.settings.specular_scatter.intensity = 0.0;
     // The alpha is symmetric, so that rotation does not change coverage; the light maps are not.
     let ball = Sprite::from_image(
         "ball".as_ref(),
@@ -147,7 +154,8 @@ fn light_from(side: Vec3, rotation: f32) -> f32 {
         SpriteLayout::default(),
     )
     .unwrap();
-    (scene.material.six_way, scene.material.sprite) = (Some(six_way_of(&ball)), ball);
+    scene.material.six_way = Some(six_way_of(&ball));
+    scene.material.sprite = ball;
     let empty = TestScene { particles: Vec::new(), ..scene.clone() };
     let sum = |scene: &TestScene| scene.on_gpu(gpu()).picture.texels.iter().map(|texel| texel.x).sum::<f32>();
     // Subtracted: the backdrop as far as the smoke hides it, which does not depend on lights.

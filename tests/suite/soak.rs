@@ -54,7 +54,8 @@ fn soak(count: u32, step: impl FnMut(u32)) {
 /// [`soak`] with another limit on the growth of resident memory, bytes.
 fn soak_within(leak: u64, count: u32, mut step: impl FnMut(u32)) {
     (0..count / 100).chain([0; SETTLING_FRAMES]).for_each(&mut step);
-    let (objects_before, bytes_before) = (live_objects(), resident_bytes());
+    let objects_before = live_objects();
+    let bytes_before = resident_bytes();
     let mut reported = Instant::now();
     for index in 0..count {
         step(index);
@@ -107,7 +108,8 @@ fn two_thousand_resizes_leak_nothing() {
 #[ignore = "takes minutes"]
 fn systems_that_come_and_go_leak_nothing() {
     let mut systems = SystemsFixture::new(gpu(), SIZE);
-    let (particles, settings) = (systems.scene.particles.clone(), systems.scene.settings);
+    let particles = systems.scene.particles.clone();
+    let settings = systems.scene.settings;
     soak(20_000, |frame| {
         // One to four systems at a time. Each key lasts for 150 frames and is never used again.
         let births = (0..4).map(|lane| u64::from((frame + 37 * lane) / 150 * 4 + lane));

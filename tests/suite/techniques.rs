@@ -40,7 +40,7 @@ fn one_sprite(technique: Technique, view_depth: f32) -> TestScene {
         vec![Particle { position: vec3(0.0, 0.0, -view_depth), amount: 0.8, radius: 0.7, ..Particle::default() }];
     scene.bounds = Some(Bounds { min: vec3(-3.0, -3.0, -12.0), max: vec3(3.0, 3.0, 3.0) });
     scene.settings.soft_fade.near_fade_end = 0.0;
-    scene.settings.accumulate.scale = 1;
+    scene.settings.accumulate.downscale = 1;
     scene.debug_view = DebugView::Amount;
     scene
 }
@@ -48,7 +48,7 @@ fn one_sprite(technique: Technique, view_depth: f32) -> TestScene {
 fn assert_agreement(name: &str, scene: &TestScene) {
     let psnr = psnr(&scene.on_gpu(gpu()).picture, &scene.on_cpu());
     println!("{name}: {psnr:.1} dB");
-    let least = if scene.settings.sprite.debug_sprite { MIN_PSNR_WITH_STEPS } else { MIN_PSNR };
+    let least = if scene.settings.debug.checkerboard { MIN_PSNR_WITH_STEPS } else { MIN_PSNR };
     assert!(psnr >= least, "{name}: {psnr:.1} dB");
 }
 
@@ -99,7 +99,8 @@ fn gpu_and_cpu_agree_on_every_technique_and_path() {
             assert_agreement(&format!("{} {} always", technique.name(), path.name()), &scene);
         }
         let mut scene = scene(technique);
-        (scene.settings.accumulate.depth_source, scene.settings.accumulate.scale) = (DepthSource::Host, 1);
+        scene.settings.accumulate.depth_source = DepthSource::Host;
+        scene.settings.accumulate.downscale = 1;
         assert_agreement(&format!("{} host depth", technique.name()), &scene);
         let mut scene = self::scene(technique);
         scene.view.clip_from_view = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
@@ -122,7 +123,8 @@ fn border_texels_are_covered_at_every_size() {
         for (size, scale) in [(UVec2::new(161, 91), 2), (UVec2::new(161, 91), 4), (UVec2::new(169, 97), 8)] {
             let mut scene = scene(technique);
             let sized = TestScene::new(size);
-            (scene.view, scene.settings.accumulate.scale) = (sized.view, scale);
+            scene.view = sized.view;
+            scene.settings.accumulate.downscale = scale;
             // Moves sprites across the right and lower borders.
             scene.particles.iter_mut().for_each(|p| p.position += vec3(3.0, -1.5, 0.0));
             assert_agreement(&format!("{} {size} scale {scale}", technique.name()), &scene);
@@ -145,7 +147,8 @@ fn switching_the_depth_input_keeps_the_targets() {
 fn freezing_the_animation_stops_the_noise() {
     let at = |time: f64, freeze_animation: bool| {
         let mut scene = scene(Technique::VolumetricSoft);
-        (scene.time, scene.settings.sprite.freeze_animation) = (time, freeze_animation);
+        scene.time = time;
+        scene.settings.debug.freeze_animation = freeze_animation;
         scene.on_gpu(gpu()).picture
     };
     assert_eq!(at(0.0, true), at(7.3, true));

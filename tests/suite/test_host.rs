@@ -4,16 +4,17 @@ mod textures;
 
 use glam::{UVec2, Vec4};
 use haze::{
-    Context, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, Renderer, RendererDescriptor,
-    SceneDepth, ShadowMap, Timing, wgpu,
+    Context, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth,
+    ShadowMap, Timing, wgpu,
 };
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_demo::headless::Headless;
 
 pub use self::textures::convert_to_rgba16float;
 use self::textures::{depth_buffer, depth_layers, pad_to_target, target, target_with_view_format, upload};
 use crate::gpu::shared_context;
-use crate::test_scene::{BACKDROP, DepthKind, TestScene};
+use crate::test_scene::{DepthKind, TestScene};
 
 /// Formats and sample count of a host's pass and targets.
 #[derive(Clone, Debug)]
@@ -179,7 +180,8 @@ impl Host {
 
     /// Draws particles from a GPU buffer in their given order, without sorting.
     pub fn draw_buffer(&mut self, gpu: &Headless, scene: &TestScene, particles: &[Particle]) -> Result<(), Error> {
-        let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
+        let buffer = particle_buffer(gpu, particles);
+        let count = particles.len() as u32;
         self.draw_particles(
             gpu,
             scene,
@@ -199,14 +201,14 @@ impl Host {
             if casts_first {
                 renderer.prepare_shadow(encoder, frame)?;
             }
-            renderer.prepare(encoder, frame)
+            Ok(renderer.prepare(encoder, frame)?)
         })
     }
 
     /// Records `prepare_shadow` alone.
     pub fn prepare_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, scene: &TestScene) -> Result<(), Error> {
         let particles = Particles::Slice(&scene.particles);
-        self.with_frame(scene, particles, |renderer, frame| renderer.prepare_shadow(encoder, frame))
+        self.with_frame(scene, particles, |renderer, frame| Ok(renderer.prepare_shadow(encoder, frame)?))
     }
 
     /// Calls `f` with the renderer and the input of a frame.
@@ -216,7 +218,8 @@ impl Host {
         particles: Particles<'_>,
         f: impl FnOnce(&mut Renderer, &FrameInput<'_>) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let (bounds, world_from_particles) = (scene.bounds, scene.world_from_particles);
+        let bounds = scene.bounds;
+        let world_from_particles = scene.world_from_particles;
         let mut systems = vec![ParticleSystem {
             bounds,
             world_from_particles,
@@ -267,7 +270,7 @@ impl Host {
         scene: &TestScene,
         draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
-        let [r, g, b, a] = BACKDROP.to_array().map(f64::from);
+        let [r, g, b, a] = scene.backdrop().to_array().map(f64::from);
         let attachments: Vec<_> = self
             .attachments
             .iter()

@@ -115,7 +115,8 @@ fn ball_detail() -> Sprite {
 
 /// Six-way maps of a sprite: lit along its normals, a little from behind, and more strongly from the left.
 pub fn six_way_of(sprite: &Sprite) -> Sprite {
-    let (size, frames) = (sprite.size(), sprite.frame_count());
+    let size = sprite.size();
+    let frames = sprite.frame_count();
     let picture = image::RgbaImage::from_fn(size, 2 * frames * size, |x, y| {
         let texel = sprite.texel(0, y / size % frames, x, y % size);
         let normal = texel.truncate() * 2.0 - 1.0;
@@ -166,7 +167,8 @@ impl TestScene {
     /// A cloud of 60 sprites around (0, 0, -6), lit from the left and from behind.
     pub fn new(size: UVec2) -> Self {
         let particle = |i: u32| {
-            let (a, b) = (pcg3d(UVec3::new(i, 0, 5)), pcg3d(UVec3::new(i, 1, 5)));
+            let a = pcg3d(UVec3::new(i, 0, 5));
+            let b = pcg3d(UVec3::new(i, 1, 5));
             Particle {
                 position: (vec3(unit(a.x), unit(a.y), unit(a.z)) - 0.5) * vec3(4.0, 2.4, 2.0) + vec3(0.0, 0.0, -6.0),
                 radius: 0.3 + 0.6 * unit(b.x),
@@ -252,12 +254,17 @@ impl TestScene {
         linear
     }
 
+    /// Image of the host before the smoke: black if it shows the amount.
+    pub fn backdrop(&self) -> Vec4 {
+        if self.debug_view == DebugView::Amount { Vec4::ZERO } else { BACKDROP }
+    }
+
     pub fn on_cpu(&self) -> Image<Vec4> {
         self.try_on_cpu().unwrap()
     }
 
     pub fn try_on_cpu(&self) -> Result<Image<Vec4>, FieldError> {
-        let mut picture = Image::new(self.view.size, BACKDROP);
+        let mut picture = Image::new(self.view.size, self.backdrop());
         let system = |particles, settings| haze_reference::ParticleSystem::new(particles, settings, &self.material);
         let mut systems = vec![haze_reference::ParticleSystem {
             world_from_particles: self.world_from_particles,
@@ -294,7 +301,8 @@ pub type Change = fn(&mut TestScene);
 
 /// Both renderers draw the same, and something else after `turn_off`: `most` dB alike.
 pub fn assert_agreement_and_effect(name: &str, mut scene: TestScene, turn_off: Change, most: f32) {
-    let (seen, reference) = (scene.on_gpu(gpu()).picture, scene.on_cpu());
+    let seen = scene.on_gpu(gpu()).picture;
+    let reference = scene.on_cpu();
     let same = psnr(&seen, &reference);
     turn_off(&mut scene);
     let effect = psnr(&scene.on_gpu(gpu()).picture, &seen);

@@ -11,8 +11,9 @@ use std::sync::LazyLock;
 use glam::UVec2;
 use glam::camera::rh::proj::directx;
 use glam::{Vec3, Vec4, vec3};
-use haze::{Bounds, Context, Error, Particle, ParticleBuffer, Particles, wgpu};
+use haze::{Bounds, Context, Particle, ParticleBuffer, Particles, wgpu};
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_core::settings::*;
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
@@ -46,7 +47,8 @@ fn context_with_traversal(cooperative: bool) -> Context {
 /// uses the sampler's filter.
 fn render_with(scene: &TestScene, path: RenderPath, cooperative: bool) -> Image<Vec4> {
     let mut scene = scene.clone();
-    (scene.settings.path, scene.host.exact_filtering) = (path, cooperative);
+    scene.settings.path = path;
+    scene.host.exact_filtering = cooperative;
     static CONTEXTS: [LazyLock<Context>; 2] =
         [LazyLock::new(|| context_with_traversal(false)), LazyLock::new(|| context_with_traversal(true))];
     let mut host = Host::with_context(gpu(), &scene, Some(&CONTEXTS[usize::from(cooperative)])).unwrap();
@@ -57,11 +59,12 @@ fn render_with(scene: &TestScene, path: RenderPath, cooperative: bool) -> Image<
 
 /// Asserts that both traversals agree with `raster`, and the cooperative one also with the CPU renderer.
 pub fn assert_agreement(name: &str, scene: &TestScene) {
-    let steps = scene.settings.sprite.debug_sprite;
+    let steps = scene.settings.debug.checkerboard;
     let reference = scene.on_cpu();
     for cooperative in [true, false] {
         let [tiled, raster] = [RenderPath::Tiled, RenderPath::Raster].map(|path| render_with(scene, path, cooperative));
-        let (to_raster, to_reference) = (psnr(&tiled, &raster), psnr(&tiled, &reference));
+        let to_raster = psnr(&tiled, &raster);
+        let to_reference = psnr(&tiled, &reference);
         println!("{name}, cooperative {cooperative}: raster {to_raster:.1} dB, CPU renderer {to_reference:.1} dB");
         assert!(
             to_raster >= if steps { MIN_PSNR_WITH_STEPS } else { MIN_PSNR_TO_RASTER },
@@ -87,7 +90,8 @@ fn tiled_path_agrees_on_every_technique() {
         assert_agreement(&format!("{name} always"), &always);
         let mut host_depth = scene(technique);
         let accumulate = &mut host_depth.settings.accumulate;
-        (accumulate.depth_source, accumulate.scale) = (DepthSource::Host, 1);
+        accumulate.depth_source = DepthSource::Host;
+        accumulate.downscale = 1;
         assert_agreement(&format!("{name} host depth"), &host_depth);
         let mut orthographic = scene(technique);
         orthographic.view.clip_from_view = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
@@ -109,12 +113,12 @@ fn tiled_path_agrees_in_every_accumulation_mode() {
             s.settings.accumulate.encoding = NormalEncoding::Biased;
         }),
         ("lit at the target's resolution", |s| s.settings.accumulate.lighting_resolution = LightingResolution::Target),
-        ("scale 3", |s| s.settings.accumulate.scale = 3),
+        ("scale 3", |s| s.settings.accumulate.downscale = 3),
         ("drawn three times", |s| {
-            s.settings.sprite.debug_loop = 3;
+            s.settings.debug.draw_count = 3;
             s.settings.accumulate.opacity = 0.2;
         }),
-        ("debug sprite", |s| s.settings.sprite.debug_sprite = true),
+        ("checkerboard", |s| s.settings.debug.checkerboard = true),
         ("motion", |s| s.settings.sprite.motion = 1.0),
         // Most sprites cross the borders of the image, and some surround the camera.
         ("near", |s| s.particles.iter_mut().for_each(|p| p.position.z += 5.5)),
@@ -201,7 +205,8 @@ fn tiled_path_is_deterministic_and_sorts_buffers() {
     let all: Vec<_> = (0..3000_u32).map(all).collect();
     scene.particles.clone_from(&all);
     scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    (scene.settings.path, scene.host.exact_filtering) = (RenderPath::Tiled, false);
+    scene.settings.path = RenderPath::Tiled;
+    scene.host.exact_filtering = false;
     let mut host = Host::new(gpu(), &scene).unwrap();
     for cooperative in [true, false] {
         host.renderer.context().set_cooperative_traversal(cooperative);

@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use haze::{
-    Context, Error, FrameInput, FrameTimes, ParticleSystem, Particles, SceneDepth, Settings, Timing, TimingDetail, wgpu,
+    Context, FrameInput, FrameTimes, ParticleSystem, Particles, SceneDepth, Settings, Timing, TimingDetail, wgpu,
 };
+use haze_core::error::PrepareError;
 use haze_core::settings::{DiffuseMode, LightingResolution, RenderPath};
 use haze_demo::headless::Headless;
 
@@ -111,7 +112,7 @@ fn compute_passes_that_follow_each_other_are_one_in_a_frame() {
     let Some(gpu) = timed_gpu().filter(|_| is_tiled_available()) else { return };
     let mut scene = scene();
     scene.settings = Settings { path: RenderPath::Tiled, ..Settings::default() };
-    scene.settings.accumulate.scale = 2;
+    scene.settings.accumulate.downscale = 2;
     let (mut host, timing) = timed_host(gpu, &scene);
     let each = draw_and_measure(gpu, &mut host, &timing, &scene);
     let computed = pass_names(&each).into_iter().take_while(|name| *name != "host").count();
@@ -173,8 +174,8 @@ fn pass_times_add_up_over_systems() {
     let (mut host, timing) = timed_host(gpu, &scene);
     let light = scene.settings;
     let mut heavy = light;
-    heavy.sprite.debug_loop = 64;
-    heavy.accumulate.scale = 1;
+    heavy.debug.draw_count = 64;
+    heavy.accumulate.downscale = 1;
     let mut measure = |settings: &[&Settings]| {
         let systems: Vec<_> = (0..)
             .zip(settings)
@@ -229,7 +230,7 @@ fn timing_of_another_device_is_an_error() {
     for (device, queue) in [(&device, &queue), (&other_instance.device, &other_instance.queue)] {
         let of_another = Context::new(device, queue).create_timing().unwrap();
         let refused = host.renderer.set_timing(Some(&of_another));
-        let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
+        let Err(PrepareError::Field(error)) = refused else { panic!("{refused:?}") };
         assert_eq!(error.field, "timing");
     }
     // The previous timing stays in use.

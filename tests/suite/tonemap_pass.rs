@@ -1,11 +1,11 @@
 //! Compares the tonemap on the GPU, for windows, with the tonemap on the CPU, for files.
 
-use glam::{UVec2, Vec2, Vec4};
+use glam::{UVec2, Vec4};
 use haze::wgpu;
-use haze_core::settings::DebugView;
+use haze_core::settings::{DebugView, Tonemap};
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::{TonemapPass, TonemapUniform, exposure, tonemap};
+use haze_demo::tonemap_pass::{TonemapPass, TonemapUniform, display_transform, tonemap};
 
 use crate::gpu::gpu;
 use crate::presets::offscreen_context;
@@ -24,9 +24,10 @@ fn tonemap_on_gpu(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot)
     let tonemap_bindings = tonemap_pass.bind(device, &picture(a), &picture(b));
     let place = UVec2::new(13, 7);
     let screen = gpu().target("screen", SIZE + 2 * place, format);
-    let (origin, size) = (place.as_vec2(), SIZE.as_vec2());
-    let exposure = Vec2::new(exposure(a.1), exposure(b.1));
-    tonemap_pass.prepare(&gpu().queue, &tonemap_bindings, &TonemapUniform { origin, size, exposure, ..shown });
+    let origin = place.as_vec2();
+    let size = SIZE.as_vec2();
+    let uniform = TonemapUniform { origin, size, ..shown }.with_transforms([a.1, b.1].map(display_transform));
+    tonemap_pass.prepare(&gpu().queue, &tonemap_bindings, &uniform);
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -60,8 +61,10 @@ fn shot(preset: &str, debug_view: DebugView) -> (OffscreenRenderer, Shot) {
 
 #[test]
 fn window_shows_the_same_pixels_as_a_written_file() {
-    for debug_view in [DebugView::Final, DebugView::Normals] {
-        let (renderer, shot) = shot("column", debug_view);
+    let curves = Tonemap::ALL.iter().map(|&tonemap| (DebugView::Final, tonemap));
+    for (debug_view, tonemap_curve) in curves.chain([(DebugView::Normals, Tonemap::Neutral)]) {
+        let (renderer, mut shot) = shot("column", debug_view);
+        shot.preset.camera.tonemap = tonemap_curve;
         let written = tonemap(&renderer.read(gpu(), &shot).unwrap(), &shot);
         let shown = tonemap_on_gpu((&renderer, &shot), (&renderer, &shot), TonemapUniform::default());
         let mut off = 0;
@@ -79,10 +82,12 @@ fn window_shows_the_same_pixels_as_a_written_file() {
 
 #[test]
 fn split_and_difference_views_combine_both_images() {
-    let (a, b) = (shot("column", DebugView::Final), shot("column", DebugView::Amount));
+    let a = shot("column", DebugView::Final);
+    let b = shot("column", DebugView::Amount);
     let alone =
         |of: &(OffscreenRenderer, Shot)| tonemap_on_gpu((&of.0, &of.1), (&of.0, &of.1), TonemapUniform::default());
-    let (left, right) = (alone(&a), alone(&b));
+    let left = alone(&a);
+    let right = alone(&b);
     let both = |shown| tonemap_on_gpu((&a.0, &a.1), (&b.0, &b.1), shown);
     let split = both(TonemapUniform { split: 60.0, ..TonemapUniform::default() });
     for (index, texel) in split.iter().enumerate() {

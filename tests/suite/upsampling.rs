@@ -17,7 +17,7 @@ const SIZE: UVec2 = UVec2::new(640, 360);
 /// stretched sprites at scale 1.
 fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Image<Vec4> {
     let mut shot = shot.clone();
-    let is_sparks = |settings: &Settings| settings.is_stretched() && settings.accumulate.scale == 1;
+    let is_sparks = |settings: &Settings| settings.is_stretched() && settings.accumulate.downscale == 1;
     for system in shot.preset.systems.iter_mut().filter(|system| !is_sparks(&system.settings)) {
         system.settings.accumulate.fix_scale(scale);
         system.settings.accumulate.upsample = upsample;
@@ -52,7 +52,8 @@ fn error_at_edges(reduced: &Image<Vec4>, full: &Image<Vec4>, edges: &[bool]) -> 
         let texels: Vec<Vec4> = picture.texels.iter().zip(edges).filter(|(_, edge)| **edge).map(|(t, _)| *t).collect();
         Image { size: UVec2::new(texels.len() as u32, 1), texels }
     };
-    let (reduced, full) = (at_edges(reduced), at_edges(full));
+    let reduced = at_edges(reduced);
+    let full = at_edges(full);
     assert!(full.texels.len() > MIN_EDGE_PIXELS, "only {} pixels at edges", full.texels.len());
     let encoded = |x: f32| srgb_from_linear(x.clamp(0.0, 1.0));
     let off = |(a, b): (&Vec4, &Vec4)| (0..3).map(|i| (encoded(a[i]) - encoded(b[i])).abs()).fold(0.0, f32::max);
@@ -137,7 +138,8 @@ fn carrying_texels_along_slopes_is_as_close_to_full_scale_as_a_fit_for_each_pixe
                 let lit = render_lit(&shot, scale, Upsample::Guided, resolution);
                 psnr(&clipped(&lit), &clipped(&full))
             };
-            let (fitted, carried) = (error(LightingResolution::Full), error(LightingResolution::Target));
+            let fitted = error(LightingResolution::Full);
+            let carried = error(LightingResolution::Target);
             println!("{} at scale {scale}: fitted {fitted:.1} dB, carried {carried:.1} dB", preset.name);
             // `corridor` is 0.7 dB behind, the others 0.5 at most. At 70 dB the error is 0.08 of 255, which no screen shows:
             // `corridor` at scale 4 is 1.3 dB behind at 71 dB.
@@ -175,7 +177,9 @@ fn grazing_shot() -> Shot {
     system.emitter.position.y = 0.5;
     system.settings.soft_fade.fade_scale = 4.0;
     let camera = &mut shot.preset.camera;
-    (camera.position, camera.target, camera.fov) = (vec3(0.3, 0.9, 4.5), vec3(0.0, 0.7, 0.0), 25.0);
+    camera.position = vec3(0.3, 0.9, 4.5);
+    camera.target = vec3(0.0, 0.7, 0.0);
+    camera.fov = 25.0;
     shot
 }
 

@@ -53,8 +53,9 @@ fn sheet(light_uniforms: &[Light]) -> TestScene {
     }
     scene.material.sprite = flat_sprite();
     scene.material.diffuse_ramp = Ramp::from_linear(UVec2::new(2, 1), [Vec3::ONE; 2]);
-    (scene.settings.diffuse.intensity, scene.settings.soft_fade.fade_scale) = (1.0, 1000.0);
-    scene.settings.accumulate.scale = 1;
+    scene.settings.diffuse.intensity = 1.0;
+    scene.settings.soft_fade.fade_scale = 1000.0;
+    scene.settings.accumulate.downscale = 1;
     scene.debug_view = DebugView::Diffuse;
     scene
 }
@@ -98,8 +99,10 @@ fn spot_light_falls_from_full_at_the_inner_angle_to_zero_at_the_outer_angle() {
     let point = sheet(&[Light { kind: LightKind::Point, ..spot }]);
     let mut whole = Vec::new();
     check_sheet(&point, |_, light| whole.push(light));
-    let (inner, outer) = (12.0_f32.to_radians().cos(), 24.0_f32.to_radians().cos());
-    let (mut index, mut seen) = (0, [0; 3]);
+    let inner = 12.0_f32.to_radians().cos();
+    let outer = 24.0_f32.to_radians().cos();
+    let mut index = 0;
+    let mut seen = [0; 3];
     check_sheet(&sheet(&[spot]), |point, light| {
         let cos = (point - spot.position).normalize().dot(spot.direction.normalize());
         let share = light / whole[index];
@@ -178,7 +181,8 @@ fn spherical_harmonics_match_a_quadratic_ramp_for_every_light_direction() {
         let harmonics = lit_by_quadratic_ramp(light(direction), DiffuseMode::SphericalHarmonics);
         // Texels of the ramp are f16: an error of half of 2^-10 between 1 and 2. On the GPU, normals and the image are
         // f16 too.
-        let (cpu, gpu) = (harmonics.on_cpu(), harmonics.on_gpu(gpu()).picture);
+        let cpu = harmonics.on_cpu();
+        let gpu = harmonics.on_gpu(gpu()).picture;
         let found = [&cpu, &gpu].map(|picture| largest_difference(picture, &ramp));
         println!("{direction}: {found:?}");
         assert!(found[0] < 5e-4 && found[1] < 4e-3, "{direction}: {found:?}");
@@ -221,7 +225,7 @@ fn sprites_are_drawn_in_the_order_of_a_plain_depth_sort() {
     }
     scene.debug_view = DebugView::Normals;
     // Scale 1 disables upsampling, which uses the sprites' depths only if the CPU has the particles.
-    scene.settings.accumulate.scale = 1;
+    scene.settings.accumulate.downscale = 1;
     let mut bounds = Bounds::EMPTY;
     scene.particles.iter().for_each(|particle| bounds.include(particle.position, 2.0));
     scene.bounds = Some(bounds);
@@ -265,7 +269,8 @@ fn draws_sprite(scene: &mut TestScene, host: &mut Host, (near, far): (f32, f32),
             let offset = (point_behind(scene, at, -center.z) - center).xy();
             let local = Vec2::from_angle(-TURN).rotate(offset).abs().max_element() / radius;
             // The margins allow for the border texel and for a pixel of filtering.
-            let (inside, outside) = (local < 0.8, local > 1.2);
+            let inside = local < 0.8;
+            let outside = local > 1.2;
             let in_depth = (near..far).contains(&-center.z);
             let shown = *texel != BACKDROP;
             assert!(!(shown && (outside || !in_depth)), "{renderer}: {at} shows a sprite at {center}");
@@ -280,15 +285,17 @@ fn draws_sprite(scene: &mut TestScene, host: &mut Host, (near, far): (f32, f32),
 fn sharp_smoke_stage() -> TestScene {
     let mut scene = TestScene::new(SIZE);
     scene.material.sprite = flat_sprite();
-    (scene.settings.soft_fade.near_fade_end, scene.settings.soft_fade.fade_scale) = (0.0, 1000.0);
-    scene.settings.accumulate.scale = 1;
+    scene.settings.soft_fade.near_fade_end = 0.0;
+    scene.settings.soft_fade.fade_scale = 1000.0;
+    scene.settings.accumulate.downscale = 1;
     scene.debug_view = DebugView::SoftScatter;
     scene
 }
 
 #[test]
 fn system_is_drawn_exactly_when_it_is_inside_the_view_frustum() {
-    let (near, far) = (0.5, 9.0);
+    let near = 0.5;
+    let far = 9.0;
     let projections = [
         directx::perspective(0.8, 16.0 / 9.0, near, far),
         directx::frustum(-0.3, 0.15, -0.1, 0.2, near, far),
@@ -296,7 +303,8 @@ fn system_is_drawn_exactly_when_it_is_inside_the_view_frustum() {
     ];
     for clip_from_view in projections {
         let mut scene = sharp_smoke_stage();
-        (scene.view.clip_from_view, scene.view.view_from_world) = (clip_from_view, camera());
+        scene.view.clip_from_view = clip_from_view;
+        scene.view.view_from_world = camera();
         let mut host = Host::with_shared_context(gpu(), &scene).unwrap();
         // Side planes: the sprite crosses each at the middle of an image edge, in front of everything in the scene.
         let pixels = SIZE.as_ivec2();

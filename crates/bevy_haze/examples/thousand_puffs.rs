@@ -49,8 +49,11 @@ fn puff(index: u32, age: f32) -> SmokeParticle {
         let hash = (hash ^ (hash >> 13)).wrapping_mul(0xc2b2_ae35);
         (hash >> 8) as f32 / (1 << 24) as f32
     };
-    let (around, across, reach) = (random(1) * TAU, random(2) * TAU, random(3).sqrt());
-    let (ring, tube) = (0.8 + 0.7 * age, (0.18 + 0.35 * age) * reach);
+    let around = random(1) * TAU;
+    let across = random(2) * TAU;
+    let reach = random(3).sqrt();
+    let ring = 0.8 + 0.7 * age;
+    let tube = (0.18 + 0.35 * age) * reach;
     let roll = across + 9.0 * age / (0.4 + reach);
     let radius = ring + tube * roll.cos() + 0.25 * age * (3.0 * around + TAU * age).sin();
     SmokeParticle {

@@ -40,7 +40,7 @@ impl SmokeAsset {
     ///
     /// # Errors
     /// The names of all built-in presets, if this one does not exist.
-    pub fn builtin(name: &str) -> Result<Self, haze::Error> {
+    pub fn builtin(name: &str) -> Result<Self, haze::AssetError> {
         let preset = Preset::load(name)?;
         let images = preset.load_materials(Path::new(name))?;
         Ok(Self::from_parts(preset, images))
@@ -66,9 +66,9 @@ pub enum SmokeAssetError {
     Text(#[from] FromUtf8Error),
     /// The preset or one of its images is not valid. The message names file, line, field and range.
     #[error(transparent)]
-    Preset(#[from] haze::Error),
+    Preset(#[from] haze::AssetError),
     /// A system takes its particles from files, which this plugin does not read.
-    #[error("systems[{0}].cache.path: particle files are not supported; expected an emitter")]
+    #[error("systems[{0}].particle_files.path: particle files are not supported; expected an emitter")]
     ParticleFiles(usize),
 }
 
@@ -92,7 +92,7 @@ impl AssetLoader for SmokeLoader {
         reader.read_to_end(&mut bytes).await?;
         let path = context.path().clone();
         let preset = Preset::parse(path.path(), &String::from_utf8(bytes)?)?;
-        if let Some(index) = preset.systems.iter().position(|system| system.cache.is_used()) {
+        if let Some(index) = preset.systems.iter().position(|system| system.particle_files.is_used()) {
             return Err(SmokeAssetError::ParticleFiles(index));
         }
         let images = load_images(&preset, &path, context).await?;

@@ -177,7 +177,8 @@ impl SmokeParticle {
     /// velocity), then WGSL's `pack4x8unorm(vec4f(tint, heat))`.
     pub fn to_words(self) -> [u32; 12] {
         let particle = self.to_haze();
-        let (Vec3 { x, y, z }, Vec3 { x: u, y: v, z: w }) = (self.position, self.velocity);
+        let Vec3 { x, y, z } = self.position;
+        let Vec3 { x: u, y: v, z: w } = self.velocity;
         let numbers = [x, y, z, self.radius, self.rotation, self.amount, self.frame, self.age, u, v, w];
         let [red, green, blue] = particle.tint;
         let mut words = [0; 12];

@@ -124,14 +124,16 @@ impl ExtractedEnvironments {
     pub fn light_at(
         &self,
         point: Vec3,
-        (camera, layers): (MainEntity, Option<&RenderLayers>),
+        camera: MainEntity,
+        layers: Option<&RenderLayers>,
         of_map: impl Fn(AssetId<Image>, Vec3) -> Option<HemisphereLight>,
     ) -> HemisphereLight {
         let layers = layers.unwrap_or_default();
         let light = |environment: &ExtractedEnvironment| {
             Some(of_map(environment.map, environment.up)?.scaled(environment.intensity))
         };
-        let (mut sum, mut total) = (HemisphereLight::default(), 0.0);
+        let mut sum = HemisphereLight::default();
+        let mut total = 0.0;
         for environment in self.environments.iter().filter(|environment| environment.layers.intersects(layers)) {
             let weight = environment.probe.as_ref().map_or(0.0, |probe| probe.weight(point));
             if weight > 0.0

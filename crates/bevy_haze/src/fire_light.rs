@@ -52,7 +52,7 @@ pub(crate) fn update_fire_lights(
             let seed = entity.index_u32();
             let of_system = |(index, system): (usize, &SmokeSystem)| {
                 let state = SystemState::find(animation.systems(), index, &system.preset, clock.seconds);
-                system_light(&state, &system.images, particles, (clock.seconds, seed), &mut sample)
+                system_light(&state, &system.images, particles, clock.seconds, seed, &mut sample)
             };
             let lights = systems.iter().enumerate().filter_map(of_system);
             let brightest = lights.max_by(|a, b| a.intensity.total_cmp(&b.intensity))?;
@@ -78,7 +78,8 @@ fn system_light(
     SystemState { snapshot, settings }: &SystemState,
     images: &haze::MaterialAssets,
     particles: Option<&SmokeParticles>,
-    (seconds, seed): (f64, u32),
+    time: f64,
+    seed: u32,
     sample: &mut Vec<haze::Particle>,
 ) -> Option<haze::Light> {
     if !settings.burns() {
@@ -91,6 +92,6 @@ fn system_light(
             (sample.as_slice(), snapshot.step)
         }
     };
-    let fire = FireLight { particles, particles_per_sample: step, settings, assets: images, time: seconds, seed };
+    let fire = FireLight { particles, particles_per_sample: step, settings, assets: images, time, seed };
     fire.estimate()
 }

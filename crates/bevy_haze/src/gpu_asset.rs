@@ -40,7 +40,7 @@ impl RenderAsset for GpuSmoke {
             let material = renderers.context.create_material(&system.images)?;
             Ok(GpuSystem { preset: system.preset, images: system.images, material })
         };
-        match asset.systems.into_iter().map(upload).collect::<Result<Vec<_>, haze::Error>>() {
+        match asset.systems.into_iter().map(upload).collect::<Result<Vec<_>, haze::PrepareError>>() {
             Ok(systems) => Ok(Self { systems: systems.into() }),
             Err(error) => {
                 error!("smoke: {error}");

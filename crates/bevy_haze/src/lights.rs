@@ -42,7 +42,8 @@ pub(crate) struct SceneLight {
 pub(crate) fn scene_lights(
     points: &Query<(Entity, &ExtractedPointLight, Option<&RenderLayers>)>,
     suns: &Query<(Entity, &ExtractedDirectionalLight, Option<&RenderLayers>)>,
-    (view_layers, exposure): (&RenderLayers, f32),
+    view_layers: &RenderLayers,
+    exposure: f32,
     targets: &[Vec3],
 ) -> Vec<SceneLight> {
     let is_shown = |layers: Option<&RenderLayers>| layers.unwrap_or_default().intersects(view_layers);
@@ -93,7 +94,8 @@ fn light(transform: &GlobalTransform, color: LinearRgba, intensity: f32) -> Opti
     let color = color.to_vec3().max(Vec3::ZERO);
     let brightest = color.max_element();
     let intensity = intensity * brightest / PI;
-    let (position, direction) = (transform.translation(), Vec3::from(transform.forward()));
+    let position = transform.translation();
+    let direction = Vec3::from(transform.forward());
     let is_near = position.is_finite() && position.abs().max_element() <= MAX_POSITION;
     if !(intensity > 0.0 && intensity.is_finite() && is_near && direction.is_finite()) {
         return None;
@@ -123,7 +125,8 @@ pub(crate) fn haze_ambient(light: HemisphereLight) -> Ambient {
         let light = if light.is_finite() { light } else { Vec3::ZERO };
         convert::vec3(light.clamp(Vec3::ZERO, Vec3::splat(MAX_AMBIENT)))
     };
-    let (sky_color, ground_color) = (color(light.sky), color(light.ground));
+    let sky_color = color(light.sky);
+    let ground_color = color(light.ground);
     let is_dark = sky_color == glam::Vec3::ZERO && ground_color == glam::Vec3::ZERO;
     Ambient { intensity: if is_dark { 0.0 } else { 1.0 }, sky_color, ground_color }
 }

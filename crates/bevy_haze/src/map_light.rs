@@ -212,7 +212,9 @@ impl MeasurePass {
         let pending = outcome.clone();
         // wgpu calls this once.
         map.readback.map_async(wgpu::MapMode::Read, .., move |result| drop(outcome.set(result)));
-        (map.pending, map.is_changed, map.age) = (Some(pending), false, 0);
+        map.pending = Some(pending);
+        map.is_changed = false;
+        map.age = 0;
     }
 }
 
@@ -246,9 +248,11 @@ mod tests {
     /// A diffuse map of a sky and a ground is linear in the normal, so its hemispheres are exact.
     #[test]
     fn sky_and_ground_come_back_from_their_means() {
-        let (sky, ground) = (Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.0, 0.25, 2.0));
+        let sky = Vec3::new(1.0, 0.5, 0.0);
+        let ground = Vec3::new(0.0, 0.25, 2.0);
         let turned_up = Vec3::new(0.6, 0.0, 0.8);
-        let (mean, slope) = (0.5 * (sky + ground), 0.5 * (sky - ground));
+        let mean = 0.5 * (sky + ground);
+        let slope = 0.5 * (sky - ground);
         let moments = turned_up.to_array().map(|part| slope * part / 3.0);
         let light = MapLight::from_means([mean, moments[0], moments[1], moments[2]]);
         let hemispheres = light.hemispheres(turned_up);

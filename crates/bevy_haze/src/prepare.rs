@@ -22,7 +22,7 @@ use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::sync_world::MainEntity;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthStencilTexture, ViewTarget};
-use haze::{Error, FrameInput, MAX_LIGHTS, SceneDepth, View, glam, wgpu};
+use haze::{FrameInput, MAX_LIGHTS, PrepareError, SceneDepth, View, glam, wgpu};
 
 use crate::composite::CompositeResources;
 use crate::convert;
@@ -74,7 +74,8 @@ struct FrameLights<'a> {
 /// Records the work of a view.
 pub(crate) fn prepare_smoke(
     view: ViewQuery<CameraView>,
-    (smokes, presets): (Res<ExtractedSmokes>, Res<RenderAssets<GpuSmoke>>),
+    smokes: Res<ExtractedSmokes>,
+    presets: Res<RenderAssets<GpuSmoke>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     sources: LightSources,
     composites: CompositeResources,
@@ -132,7 +133,7 @@ impl LightSources<'_, '_> {
         let global = self.ambient.as_deref().cloned().unwrap_or_default();
         let even = HemisphereLight::even(ambient_light(view.ambient, &global));
         let of_map = |map, up| Some(self.maps.get(map)?.hemispheres(up));
-        let maps = self.environments.light_at(point, (*view.camera_entity, view.layers), of_map);
+        let maps = self.environments.light_at(point, *view.camera_entity, view.layers, of_map);
         even.plus(maps, 1.0).scaled(view.camera.exposure)
     }
 
@@ -141,11 +142,14 @@ impl LightSources<'_, '_> {
         let origins: Vec<_> = systems.iter().map(|system| system.smoke.origin).collect();
         let mut lights: Vec<_> = systems.iter().filter_map(fire_light).take(MAX_LIGHTS).collect();
         let layers = view.layers.unwrap_or_default();
-        let mut scene = scene_lights(&self.points, &self.suns, (layers, view.camera.exposure), &origins);
+        let mut scene = scene_lights(&self.points, &self.suns, layers, view.camera.exposure, &origins);
         scene.truncate(MAX_LIGHTS - lights.len());
-        let is_shaded = systems.iter().any(|system| system.settings.shadow.by_depth || system.shades_meshes());
+        let is_shaded =
+            systems.iter().any(|system| system.settings.receives_shadow_by_depth() || system.shades_meshes());
         let shadows = match (view.shadows.filter(|_| is_shaded), origins.first()) {
-            (Some(views), Some(origin)) => self.shadow_views.maps(&scene, lights.len(), views, *origin),
+            (Some((view_lights, bindings)), Some(origin)) => {
+                self.shadow_views.maps(&scene, lights.len(), view_lights, bindings, *origin)
+            }
             _ => Vec::new(),
         };
         lights.extend(scene.iter().map(|scene| scene.light));
@@ -229,8 +233,8 @@ fn prepare_systems(
 }
 
 /// Index of the system that an error is about: its field is `systems[INDEX].…`.
-fn refused_system(error: &Error) -> Option<usize> {
-    let Error::Field(error) = error else { return None };
+fn refused_system(error: &PrepareError) -> Option<usize> {
+    let PrepareError::Field(error) = error else { return None };
     error.field.strip_prefix("systems[")?.split(']').next()?.parse().ok()
 }
 
@@ -284,7 +288,7 @@ mod tests {
 
     #[test]
     fn errors_name_their_system() {
-        let error = |field: &str| Error::Field(FieldError::new(field, 1, "another"));
+        let error = |field: &str| PrepareError::Field(FieldError::new(field, 1, "another"));
         assert_eq!(refused_system(&error("systems[12].settings.path")), Some(12));
         assert_eq!(refused_system(&error("lights[1].range")), None);
     }

@@ -31,7 +31,8 @@ pub(crate) fn queue_smoke(
     renderers: Res<SmokeRenderers>,
     draw_functions: Res<DrawFunctions<Transparent3d>>,
     mut phases: ResMut<ViewSortedRenderPhases<Transparent3d>>,
-    (cache, pipeline): (Res<PipelineCache>, Res<CompositePipeline>),
+    cache: Res<PipelineCache>,
+    pipeline: Res<CompositePipeline>,
     mut pipelines: ResMut<SpecializedRenderPipelines<CompositePipeline>>,
     views: Query<(
         Entity,

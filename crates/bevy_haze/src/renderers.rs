@@ -1,6 +1,7 @@
 //! haze's renderers, one for each view.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::prelude::*;
@@ -11,7 +12,7 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::view::ExtractedView;
 use haze::preset::MAX_SYSTEMS;
-use haze::{Context, Error, Renderer, RendererDescriptor, wgpu};
+use haze::{Context, PrepareError, Renderer, RendererDescriptor};
 
 use crate::composite::CompositeBinding;
 use crate::extract::{ExtractedSmoke, ExtractedSmokes};
@@ -49,30 +50,31 @@ pub(crate) struct PassFormat {
 
 impl FromWorld for SmokeRenderers {
     fn from_world(world: &mut World) -> Self {
-        let (device, queue) = (world.resource::<RenderDevice>(), world.resource::<RenderQueue>());
-        let (device, queue): (&wgpu::Device, &wgpu::Queue) = (device.wgpu_device(), queue);
-        Self { context: Context::new(device, queue), views: HashMap::new() }
+        let device = world.resource::<RenderDevice>();
+        let queue = world.resource::<RenderQueue>();
+        Self { context: Context::new(device.wgpu_device(), queue), views: HashMap::new() }
     }
 }
 
 impl SmokeRenderers {
     /// Renderer of a view whose pass has this format.
-    pub fn ensure(&mut self, view: Entity, pass: PassFormat) -> Result<&mut ViewRenderer, Error> {
-        if self.views.get(&view).is_none_or(|kept| kept.pass != pass) {
-            let descriptor = RendererDescriptor {
-                color_format: pass.color,
-                depth_format: Some(pass.depth),
-                sample_count: pass.samples,
-                scene_color_format: Some(pass.scene_color),
-                ..RendererDescriptor::default()
-            };
-            let renderer = Renderer::new(&self.context, &descriptor)?;
-            let drawn = HashMap::new();
-            let made = ViewRenderer { pass, renderer, drawn, composite: None, reported: Vec::new() };
-            self.views.insert(view, made);
+    pub fn ensure(&mut self, view: Entity, pass: PassFormat) -> Result<&mut ViewRenderer, PrepareError> {
+        match self.views.entry(view) {
+            Entry::Occupied(kept) if kept.get().pass == pass => Ok(kept.into_mut()),
+            entry => {
+                let descriptor = RendererDescriptor {
+                    color_format: pass.color,
+                    depth_format: Some(pass.depth),
+                    sample_count: pass.samples,
+                    scene_color_format: Some(pass.scene_color),
+                    ..RendererDescriptor::default()
+                };
+                let renderer = Renderer::new(&self.context, &descriptor)?;
+                let drawn = HashMap::new();
+                let made = ViewRenderer { pass, renderer, drawn, composite: None, reported: Vec::new() };
+                Ok(entry.insert_entry(made).into_mut())
+            }
         }
-        // The entry was made above if it was missing.
-        self.views.get_mut(&view).ok_or_else(|| Error::Device("the renderer of a view is missing".into()))
     }
 
     /// Lets a view show nothing in this frame.
@@ -90,9 +92,9 @@ impl SmokeRenderers {
 
 impl ViewRenderer {
     /// Logs an error unless it has been logged. Its field identifies it: its numbers may change.
-    pub fn report(&mut self, view: MainEntity, error: &Error) {
+    pub fn report(&mut self, view: MainEntity, error: &PrepareError) {
         let identity = match error {
-            Error::Field(error) => error.field.clone(),
+            PrepareError::Field(error) => error.field.clone(),
             other => other.to_string(),
         };
         if !self.reported.contains(&identity) {

@@ -53,11 +53,13 @@ impl ShadowViews<'_, '_> {
         &self,
         lights: &[SceneLight],
         first_light: usize,
-        (view_lights, bindings): (&ViewLightEntities, &'a ViewShadowBindings),
+        view_lights: &ViewLightEntities,
+        bindings: &'a ViewShadowBindings,
         smoke: Vec3,
     ) -> Vec<LightShadow<'a>> {
         let layers = bindings.directional_light_depth_texture.size().depth_or_array_layers;
-        let (cubes, spots) = (self.mapped_points(false), self.mapped_points(true));
+        let cubes = self.mapped_points(false);
+        let spots = self.mapped_points(true);
         let faces = self.faces_by_light();
         let shadow = |(index, light): (usize, &SceneLight)| {
             let entity = light.entity;
@@ -137,7 +139,8 @@ fn clip_from_world(view: &ExtractedView) -> Mat4 {
 /// z/w, it is |∇z − (z/w) ∇w| / w.
 fn bias(clip_from_world: &Mat4, smoke: Vec3) -> f32 {
     let clip = *clip_from_world * smoke.extend(1.0);
-    let (depth, weight) = (clip_from_world.row(2).truncate(), clip_from_world.row(3).truncate());
+    let depth = clip_from_world.row(2).truncate();
+    let weight = clip_from_world.row(3).truncate();
     let w = clip.w.abs().max(1.0e-3);
     let slope = (depth - weight * (clip.z / w)).length() / w;
     if slope.is_finite() { BIAS * slope } else { 0.0 }

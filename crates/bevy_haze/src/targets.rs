@@ -88,7 +88,8 @@ pub(crate) fn prepare_targets(
             };
             cache.get(&device, descriptor)
         };
-        let (direct, samples) = (draws_directly(camera, tonemapping), msaa.samples());
+        let direct = draws_directly(camera, tonemapping);
+        let samples = msaa.samples();
         let targets = shared.entry((camera.target.clone(), size, samples, direct)).or_insert_with(|| SmokeTargets {
             // haze may attach a depth of its own, RENDER_ATTACHMENT is for its depth_source "host".
             depth_copy: (samples == 1).then(|| {

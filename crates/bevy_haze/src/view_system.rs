@@ -71,7 +71,7 @@ impl ViewSystem<'_> {
     }
 
     /// The system as haze takes it.
-    pub fn input(&self) -> ParticleSystem<'_> {
+    pub fn input(&self) -> ParticleSystem<'_, '_> {
         let (particles, bounds) = match (&self.smoke.source, self.buffer) {
             (Source::Particles(particles), _) => (Particles::Slice(particles), None),
             (Source::Buffer { count, bounds, .. }, Some(buffer)) => {

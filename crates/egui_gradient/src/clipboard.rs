@@ -5,7 +5,7 @@ use std::path::Path;
 use haze_author::ramp::gradient::check_not_empty;
 use haze_author::ramp::{HexColor, RampRow, RampStop};
 use haze_core::assets::json;
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 use haze_core::settings::validate;
 
 /// Returns the row as JSON, as in a recipe.
@@ -21,11 +21,11 @@ pub fn color(text: &str) -> Result<HexColor, String> {
 }
 
 /// Parses the stops of a copied row and sorts them.
-pub fn parse(text: &str) -> Result<Vec<RampStop>, Error> {
+pub fn parse(text: &str) -> Result<Vec<RampStop>, AssetError> {
     let path = Path::new("pasted text");
     let mut row: RampRow = json::parse(path, text)?;
     let valid = validate(&row, String::new).and_then(|()| check_not_empty("stops", &row.stops));
-    valid.map_err(|error| Error::JsonField { path: path.into(), error })?;
+    valid.map_err(|error| AssetError::JsonField { path: path.into(), error })?;
     super::stop_operations::sort(&mut row.stops);
     Ok(row.stops)
 }

@@ -79,7 +79,8 @@ fn position_field(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
 }
 
 fn color_and_curve(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
-    let (mut color, mut curve) = (lead.color, lead.curve);
+    let mut color = lead.color;
+    let mut curve = lead.curve;
     let label = ui.label("Color");
     if ui.color_edit_button_srgb(&mut color.0).labelled_by(label.id).changed() {
         context.recolor(color);

@@ -132,7 +132,11 @@ impl EditContext<'_> {
     /// Changes each selected stop.
     pub fn edit_each(&mut self, names: [&'static str; 2], mut change: impl FnMut(&mut RampStop)) {
         self.edit_selected(names, |all, selection| {
-            selection.iter().for_each(|index| all.get_mut(index).into_iter().for_each(&mut change));
+            for index in selection.iter() {
+                if let Some(stop) = all.get_mut(index) {
+                    change(stop);
+                }
+            }
         });
     }
 
@@ -143,7 +147,10 @@ impl EditContext<'_> {
 
     /// Replaces all stops.
     pub fn replace(&mut self, what: &'static str, stops: Vec<RampStop>) {
-        self.edit(what, |all, selection| (*all, *selection) = (stops, Selection::default()));
+        self.edit(what, |all, selection| {
+            *all = stops;
+            *selection = Selection::default();
+        });
     }
 
     /// Returns the lead: the stop whose values the fields show.
@@ -168,7 +175,8 @@ impl EditContext<'_> {
     pub fn cancel_drag(&mut self) {
         if let Some(Drag { before, .. }) = self.editor.dragged.take() {
             (*self.stops, self.editor.selection) = before;
-            (self.editor.pending, self.done) = (None, None);
+            self.editor.pending = None;
+            self.done = None;
         }
     }
 
@@ -177,7 +185,8 @@ impl EditContext<'_> {
         if !self.editor.has_keyboard && !self.editor.awaits_paste {
             return;
         }
-        let (mut copies, mut pasted) = (false, None);
+        let mut copies = false;
+        let mut pasted = None;
         if ui.input(|input| input.pointer.any_pressed()) {
             // No paste arrived, for example because the clipboard has no text.
             self.editor.awaits_paste = false;

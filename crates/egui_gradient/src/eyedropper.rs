@@ -76,7 +76,8 @@ impl Eyedropper {
         if self.frames != COVERED {
             return;
         }
-        let (screenshot, context) = (Arc::clone(&self.screenshot), ui.ctx().clone());
+        let screenshot = Arc::clone(&self.screenshot);
+        let context = ui.ctx().clone();
         ui.ctx().request_screenshot(move |image| {
             // Fails only if it is set already.
             let _ = screenshot.set(image);
@@ -121,7 +122,8 @@ impl Eyedropper {
             self.at = pointer;
         }
         if is_pressed {
-            (self.stroke, self.is_keyboard_stroke) = (vec![self.at], false);
+            self.stroke = vec![self.at];
+            self.is_keyboard_stroke = false;
         } else if is_down || self.is_keyboard_stroke {
             self.extend_stroke();
         }
@@ -162,14 +164,16 @@ impl Eyedropper {
                 Key::ArrowUp => Vec2::UP,
                 Key::ArrowDown => Vec2::DOWN,
                 Key::Space if !is_repeat && self.stroke.is_empty() => {
-                    (self.stroke, self.is_keyboard_stroke) = (vec![self.at], true);
+                    self.stroke = vec![self.at];
+                    self.is_keyboard_stroke = true;
                     continue;
                 }
                 Key::Enter | Key::Space if !is_repeat => {
                     if self.stroke.is_empty() {
                         self.stroke.push(self.at);
                     }
-                    (self.is_keyboard_stroke, self.is_released) = (false, true);
+                    self.is_keyboard_stroke = false;
+                    self.is_released = true;
                     continue;
                 }
                 key => {
@@ -196,7 +200,8 @@ impl Eyedropper {
         const CELL: f32 = 8.0;
         let (Some(screenshot), Some(color)) = (self.screenshot.get(), colors.last()) else { return };
         // Placed on the side with more room.
-        let (x, y) = (self.at.x > ui.ctx().viewport_rect().center().x, self.at.y > ui.ctx().viewport_rect().center().y);
+        let x = self.at.x > ui.ctx().viewport_rect().center().x;
+        let y = self.at.y > ui.ctx().viewport_rect().center().y;
         let side = |is_far: bool| if is_far { egui::Align::Max } else { egui::Align::Min };
         let away = |is_far: bool| if is_far { -20.0 } else { 20.0 };
         let area = Area::new(ui.scope_id().with("magnifier")).order(Order::Tooltip).interactable(false);
@@ -213,7 +218,8 @@ impl Eyedropper {
                     mesh.add_colored_rect(cell(x, y), color32(pixel));
                 }
                 ui.painter().add(mesh);
-                let (first, last) = (SEEN / 2 - sample_size.reach(), SEEN / 2 + sample_size.reach());
+                let first = SEEN / 2 - sample_size.reach();
+                let last = SEEN / 2 + sample_size.reach();
                 let taken = cell(first, first).union(cell(last, last));
                 for (grown, ink) in [(1.0, Color32::BLACK), (0.0, Color32::WHITE)] {
                     ui.painter().rect_stroke(

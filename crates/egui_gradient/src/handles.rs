@@ -4,7 +4,7 @@ use egui::{self, CursorIcon, EventFilter, Id, Key, Modifiers, PointerButton, Rec
 use egui::{pos2, vec2};
 
 use super::edit_context::{Drag, EditContext, MOVE, REMOVE, Selected};
-use super::paint::{color32, handle, readout};
+use super::paint::{HandleState, color32, handle, readout};
 use super::selection::Selection;
 use super::{handle_layout, stop_operations};
 
@@ -85,7 +85,8 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
     let places = handle_layout::spread(&wanted, lane.width(), GAP);
     // State before any edit in this frame.
     let before = (context.stops.clone(), context.editor.selection.clone());
-    let (mut focused, mut pointed_at) = (None, None);
+    let mut focused = None;
+    let mut pointed_at = None;
     let mut drawn = Vec::new();
     for ((index, place), wanted) in shown.zip(places).zip(wanted) {
         let stop = &before.0[index];
@@ -94,7 +95,7 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
         let response = ui.interact(rect.expand2(vec2(1.0, 2.0)), handle_id(ui, index), Sense::click_and_drag());
         let name = format!("stop {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(stop.at), &name));
-        handle_pointer(ui, context, (&response, index), &before);
+        handle_pointer(ui, context, &response, index, &before);
         if response.has_focus() {
             focused = Some(index);
         }
@@ -109,8 +110,9 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
     let (_, selection) = &before;
     drawn.sort_by_key(|(index, ..)| (selection.contains(*index), *index == selection.lead()));
     for (index, rect, x, color, is_hovered) in drawn {
-        let states = (selection.contains(index), is_hovered, focused == Some(index));
-        handle(ui, rect, pos2(x, strip.bottom()), color, states);
+        let state =
+            HandleState { is_selected: selection.contains(index), is_hovered, has_focus: focused == Some(index) };
+        handle(ui, rect, pos2(x, strip.bottom()), color, state);
     }
     context.editor.has_keyboard = focused.is_some();
     if let Some(index) = focused {
@@ -128,7 +130,7 @@ fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect)
 }
 
 /// Handles pointer input on a handle, and focus changes.
-fn handle_pointer(ui: &Ui, context: &mut EditContext<'_>, (response, index): (&Response, usize), before: &Selected) {
+fn handle_pointer(ui: &Ui, context: &mut EditContext<'_>, response: &Response, index: usize, before: &Selected) {
     let (origin, modifiers, is_space) =
         ui.input(|input| (input.pointer.press_origin(), input.modifiers, input.key_pressed(Key::Space)));
     if response.middle_clicked() {
@@ -207,7 +209,10 @@ fn handle_keys(ui: &Ui, context: &mut EditContext<'_>) {
             Key::ArrowDown => move_focus(context, (here + 1).min(last), modifiers),
             Key::Home => move_focus(context, 0, modifiers),
             Key::End => move_focus(context, last, modifiers),
-            Key::A => (context.editor.selection, context.editor.cursor) = (Selection::between(0, last), None),
+            Key::A => {
+                context.editor.selection = Selection::between(0, last);
+                context.editor.cursor = None;
+            }
             Key::Escape => context.select(context.editor.selection.lead(), Modifiers::NONE),
             _ => remove(context),
         }

@@ -76,7 +76,8 @@ impl GradientEditor {
         self.state.selection.clamp_to(row.stops.len());
         self.state.cursor = self.state.cursor.filter(|cursor| *cursor < row.stops.len());
         let mut edited = GradientResponse::default();
-        let (mut done, mut is_held) = (None, false);
+        let mut done = None;
+        let mut is_held = false;
         ui.push_id("gradient", |ui| {
             let at = before.at;
             let mut context = EditContext {
@@ -92,7 +93,8 @@ impl GradientEditor {
             controls::update_eyedropper(ui, &mut context, options.blend);
             controls::show(ui, &mut context, at, options.blend);
             is_held = is_interacting(ui, context.editor.has_keyboard);
-            (edited.refused, done) = (context.refused, context.done);
+            edited.refused = context.refused;
+            done = context.done;
         });
         edited.is_changed = *row != before;
         if edited.is_changed {

@@ -45,7 +45,8 @@ pub fn field(
     number: f32,
     style: impl for<'a> FnOnce(&mut Ui, DragValue<'a>) -> Response,
 ) -> (Response, Option<NumberInput>) {
-    let (typed, way) = (Cell::new(false), Cell::new(None));
+    let typed = Cell::new(false);
+    let way = Cell::new(None);
     let mut shown = number;
     let parse = |text: &str| match NumberInput::parse(text)? {
         NumberInput::Set(to) => {

@@ -66,14 +66,17 @@ pub fn ticks(ui: &Ui, stops: &[RampStop], strip: Rect) {
     }
 }
 
+/// State of a handle that shows.
+#[derive(Clone, Copy)]
+pub struct HandleState {
+    pub is_selected: bool,
+    pub is_hovered: bool,
+    pub has_focus: bool,
+}
+
 /// Draws a handle and a line to its stop's position.
-pub fn handle(
-    ui: &Ui,
-    rect: Rect,
-    place: Pos2,
-    color: Color32,
-    (is_selected, is_hovered, has_focus): (bool, bool, bool),
-) {
+pub fn handle(ui: &Ui, rect: Rect, place: Pos2, color: Color32, state: HandleState) {
+    let HandleState { is_selected, is_hovered, has_focus } = state;
     let visuals = ui.visuals();
     let ink = if is_selected { visuals.selection.stroke.color } else { visuals.text_color() };
     let stroke = Stroke::new(if is_selected || is_hovered { 2.0 } else { 1.0 }, ink);
@@ -87,7 +90,8 @@ pub fn handle(
 /// Draws a histogram with heights from 0 to 1 over a rectangle: translucent columns and a line along their tops.
 pub fn histogram(ui: &Ui, rect: Rect, bins: &[f32], color: Color32) {
     let width = rect.width() / bins.len().max(1) as f32;
-    let (mut mesh, mut outline) = (Mesh::default(), Vec::new());
+    let mut mesh = Mesh::default();
+    let mut outline = Vec::new();
     for (index, bin) in bins.iter().enumerate() {
         let left = rect.left() + index as f32 * width;
         // The square root makes rare values visible.

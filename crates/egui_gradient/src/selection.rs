@@ -62,7 +62,8 @@ impl Selection {
     /// Makes another selected stop the lead.
     pub fn set_lead(&mut self, index: usize) {
         if self.contains(index) {
-            (self.lead, self.anchor) = (index, index);
+            self.lead = index;
+            self.anchor = index;
         }
     }
 
@@ -75,10 +76,12 @@ impl Selection {
     pub fn toggle(&mut self, index: usize) {
         if !self.all.remove(&index) {
             self.all.insert(index);
-            (self.lead, self.anchor) = (index, index);
+            self.lead = index;
+            self.anchor = index;
         } else if let Some(nearest) = self.all.iter().min_by_key(|other| other.abs_diff(index)).copied() {
             if self.lead == index {
-                (self.lead, self.anchor) = (nearest, nearest);
+                self.lead = nearest;
+                self.anchor = nearest;
             }
         } else {
             self.all.insert(index);

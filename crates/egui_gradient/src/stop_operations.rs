@@ -162,7 +162,8 @@ fn reversed(stops: &[RampStop], sum: f32, from: f32, to: f32) -> Vec<RampStop> {
     let Some(last) = stops.last() else { return Vec::new() };
     // True if the segment after a stop is constant and not empty.
     let is_held = |index: usize| {
-        let (stop, next) = (&stops[index], stops.get(index + 1));
+        let stop = &stops[index];
+        let next = stops.get(index + 1);
         stop.curve == Curve::Constant && next.is_some_and(|next| next.at > stop.at)
     };
     let mut flipped = Vec::with_capacity(stops.len() + 1);

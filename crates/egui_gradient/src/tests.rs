@@ -35,7 +35,8 @@ fn a_click_adds_a_stop_with_the_color_at_that_position() {
     click(&mut harness, at, Modifiers::COMMAND);
     assert_eq!(places(&harness), [0.0, 0.25, 0.6, 1.0]);
     // A press followed by a drag adds a stop and moves it, in one step.
-    let (at, width) = (on_strip(&harness, 0.8), strip(&harness).width());
+    let at = on_strip(&harness, 0.8);
+    let width = strip(&harness).width();
     drag(&mut harness, at, 0.1 * width, NONE);
     assert_eq!(places(&harness), [0.0, 0.25, 0.6, 0.9, 1.0]);
     assert_eq!(steps(&harness).len(), 3);
@@ -44,7 +45,8 @@ fn a_click_adds_a_stop_with_the_color_at_that_position() {
 #[test]
 fn a_drag_is_one_step_and_can_pass_other_stops() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (0.5, 20), (1.0, 30)]);
-    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    let from = handle(&harness, 1).center();
+    let width = strip(&harness).width();
     drag(&mut harness, from, 0.4 * width, NONE);
     assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.5, 0.7, 1.0], vec![0, 20, 10, 30]));
     assert!(harness.state().changes > 2, "the host sees it on its way");
@@ -192,7 +194,8 @@ fn each_button_is_one_undo_step() {
 fn ten_thousand_stops_can_be_edited() {
     let list: Vec<_> = (0..10_000u32).map(|index| (index as f32 / 9999.0, index as u8)).collect();
     let mut harness = host(&list);
-    let (lane, width) = (strip(&harness).bottom() + 3.0, strip(&harness).width());
+    let lane = strip(&harness).bottom() + 3.0;
+    let width = strip(&harness).width();
     let at = pos2(strip(&harness).left() + 0.75 * width, lane);
     click(&mut harness, at, NONE);
     let selected = harness.state().editor.state.selection.lead();

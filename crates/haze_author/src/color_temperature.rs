@@ -73,8 +73,9 @@ mod tests {
 
     #[test]
     fn warm_is_red_and_cold_is_blue() {
-        let (candle, day, sky) =
-            (color_of_temperature(1900.0), color_of_temperature(6500.0), color_of_temperature(12_000.0));
+        let candle = color_of_temperature(1900.0);
+        let day = color_of_temperature(6500.0);
+        let sky = color_of_temperature(12_000.0);
         assert!(candle.x > 0.999 && candle.y < 0.3 && candle.z < 0.05, "{candle}");
         assert!(day.min_element() > 0.9, "{day}");
         assert!(sky.z > 0.999 && sky.x < 0.6, "{sky}");

@@ -186,7 +186,8 @@ fn measured(body: Body, elevation: f32) -> Measured {
     let sine = elevation.to_radians().sin().max(0.0);
     match body {
         Body::Sun => {
-            let (all, mass) = (illuminance(&SUN_CURVE, elevation), air_mass(elevation));
+            let all = illuminance(&SUN_CURVE, elevation);
+            let mass = air_mass(elevation);
             let sun = color_of_temperature(SUN_KELVIN);
             // The last of the disc sets at -0.8°. Haze and hills take its light from 3° on.
             let risen = ((elevation + 0.8) / 3.8).clamp(0.0, 1.0);
@@ -199,7 +200,8 @@ fn measured(body: Body, elevation: f32) -> Measured {
             let mass = color_mass(mass);
             // In twilight, the sun reaches only the thin air high above, and the sky turns blue.
             let more = SCATTERED_AGAIN + 0.5 * (-elevation / 8.0).clamp(0.0, 1.0);
-            let (zenith, horizon) = (sky_color(1.0, mass, more), sky_color(HORIZON_MASS, mass, more));
+            let zenith = sky_color(1.0, mass, more);
+            let horizon = sky_color(HORIZON_MASS, mass, more);
             Measured { direct, sky, color: transmission(mass) * sun, zenith, horizon }
         }
         Body::Moon => {
@@ -226,7 +228,8 @@ impl Daylight {
         let unit = NOON / (noon.direct * adaptation(&noon));
         let light = measured(body, elevation);
         let of_lux = unit * adaptation(&light);
-        let (direct, sky) = (light.direct * of_lux, light.sky * of_lux);
+        let direct = light.direct * of_lux;
+        let sky = light.sky * of_lux;
         let color = light.color / light.color.max_element();
         let on_ground = direct * elevation.to_radians().sin().max(0.0) * hue(color);
         // Luminance of the colors together is that of the sky: they are its halves.
@@ -273,15 +276,20 @@ pub fn set_time(preset: &mut Preset, index: usize, body: Body, angles: Angles, p
     let scale = brightness(sun.color, sun.intensity) / brightness(before.color, before.intensity);
     let scale = if SCALES.contains(&scale) { scale } else { 1.0 };
     let light = Daylight::new(body, angles.elevation);
-    (sun.direction, sun.color, sun.intensity) = (from_angles(angles), light.color, scale * light.intensity);
+    sun.direction = from_angles(angles);
+    sun.color = light.color;
+    sun.intensity = scale * light.intensity;
     let most = Vec3::splat(MAX_COLOR);
     let [zenith, horizon, sky, ground] =
         [light.zenith, light.horizon, light.sky, light.ground].map(|color| (color * scale).min(most));
     let environment = &mut preset.environment;
-    (environment.zenith, environment.horizon, environment.ground) = (zenith, horizon, ground);
+    environment.zenith = zenith;
+    environment.horizon = horizon;
+    environment.ground = ground;
     for system in &mut preset.systems {
         let ambient = &mut system.settings.ambient;
-        (ambient.sky_color, ambient.ground_color) = (sky, ground);
+        ambient.sky_color = sky;
+        ambient.ground_color = ground;
     }
     for fill in preset.lights.iter_mut().filter(|light| light.role == LightRole::Fill) {
         fill.color = sky / sky.max_element().max(f32::MIN_POSITIVE);
@@ -362,7 +370,8 @@ mod tests {
     #[test]
     fn brightness_has_no_steps() {
         for tenths in -119..=890 {
-            let (a, b) = (sun(tenths), sun(tenths + 1));
+            let a = sun(tenths);
+            let b = sun(tenths + 1);
             for [a, b] in [[a.intensity, b.intensity], [luminance(a.sky), luminance(b.sky)]] {
                 // A rising sun doubles its light in a degree.
                 assert!((a / b - 1.0).abs() < 0.11, "{tenths}: {a} {b}");
@@ -396,7 +405,8 @@ mod tests {
 
     #[test]
     fn moonlight_is_dim_and_blue_but_not_black() {
-        let (moon, noon) = (Daylight::new(Body::Moon, 35.0), sun(600));
+        let moon = Daylight::new(Body::Moon, 35.0);
+        let noon = sun(600);
         let ratio = moon.intensity * luminance(moon.color) / (noon.intensity * luminance(noon.color));
         assert!((0.01..0.15).contains(&ratio), "{ratio}");
         assert!(moon.color.z > moon.color.x && luminance(moon.sky) < 0.1 * luminance(noon.sky), "{moon:?}");

@@ -46,7 +46,8 @@ pub fn cos_sin(angle: f32) -> Vec2 {
         let step = |sum: f64, term: i32| 1.0 - sum * t * t / f64::from((2 * term + first - 1) * (2 * term + first));
         (1..10).rev().fold(1.0, step)
     };
-    let (cos, sin) = (series(0) as f32, (series(1) * t) as f32);
+    let cos = series(0) as f32;
+    let sin = (series(1) * t) as f32;
     match (quarters as i64).rem_euclid(4) {
         0 => Vec2::new(cos, sin),
         1 => Vec2::new(-sin, cos),

@@ -13,4 +13,5 @@ pub mod particle_files;
 pub mod path_trace;
 pub mod preset;
 pub mod ramp;
+pub mod simulation;
 pub mod sprite;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::json;
-use haze_core::error::{Error, FieldError};
+use haze_core::error::{AssetError, FieldError};
 use haze_core::formula::gradient_noise::tiling_noise;
 use haze_core::settings::{FieldVisitor, Fields, validate};
 use image::{Rgba, RgbaImage};
@@ -46,8 +46,8 @@ impl NoiseRecipe {
     /// Loads a `*.noise.json`.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
-    pub fn load(path: &Path) -> Result<Self, Error> {
+    /// [`AssetError::Io`], [`AssetError::Text`] or [`AssetError::JsonField`].
+    pub fn load(path: &Path) -> Result<Self, AssetError> {
         json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
     }
 
@@ -77,7 +77,8 @@ impl NoiseRecipe {
     fn sample(&self, voxel: UVec3) -> Vec4 {
         let place = (voxel.as_vec3() + 0.5) / self.size as f32;
         let mut sum = Vec4::ZERO;
-        let (mut period, mut weight) = (self.cells, 1.0);
+        let mut period = self.cells;
+        let mut weight = 1.0;
         for octave in 0..self.octaves {
             let noise = tiling_noise(place * period as f32, period, self.seed.wrapping_add(octave * 7919));
             let gradient: Vec3 = noise.gradient * period as f32;

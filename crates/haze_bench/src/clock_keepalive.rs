@@ -6,7 +6,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use glam::UVec2;
-use haze::{Error, wgpu};
+use haze::wgpu;
+use haze_core::error::Error;
 use haze_core::settings::AccumulationFormat;
 use haze_demo::headless::Headless;
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 use haze_export::output::{Failures, print_error, print_line};
 
 use super::report::{Report, Row};
@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
             distinct(&before.rows, |row| &row.suite)
         );
         let error = std::io::Error::new(std::io::ErrorKind::InvalidData, what);
-        return Err(Error::Io { path: arguments.after.clone(), error }.into());
+        return Err(Error::from(AssetError::Io { path: arguments.after.clone(), error }).into());
     }
     let [first, second] = [&before, &after].map(|report| distinct(&report.rows, |row| &row.size));
     if first != second {
@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     }
     let path = arguments.after.clone();
     let what = format!("{slower} of {} rows are more than {} % slower", both.len(), arguments.slower);
-    Err(Error::Io { path, error: std::io::Error::other(what) }.into())
+    Err(Error::from(AssetError::Io { path, error: std::io::Error::other(what) }).into())
 }
 
 /// Different texts of a field of some rows.
@@ -104,7 +104,7 @@ fn read(path: &Path) -> Result<Report, Error> {
     let report = report_json::read(path)?;
     for (index, row) in report.rows.iter().enumerate() {
         let name = format!("rows[{index}] ({} {})", row.suite, row.case);
-        row.gpu_ms.validate(&name).map_err(|error| Error::JsonField { path: path.into(), error })?;
+        row.gpu_ms.validate(&name).map_err(|error| Error::from(AssetError::JsonField { path: path.into(), error }))?;
     }
     if !report.complete {
         let path = path.display();

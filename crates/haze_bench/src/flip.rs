@@ -39,7 +39,8 @@ mod tests {
     fn flip_is_0_for_equal_images_and_grows_with_the_difference() {
         let gray = |value: u8| RgbImage::from_pixel(64, 64, image::Rgb([value; 3]));
         assert!(flip_of(&gray(100), &gray(100)) < 1e-6);
-        let (near, far) = (flip_of(&gray(100), &gray(110)), flip_of(&gray(100), &gray(200)));
+        let near = flip_of(&gray(100), &gray(110));
+        let far = flip_of(&gray(100), &gray(200));
         assert!(0.0 < near && near < far && far <= 1.0, "{near} {far}");
         let [gray_100, gray_110, gray_200] = [100, 110, 200].map(gray);
         let pairs = [[&gray_100, &gray_110], [&gray_100, &gray_200], [&gray_100, &gray_100]];

@@ -1,7 +1,7 @@
 //! Suite `frame`: the passes of each preset's frame at each scale, on the path that `auto` takes.
 
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::Error;
 use haze_core::settings::RenderPath;
 use haze_demo::shot::Shot;
 use haze_preset::builtin;

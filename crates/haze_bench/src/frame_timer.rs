@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use haze::Error;
+use haze_core::error::Error;
 use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::OffscreenRenderer;
 use haze_demo::shot::Shot;
@@ -57,7 +57,7 @@ pub fn measure_interleaved(
 
 /// Seconds of work beside which the jitter of a frame is small.
 const MIN_SECONDS: f64 = 0.05;
-/// Most passes over the sprites; with the single pass they are compared with, within the range of `debug_loop`.
+/// Most passes over the sprites; with the single pass they are compared with, within the range of `debug.draw_count`.
 const MAX_LOOPS: u32 = 8192;
 
 /// Measures the time of a shot's smoke.
@@ -110,7 +110,7 @@ impl<'a> FrameTimer<'a> {
     pub fn seconds_per_pass(&mut self, shot: &Shot, loops: u32) -> Result<f64, Error> {
         let mut shot = shot.clone();
         let mut frame = |times: u32| {
-            shot.preset.systems.iter_mut().for_each(|system| system.settings.sprite.debug_loop = times);
+            shot.preset.systems.iter_mut().for_each(|system| system.settings.debug.draw_count = times);
             self.frame_seconds(&shot)
         };
         Ok((frame(loops + 1)? - frame(1)?) / f64::from(loops))

@@ -30,7 +30,7 @@ mod terminal_table;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use haze::Error;
+use haze_core::error::Error;
 use haze_preset::write_file;
 
 use haze_export::output::{Failures, FileChecks, write_text};
@@ -80,5 +80,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 
 fn make_page(report: &Path, output: &Path) -> Result<(), Error> {
     FileChecks::for_inputs([report]).check_output("--output", output, "html")?;
-    write_file(output, page::page(&report_json::read(report)?).as_bytes())
+    Ok(write_file(output, page::page(&report_json::read(report)?).as_bytes())?)
 }

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use glam::UVec2;
-use haze::{Error, wgpu};
+use haze::wgpu;
+use haze_core::error::Error;
 use haze_core::settings::AccumulationFormat;
 use haze_demo::headless::Headless;
 

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use glam::UVec2;
-use haze::{Error, wgpu};
+use haze::wgpu;
+use haze_core::error::Error;
 use haze_core::settings::AccumulationFormat;
 use haze_demo::headless::Headless;
 use haze_export::interrupt;
@@ -41,7 +42,8 @@ pub fn measure(gpu: &Headless, keepalive: &ClockKeepalive<'_>, size: UVec2, quic
     let bench = LimitBench::new(gpu, size);
     let cases = limit_cases(&bench, layers);
     gpu.check()?;
-    let (mut times, mut discarded) = (vec![Vec::new(); cases.len()], 0);
+    let mut times = vec![Vec::new(); cases.len()];
+    let mut discarded = 0;
     for round in 0..=rounds {
         if interrupt::is_requested() {
             break;

@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
-use haze::{Error, FrameTimes, Timing, TimingDetail, wgpu};
+use haze::{FrameTimes, Timing, TimingDetail, wgpu};
 use haze_author::particle_files::{self, ParticleFrames};
+use haze_core::error::Error;
 use haze_core::settings::{AccumulationFormat, DebugView, RenderPath};
 use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
@@ -114,7 +115,8 @@ impl<'a> CaseBench<'a> {
         let started = Instant::now();
         let mut least = None;
         let reference = self.reference(group)?;
-        let (mut running, mut pictures) = (Vec::new(), Vec::new());
+        let mut running = Vec::new();
+        let mut pictures = Vec::new();
         for case in &group.cases {
             check_stop()?;
             match self.start_case(case, &reference)? {
@@ -273,7 +275,7 @@ impl<'a> CaseBench<'a> {
         };
         let alive = shot.preset.systems.iter().zip(&shot.caches).map(alive).sum();
         Some(Row {
-            scale: (!is_forward).then_some(settings.accumulate.scale),
+            scale: (!is_forward).then_some(settings.accumulate.downscale),
             format: Some(format.name().into()),
             path: Some(settings.path.name().into()),
             mode: match settings.path {

@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
-use haze::{Context, Error, FrameInput, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth, wgpu};
+use haze::{Context, FrameInput, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth, wgpu};
 use haze_author::particle_files;
+use haze_core::error::Error;
 use haze_core::frame::EmitterPaths;
 use haze_core::settings::BlendOrder;
 use haze_demo::headless::Headless;
@@ -21,7 +22,8 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {
         return Ok(Vec::new());
     };
-    let (device, context) = (&gpu.device, Context::new(&gpu.device, &gpu.queue));
+    let device = &gpu.device;
+    let context = Context::new(&gpu.device, &gpu.queue);
     let depth = gpu.target("depth", shot.size, wgpu::TextureFormat::Depth32Float);
     let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
     let view = shot.preset.camera.view(shot.size);

@@ -1,13 +1,14 @@
 //! Measures the image error of a saving, and checks that an image is right at all.
 
-use glam::{UVec2, Vec2, Vec4};
-use haze::Error;
+use glam::{UVec2, Vec4};
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_demo::headless::Headless;
 use haze_demo::image_metrics::PsnrReport;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::{exposure, tonemap};
+use haze_demo::tonemap_pass::{display_transform, tonemap};
 use image::RgbImage;
 
 use crate::flip::flips;
@@ -24,7 +25,7 @@ pub struct Quality {
 /// Full-resolution image that the images of a group are compared with.
 pub struct Reference {
     picture: Image<Vec4>,
-    exposure: f32,
+    transform: DisplayTransform,
     tonemapped: RgbImage,
     /// View depth of the scene, metres, if the device can read it back.
     depth: Option<Image<f32>>,
@@ -38,7 +39,7 @@ impl Reference {
             Some(depth) => Some(Image { size: picture.size, texels: gpu.read_r32float(depth)? }),
             None => None,
         };
-        Ok(Self { exposure: exposure(shot), tonemapped: tonemap(&picture, shot), picture, depth })
+        Ok(Self { transform: display_transform(shot), tonemapped: tonemap(&picture, shot), picture, depth })
     }
 
     /// Compares another image with this one, except for FLIP, which is slow. Also returns the tonemapped image
@@ -50,8 +51,8 @@ impl Reference {
         shot: &Shot,
     ) -> Result<(Quality, RgbImage), Error> {
         let picture = renderer.read(gpu, shot)?;
-        let exposures = Vec2::new(exposure(shot), self.exposure);
-        let apart = PsnrReport::compare(&picture, &self.picture, exposures, self.depth.as_ref());
+        let transforms = [display_transform(shot), self.transform];
+        let apart = PsnrReport::compare([&picture, &self.picture], transforms, self.depth.as_ref());
         let finite = |db: f32| db.is_finite().then_some(f64::from(db));
         let quality =
             Quality { psnr_db: finite(apart.psnr), flip: None, edge_psnr_db: apart.edge_psnr.and_then(finite) };
@@ -79,7 +80,7 @@ pub fn check_image(gpu: &Headless, context: &OffscreenContext, shot: &Shot) -> R
     for system in &mut shot.preset.systems {
         let fewer = (MAX_SPRITES / system.emitter.max_alive() as f32).min(1.0);
         system.emitter.rate *= fewer;
-        system.settings.sprite.debug_loop = 1;
+        system.settings.debug.draw_count = 1;
         // The fewer sprites cover the same area.
         system.settings.sprite.size /= fewer.sqrt();
     }
@@ -92,8 +93,8 @@ pub fn check_image(gpu: &Headless, context: &OffscreenContext, shot: &Shot) -> R
     if drawn.texels.iter().any(|texel| !texel.is_finite()) {
         return Ok(Err("its image has pixels that are NaN or infinite".into()));
     }
-    let exposure = Vec2::splat(exposure(&shot));
-    let apart = PsnrReport::compare(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
+    let transforms = [display_transform(&shot); 2];
+    let apart = PsnrReport::compare([&drawn, &shot.render_on_cpu()?], transforms, None).psnr;
     let reason = || {
         format!("its image has {apart:.0} dB PSNR against the CPU renderer; expected at least {MIN_AGREEMENT_DB} dB")
     };

@@ -81,9 +81,11 @@ pub fn auto_cases(report: &Report) -> Vec<AutoCase> {
     let of = |path: &str, what: &str| rows().find(|row| row.case == format!("{path} {what}")).map(|row| row.gpu_ms.min);
     let case = |row: &Row| {
         let what = row.case.strip_prefix("auto ")?;
-        let (raster_ms, tiled_ms) = (of("raster", what)?, of("tiled", what)?);
+        let raster_ms = of("raster", what)?;
+        let tiled_ms = of("tiled", what)?;
         let chosen_path = row.mode.clone()?;
-        let (layers, auto_ms) = (row.layers?, row.gpu_ms.min);
+        let layers = row.layers?;
+        let auto_ms = row.gpu_ms.min;
         let taken_ms = auto_ms.min(if chosen_path == "tiled" { tiled_ms } else { raster_ms });
         let loss = taken_ms / raster_ms.min(tiled_ms).min(taken_ms) - 1.0;
         Some(AutoCase { what: what.into(), layers, raster_ms, tiled_ms, auto_ms, chosen_path, loss })
@@ -111,10 +113,13 @@ pub fn recommendation(report: &Report) -> Option<String> {
     let rows = || report.rows.iter().filter(|row| row.is_of(Suite::Scale));
     let forwards = rows().filter(|row| row.path.as_deref() == Some("forward"));
     let forward = forwards.max_by(|a, b| a.layers.unwrap_or(0.0).total_cmp(&b.layers.unwrap_or(0.0)))?;
-    let (layers, forward_ms) = (forward.layers?, forward.gpu_ms.median);
+    let layers = forward.layers?;
+    let forward_ms = forward.gpu_ms.median;
     let is_as_deep = |row: &&Row| row.particles == forward.particles && row.scale.is_some() && is_good(row);
     let best = rows().filter(is_as_deep).min_by(|a, b| a.gpu_ms.median.total_cmp(&b.gpu_ms.median))?;
-    let (path, scale, format) = (best.path.as_deref()?, best.scale?, best.format.as_deref()?);
+    let path = best.path.as_deref()?;
+    let scale = best.scale?;
+    let format = best.format.as_deref()?;
     let picture = match (best.psnr_db, best.flip) {
         (Some(psnr), Some(flip)) => format!("with {psnr:.0} dB PSNR and FLIP {flip:.3} against full resolution"),
         _ => "with the image of full resolution".into(),

@@ -194,11 +194,13 @@ impl Milliseconds {
     /// Sorts the times and returns their statistics; `None` without times.
     pub fn of(times: &mut [f64]) -> Option<Self> {
         times.sort_by(f64::total_cmp);
-        let (&min, &max) = (times.first()?, times.last()?);
+        let &min = times.first()?;
+        let &max = times.last()?;
         // Interpolates linearly between the two nearest times.
         let at = |share: f64| {
             let place = (times.len() - 1) as f64 * share;
-            let (low, high) = (times[place.floor() as usize], times[place.ceil() as usize]);
+            let low = times[place.floor() as usize];
+            let high = times[place.ceil() as usize];
             low + (high - low) * place.fract()
         };
         Some(Self { median: at(0.5), min, max, quartiles: [at(0.25), at(0.75)] })

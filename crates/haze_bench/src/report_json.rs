@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use haze::Error;
 use haze_core::assets::json::load;
+use haze_core::error::Error;
 
 use super::report::{Report, VERSION};
 
@@ -12,7 +12,7 @@ use super::report::{Report, VERSION};
 /// # Errors
 /// Names the file, the line and what is wrong.
 pub fn read(path: &Path) -> Result<Report, Error> {
-    load(path, VERSION, |_: &Report| Ok(()))
+    Ok(load(path, VERSION, |_: &Report| Ok(()))?)
 }
 
 /// Serializes a report, for jq and spreadsheets; [`schema`] describes the format.

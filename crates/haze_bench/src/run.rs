@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use clap::Args;
 use glam::UVec2;
-use haze::{Error, wgpu};
+use haze::wgpu;
+use haze_core::error::Error;
 use haze_demo::headless::Headless;
 use haze_export::interrupt;
 use haze_export::options::{parse_size, whole_number};
@@ -99,7 +100,9 @@ fn measure(arguments: &Arguments, gpu: &Headless, keepalive: &ClockKeepalive<'_>
     let longest = Duration::from_millis(if arguments.quick { 1500 } else { 2000 });
     let mut bench = CaseBench::new(gpu, keepalive, longest);
     let result = bench.measure_paths().and_then(|()| arguments.all(gpu, keepalive, &mut bench, size));
-    (report.discarded, report.rows, report.left_out) = (bench.discarded, bench.rows, bench.left_out);
+    report.discarded = bench.discarded;
+    report.rows = bench.rows;
+    report.left_out = bench.left_out;
     report.complete = result.is_ok();
     (report, result.err())
 }

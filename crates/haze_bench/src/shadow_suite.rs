@@ -1,7 +1,8 @@
 //! Suite `shadow`: smoke that shades smoke, by number of lights, resolution of the grid, and path.
 
 use glam::{UVec2, Vec3};
-use haze::{Error, Light, LightKind};
+use haze::{Light, LightKind};
+use haze_core::error::Error;
 use haze_core::formula::shadow::SHADOWED_LIGHTS;
 use haze_core::settings::{RenderPath, Settings};
 use haze_demo::shot::Shot;

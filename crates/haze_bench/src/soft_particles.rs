@@ -5,7 +5,8 @@
 use std::path::Path;
 
 use clap::Args;
-use haze::{Error, read_only_depth_is_supported};
+use haze::read_only_depth_is_supported;
+use haze_core::error::Error;
 use haze_core::settings::{DepthSource, Technique};
 use haze_demo::shot::Shot;
 use haze_export::backend::Backend;
@@ -53,7 +54,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
             let mut shot = shot.clone();
             for system in &mut shot.preset.systems {
                 let settings = &mut system.settings;
-                (settings.technique, settings.sprite.debug_loop) = (technique, arguments.loops);
+                settings.technique = technique;
+                settings.debug.draw_count = arguments.loops;
                 settings.path = arguments.run.path.unwrap_or(settings.path);
                 settings.accumulate.depth_source = source;
             }

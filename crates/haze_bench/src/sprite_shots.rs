@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec3};
-use haze::Error;
 use haze_core::assets::sprite::Sprite;
+use haze_core::error::Error;
 use haze_demo::shot::Shot;
 use haze_preset::Preset;
 
@@ -13,7 +13,8 @@ pub fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {
     let path = Path::new("layers.json");
     let mut preset = Preset::parse(path, include_str!("soft_particles.json"))?;
     for system in &mut preset.systems {
-        (system.emitter.rate, system.emitter.amount) = (count as f32, amount);
+        system.emitter.rate = count as f32;
+        system.emitter.amount = amount;
         system.emitter.spin = 1.0;
     }
     Shot::new(preset, path, size)
@@ -28,13 +29,18 @@ pub fn sprite_count(layers: u32) -> u32 {
 /// Mean alpha of what is drawn of a sprite whose amount is 1: of the bounding rectangles of its frames' non-zero
 /// texels.
 pub fn mean_alpha(sprite: &Sprite) -> f32 {
-    let (size, mut sum, mut texels) = (sprite.size(), 0.0, 0.0);
+    let size = sprite.size();
+    let mut sum = 0.0;
+    let mut texels = 0.0;
     for frame in 0..sprite.frame_count() {
-        let (mut low, mut high, mut of_frame) = (UVec2::MAX, UVec2::ZERO, 0.0);
+        let mut low = UVec2::MAX;
+        let mut high = UVec2::ZERO;
+        let mut of_frame = 0.0;
         for (x, y) in (0..size).flat_map(|y| (0..size).map(move |x| (x, y))) {
             let alpha = sprite.texel(0, frame, x, y).w;
             if alpha > 0.0 {
-                (low, high) = (low.min(UVec2::new(x, y)), high.max(UVec2::new(x, y) + 1));
+                low = low.min(UVec2::new(x, y));
+                high = high.max(UVec2::new(x, y) + 1);
                 of_frame += alpha;
             }
         }
@@ -76,7 +82,8 @@ pub fn small_sprites(size: UVec2, count: u32, deep: f32, extent: CrowdExtent) ->
     let mut shot = layers(size, count, 0.1)?;
     for system in &mut shot.preset.systems {
         let emitter_extent = Vec3::new(2.0 * extent.images, 1.1 * extent.images, 0.8);
-        (system.emitter.duration, system.emitter.extent) = (1.0, emitter_extent);
+        system.emitter.duration = 1.0;
+        system.emitter.extent = emitter_extent;
         system.settings.sprite.size *= (deep / (extent.mean_coverage * count as f32)).sqrt();
     }
     Ok(shot)

@@ -1,7 +1,7 @@
 //! Suite `sprites`: what each value that sprites carry costs, by path.
 
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::Error;
 use haze_core::settings::{RenderPath, Settings};
 use haze_demo::shot::Shot;
 

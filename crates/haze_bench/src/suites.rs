@@ -1,7 +1,8 @@
 //! Suites of the benchmark: groups of shots that are measured in turn and compared with each other.
 
 use glam::{UVec2, Vec3};
-use haze::{Error, Light};
+use haze::Light;
+use haze_core::error::Error;
 use haze_core::settings::{
     AccumulationFormat, BlendOrder, DepthDownsample, FadeCurve, LightingResolution, NormalEncoding, RenderPath,
     Settings, Technique, Traversal, Upsample,
@@ -30,7 +31,7 @@ fn paths_and_layers() -> impl Iterator<Item = (RenderPath, Traversal)> {
 }
 
 /// Name of a path in rows.
-fn path_name((path, layers): (RenderPath, Traversal)) -> String {
+fn path_name(path: RenderPath, layers: Traversal) -> String {
     if path == RenderPath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
 }
 
@@ -88,7 +89,8 @@ fn set_format(settings: &mut Settings, format: AccumulationFormat) {
     settings.accumulate.format = format;
     if format == AccumulationFormat::Rgba8Unorm {
         // Rgba8Unorm supports no other encoding and order.
-        (settings.accumulate.encoding, settings.accumulate.order) = (NormalEncoding::Biased, BlendOrder::Sorted);
+        settings.accumulate.encoding = NormalEncoding::Biased;
+        settings.accumulate.order = BlendOrder::Sorted;
     }
 }
 
@@ -96,13 +98,13 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let depths: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
     let alphas: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
     let group = |shot: Shot, sprites: String, work: f64| {
-        let case = |way: (RenderPath, Traversal)| Case {
-            name: format!("{} {sprites}", path_name(way)),
+        let case = |(path, layers): (RenderPath, Traversal)| Case {
+            name: format!("{} {sprites}", path_name(path, layers)),
             shot: changed(&shot, |settings| {
-                at_scale(way.0, 1)(settings);
-                settings.accumulate.layers = way.1;
+                at_scale(path, 1)(settings);
+                settings.accumulate.layers = layers;
             }),
-            work: (format!("overdraw {}", path_name(way)), work),
+            work: (format!("overdraw {}", path_name(path, layers)), work),
         };
         Group {
             suite: Suite::Overdraw,
@@ -162,7 +164,8 @@ fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                         s.accumulate.lighting_resolution = resolution;
                     })
                 };
-                let (shot, lit) = (lit_at(LightingResolution::Full), lit_at(LightingResolution::Target));
+                let shot = lit_at(LightingResolution::Full);
+                let lit = lit_at(LightingResolution::Target);
                 cases.push(Case { name: name.clone(), shot, work });
                 if scale > 1 {
                     // The same, lit once per texel of the target.
@@ -181,7 +184,10 @@ fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let shot = full_resolution(&layers(size, if quick { 4 } else { 16 }, 0.1)?);
     let mut cases = Vec::new();
     let mut case = |technique: Technique, curve: FadeCurve| {
-        let shot = changed(&shot, |settings| (settings.technique, settings.soft_fade.curve) = (technique, curve));
+        let shot = changed(&shot, |settings| {
+            settings.technique = technique;
+            settings.soft_fade.curve = curve;
+        });
         let name = format!("{} {}", technique.name(), curve.name());
         cases.push(Case { name, shot, work: ("soft".into(), 1.0) });
     };
@@ -194,7 +200,7 @@ fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
 /// NV's experiment: two big sprites drawn many times, with each of the three depth tests.
 fn nv_experiment(size: UVec2, quick: bool) -> Result<Group, Error> {
     let loops = if quick { 20 } else { 200 };
-    let shot = changed(&full_resolution(&layers(size, 2, 0.5)?), |settings| settings.sprite.debug_loop = loops);
+    let shot = changed(&full_resolution(&layers(size, 2, 0.5)?), |settings| settings.debug.draw_count = loops);
     let case = |technique: Technique| Case {
         name: format!("{} two sprites {loops} times", technique.name()),
         shot: changed(&shot, |settings| settings.technique = technique),
@@ -213,7 +219,8 @@ fn upsample(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                 let name = format!("1/{scale} {} {}", downsample.name(), upsample.name());
                 let shot = changed(&shot, |settings| {
                     at_scale(RenderPath::Raster, scale)(settings);
-                    (settings.accumulate.depth_downsample, settings.accumulate.upsample) = (downsample, upsample);
+                    settings.accumulate.depth_downsample = downsample;
+                    settings.accumulate.upsample = upsample;
                 });
                 cases.push(Case { name, shot, work: ("upsample".into(), 1.0) });
             }
@@ -247,7 +254,8 @@ fn particles(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         for system in &mut shot.preset.systems {
             // At the greatest rate, a million births take ten seconds.
             system.emitter.rate = count as f32 / 10.0;
-            (system.emitter.duration, system.emitter.extent) = (10.0, Vec3::new(1.5, 0.8, 0.8));
+            system.emitter.duration = 10.0;
+            system.emitter.extent = Vec3::new(1.5, 0.8, 0.8);
             system.emitter.turbulence = 0.5;
             // All counts cover the same area, so the difference in cost is the cost per particle.
             system.settings.sprite.size = 3.2 * 4.0 / (count as f32).sqrt();

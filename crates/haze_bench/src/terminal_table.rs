@@ -1,6 +1,6 @@
 //! Prints the report on a terminal.
 
-use haze::Error;
+use haze_core::error::Error;
 use haze_export::output::print_line;
 
 use super::recommendation::{AutoCase, BreakEven, auto_cases, break_even, recommendation};

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clap::Args;
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::error::Error;
 use haze_preset::{is_baked_png, write_baked_png};
 use image::DynamicImage;
 
@@ -30,17 +31,17 @@ type Load = fn(&Path) -> Result<Recipe, Error>;
 pub const RAMPS: RecipeKinds = RecipeKinds {
     expected: "a *.ramp.json or *.motif.json file",
     load: |kind| match kind {
-        "ramp" => Some(|path| RampRecipe::load(path).map(Recipe::Ramp)),
-        "motif" => Some(|path| MotifRecipe::load(path).map(Recipe::Motif)),
+        "ramp" => Some(|path| Ok(Recipe::Ramp(RampRecipe::load(path)?))),
+        "motif" => Some(|path| Ok(Recipe::Motif(MotifRecipe::load(path)?))),
         _ => None,
     },
 };
 
 pub const SPRITES: RecipeKinds = RecipeKinds {
-    expected: "a *.sprite.json or *.noise.json file",
+    expected: "a *.sprite.json or *.noise.json file; `haze sprite simulate` takes *.sim.json",
     load: |kind| match kind {
-        "sprite" => Some(|path| SpriteRecipe::load(path).map(Recipe::Sprite)),
-        "noise" => Some(|path| NoiseRecipe::load(path).map(Recipe::Noise)),
+        "sprite" => Some(|path| Ok(Recipe::Sprite(SpriteRecipe::load(path)?))),
+        "noise" => Some(|path| Ok(Recipe::Noise(NoiseRecipe::load(path)?))),
         _ => None,
     },
 };
@@ -157,7 +158,9 @@ impl<'a> BakeJob<'a> {
 
     /// Writes the images, and prints a line for each.
     pub fn bake(&self) -> Result<(), Error> {
-        let (path, done, count) = (self.path.display(), AtomicU32::new(0), self.recipe.frame_count());
+        let path = self.path.display();
+        let done = AtomicU32::new(0);
+        let count = self.recipe.frame_count();
         let what = || match count {
             1 => format!("haze: baking {path}"),
             _ => format!("haze: baking {path}, frame {} of {count}", done.load(Ordering::Relaxed) + 1),

@@ -10,9 +10,8 @@ use std::process::ExitCode;
 
 use clap::error::{ContextValue, ErrorKind};
 use clap::{CommandFactory as _, Parser, Subcommand};
-use haze::Error;
 use haze_bench as bench;
-use haze_core::error::is_link_loop;
+use haze_core::error::{AssetError, Error, is_link_loop};
 use haze_export::output::{Failures, one_line, print_error, write_text};
 use haze_export::recipe_files::has_extension;
 use haze_export::share_link;
@@ -177,15 +176,17 @@ fn usage_line(mut error: clap::Error) -> String {
 
 fn exit_code(error: &Error) -> u8 {
     match error {
-        Error::Field(_)
-        | Error::Image { .. }
-        | Error::Json { .. }
-        | Error::JsonField { .. }
-        | Error::Shader { .. }
-        | Error::NoDevice(_) => 2,
-        Error::Asset { error, .. } => exit_code(error),
+        Error::Field(_) | Error::Prepare(_) | Error::NoDevice(_) => 2,
+        Error::Asset(error) => exit_code_of_file(error),
+        Error::Device(_) => 1,
+    }
+}
+
+fn exit_code_of_file(error: &AssetError) -> u8 {
+    match error {
+        AssetError::Named { error, .. } => exit_code_of_file(error),
         // A file that is missing or may not be read is bad input; a full disk is not.
-        Error::Io { error, .. } => match error.kind() {
+        AssetError::Io { error, .. } => match error.kind() {
             std::io::ErrorKind::NotFound
             | std::io::ErrorKind::PermissionDenied
             | std::io::ErrorKind::AlreadyExists
@@ -198,7 +199,7 @@ fn exit_code(error: &Error) -> u8 {
             _ if is_link_loop(error) => 2,
             _ => 1,
         },
-        Error::Device(_) => 1,
+        _ => 2,
     }
 }
 

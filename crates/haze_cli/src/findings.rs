@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::Error;
 use haze_author::finding::Finding;
+use haze_core::error::Error;
 
 use haze_export::output::{Failures, print_line};
 

@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use glam::Vec3;
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
+use haze_core::error::Error;
 
 use haze_export::options::{number, parse_seed, whole_number};
 use haze_export::progress::with_changing_progress;

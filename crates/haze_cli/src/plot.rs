@@ -23,7 +23,7 @@ pub struct Curve {
 }
 
 /// Plots functions over `from..to`; values are 0..1. `axis` labels the x axis.
-pub fn plot(size: UVec2, (from, to): (f32, f32), axis: &str, curves: &[Curve]) -> RgbImage {
+pub fn plot(size: UVec2, from: f32, to: f32, axis: &str, curves: &[Curve]) -> RgbImage {
     let mut picture = RgbImage::from_pixel(size.x, size.y, BACKGROUND);
     let area = size.as_vec2() - Vec2::new(LEFT + RIGHT, TOP + BOTTOM);
     let place = |x: f32, y: f32| Vec2::new(LEFT, TOP) + Vec2::new((x - from) / (to - from), 1.0 - y) * area;

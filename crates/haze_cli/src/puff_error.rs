@@ -1,7 +1,7 @@
 //! Prints the errors of ramps and six-way maps against path-traced smoke.
 
-use haze::Error;
 use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response, light_angle};
+use haze_core::error::Error;
 
 use haze_bench::flip::flips;
 use haze_export::output::print_line;

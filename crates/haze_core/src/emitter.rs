@@ -244,7 +244,8 @@ impl Emitter {
 
     /// Maximum number of particles that live at once, if all births happen.
     pub fn max_alive(&self) -> f64 {
-        let (longest, duration) = (self.longest(), f64::from(self.duration));
+        let longest = self.longest();
+        let duration = f64::from(self.duration);
         let emitting = match self.pulses() {
             Some(Pulses { period, .. }) => (longest / period).floor() * duration + (longest % period).min(duration),
             None if duration > 0.0 => longest.min(duration),

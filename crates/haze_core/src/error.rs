@@ -75,10 +75,34 @@ impl FieldError {
     }
 }
 
-/// Any failure of the library that a caller, a file or a driver can cause.
+/// Error of the renderer: a host's call, or a shader.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// A setting, a light, a particle system or the view is invalid.
+#[non_exhaustive]
+pub enum PrepareError {
+    /// A setting, a light, a particle system, the view, or a property of the host's pass is invalid.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+
+    /// A shader could not be used.
+    #[error("{}:{line}:{column}: {reason}", display_path(path))]
+    Shader {
+        /// File with the error, or `builtin:NAME`.
+        path: PathBuf,
+        /// Line, 1-based. Errors without a position, for example a missing entry point, are reported at 1:1 of the
+        /// pass's file.
+        line: usize,
+        /// Column, 1-based, in characters.
+        column: usize,
+        /// Problem.
+        reason: String,
+    },
+}
+
+/// Error of a file, or of what is in it: an image, a preset, a gradient, particles, or shaders.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum AssetError {
+    /// A name or a value that was given for a file is invalid.
     #[error(transparent)]
     Field(#[from] FieldError),
 
@@ -93,17 +117,17 @@ pub enum Error {
 
     /// An image or a particle file that a preset names could not be used.
     #[error("{named_by}: {error}")]
-    Asset {
+    Named {
         /// Field that names it, preceded by the preset's file and the system if they are known:
         /// `my.json: systems[0].material.sprite`.
         named_by: String,
         /// Error of the file.
-        error: Box<Error>,
+        error: Box<AssetError>,
     },
 
-    /// A preset, a gradient or a text file of particles could not be used.
+    /// A text could not be used: JSON, particles, or a shader.
     #[error("{}:{line}:{column}: {reason}", display_path(path))]
-    Json {
+    Text {
         /// File, or `builtin:NAME`.
         path: PathBuf,
         /// Line, 1-based.
@@ -111,20 +135,6 @@ pub enum Error {
         /// Column, 1-based.
         column: usize,
         /// Problem, and what would be right.
-        reason: String,
-    },
-
-    /// A shader could not be used.
-    #[error("{}:{line}:{column}: {reason}", display_path(path))]
-    Shader {
-        /// File with the error, or `builtin:NAME`.
-        path: PathBuf,
-        /// Line, 1-based. Errors without a position, for example a missing entry point, are reported at 1:1 of the
-        /// pass's file.
-        line: usize,
-        /// Column, 1-based, in characters.
-        column: usize,
-        /// Problem.
         reason: String,
     },
 
@@ -146,6 +156,22 @@ pub enum Error {
         #[source]
         error: std::io::Error,
     },
+}
+
+/// Any failure of a program that draws smoke: of the renderer, a file, or the device.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A setting, a light, a particle system, the view, or a name is invalid.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+
+    /// A file, or what is in it, could not be used.
+    #[error(transparent)]
+    Asset(AssetError),
+
+    /// A shader could not be used.
+    #[error(transparent)]
+    Prepare(PrepareError),
 
     /// No graphics device is available.
     #[error("{0}")]
@@ -154,4 +180,22 @@ pub enum Error {
     /// The graphics device failed while it worked: lost, out of memory, or a validation error.
     #[error("the graphics device failed: {0}")]
     Device(String),
+}
+
+impl From<PrepareError> for Error {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::Field(error) => Self::Field(error),
+            error => Self::Prepare(error),
+        }
+    }
+}
+
+impl From<AssetError> for Error {
+    fn from(error: AssetError) -> Self {
+        match error {
+            AssetError::Field(error) => Self::Field(error),
+            error => Self::Asset(error),
+        }
+    }
 }

@@ -62,7 +62,8 @@ impl FireLight<'_> {
         let brightness = brightest * fire.intensity * fire.light * share * reach * reach;
         let intensity = brightness * flicker(fire.flicker, FLICKER_RATE, self.time, self.seed);
         // Within the ranges of a light.
-        let (intensity, reach) = (intensity.min(1.0e9), reach.min(1.0e4));
+        let intensity = intensity.min(1.0e9);
+        let reach = reach.min(1.0e4);
         (intensity > FAINTEST).then(|| Light {
             kind: LightKind::Point,
             position: middle,

@@ -49,7 +49,8 @@ struct Fire {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
     let [folder, size] = &arguments[..] else { return Err("usage: fire_truth FOLDER SIZE".into()) };
-    let (folder, size) = (Path::new(folder), size.parse()?);
+    let folder = Path::new(folder);
+    let size = size.parse()?;
     fs::create_dir_all(folder)?;
     let ramp = |name| builtin::find(builtin::RAMPS, name).ok_or(format!("no ramp {name}"));
     let fires = [
@@ -63,7 +64,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     material.assets.heat_ramp = ramp("heat_even")?.ramp()?;
     material.settings.path = RenderPath::Raster;
     material.settings.diffuse.intensity = 0.0;
-    (material.settings.fire.intensity, material.settings.fire.core) = (1.0, 0.0);
+    material.settings.fire.intensity = 1.0;
+    material.settings.fire.core = 0.0;
     let gpu = Headless::new()?;
     let mut clouds = Vec::new();
     for seed in CLOUDS {
@@ -172,8 +174,10 @@ fn optical_depths(cloud: &PuffCloud<'_>) -> Vec<f32> {
 /// Draws a cloud on black by the GPU. Returns the bytes of linear RGB.
 fn draw(gpu: &Headless, cloud: &PuffCloud<'_>, material: &PuffMaterial) -> Result<Vec<u8>, Box<dyn Error>> {
     let view = cloud.view();
-    let (color, depth) = (gpu.target("color", view.size, COLOR), gpu.target("depth", view.size, DEPTH));
-    let (color_view, depth_view) = (color.create_view(&Default::default()), depth.create_view(&Default::default()));
+    let color = gpu.target("color", view.size, COLOR);
+    let depth = gpu.target("depth", view.size, DEPTH);
+    let color_view = color.create_view(&Default::default());
+    let depth_view = depth.create_view(&Default::default());
     let context = Context::new(&gpu.device, &gpu.queue);
     let descriptor = RendererDescriptor { color_format: COLOR, depth_format: None, ..RendererDescriptor::default() };
     let mut renderer = Renderer::new(&context, &descriptor)?;

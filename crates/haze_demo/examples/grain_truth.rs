@@ -33,7 +33,8 @@ const GRAINS: [(&str, f32, f32, u32); 4] =
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
     let [size, samples] = &arguments[..] else { return Err("usage: grain_truth SIZE SAMPLES".into()) };
-    let (size, samples) = (size.parse()?, samples.parse()?);
+    let size = size.parse()?;
+    let samples = samples.parse()?;
     let medium = MEDIA.iter().find(|medium| medium.name == "ash").ok_or("no medium ash")?.medium;
     let light = vec3(0.7, 0.5, 0.5).normalize();
     println!("| sprite | | {} |", BANDS.map(|(low, high)| format!("{low} to {high} pixels")).join(" | "));
@@ -58,8 +59,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             for (name, erosion, bump, octaves) in GRAINS {
                 let mut material = coarse.material()?;
                 let grain = &mut material.settings.grain;
-                (grain.erosion, grain.bump, grain.octaves) = (erosion, bump, octaves);
-                material.settings.accumulate.scale = scale;
+                grain.erosion = erosion;
+                grain.bump = bump;
+                grain.octaves = octaves;
+                material.settings.accumulate.downscale = scale;
                 let drawn = puff.drawn(&[light], &material)?;
                 let coverage = puff.drawn_coverage(&material)?;
                 row(&format!("{name}, scale {scale}"), contrasts([&drawn[0]; 2], &coverage));
@@ -77,7 +80,8 @@ fn contrasts(images: [&Image<Vec3>; 2], coverage: &Image<f32>) -> [f32; 3] {
     let means = luminances.each_ref().map(|image| blurred(image, BANDS[2].1));
     BANDS.map(|(low, high)| {
         let bands = luminances.each_ref().map(|image| (blurred(image, low), blurred(image, high)));
-        let (mut sum, mut count) = (0.0, 0);
+        let mut sum = 0.0;
+        let mut count = 0;
         for index in (0..inside.texels.len()).filter(|index| inside.texels[*index] > 0.6) {
             let [a, b] = [0, 1].map(|of| {
                 (bands[of].0.texels[index] - bands[of].1.texels[index]) / means[of].texels[index].max(1.0e-6)

@@ -62,7 +62,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [folder, size, samples, media @ ..] = &arguments[..] else {
         return Err("usage: truth FOLDER SIZE SAMPLES MEDIUM…".into());
     };
-    let (folder, size) = (Path::new(folder), size.parse()?);
+    let folder = Path::new(folder);
+    let size = size.parse()?;
     let path_trace = PathTrace { size, samples: samples.parse()?, seed: 1 };
     fs::create_dir_all(folder)?;
     let lights = ring_of_lights();
@@ -136,7 +137,8 @@ fn models(kind: &PuffKind, name: &str, medium: &Medium) -> Result<Vec<Model>, Bo
     let [ramps, six_way] = kind.materials(&ramp("diffuse_traced")?, &ramp("backlight_traced")?)?;
     let mut forward = ramps.clone();
     forward.settings.path = RenderPath::Forward;
-    let (exponential, octaves) = (shadow_ramp(|depth, _| (-depth).exp()), octave_ramp(medium.anisotropy));
+    let exponential = shadow_ramp(|depth, _| (-depth).exp());
+    let octaves = octave_ramp(medium.anisotropy);
     Ok(vec![
         ("ramps_shadow", ramps.with_shadow(&ramp("shadow_traced")?)),
         ("six_way_shadow", six_way.with_shadow(&ramp("shadow_six_way")?)),
@@ -154,7 +156,8 @@ fn models(kind: &PuffKind, name: &str, medium: &Medium) -> Result<Vec<Model>, Bo
 fn shadow_ramp(value: impl Fn(f32, f32) -> f32) -> Ramp {
     let size = UVec2::new(512, 65);
     let at = |index: u32| {
-        let (x, y) = ((index % size.x) as f32 / (size.x - 1) as f32, (index / size.x) as f32 / (size.y - 1) as f32);
+        let x = (index % size.x) as f32 / (size.x - 1) as f32;
+        let y = (index / size.x) as f32 / (size.y - 1) as f32;
         // Inverse of `shadow_position`.
         Vec3::splat(value(-(1.0 - x).max(1.0e-9).log2(), 2.0 * y - 1.0))
     };
@@ -199,7 +202,8 @@ fn time_frames(models: &[Model]) -> Result<Value, Box<dyn Error>> {
         if timed.iter().all(|(other, ..)| other.settings != material.settings) {
             let mut shot = Shot::load("column", FRAME)?;
             let settings = &mut shot.preset.systems[0].settings;
-            (settings.path, settings.lighting) = (material.settings.path, material.settings.lighting);
+            settings.path = material.settings.path;
+            settings.lighting = material.settings.lighting;
             settings.diffuse = material.settings.diffuse;
             settings.shadow.strength = material.settings.shadow.strength;
             shot.materials[0] = material.assets.clone();

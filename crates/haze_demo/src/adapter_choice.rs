@@ -12,7 +12,8 @@ const NO_ADAPTER_HINT: &str = "no graphics adapter was found; on Debian and Ubun
 pub(super) fn find_adapter() -> Result<wgpu::Adapter, Error> {
     check_address_space()?;
     let variable = |name| std::env::var_os(name).unwrap_or_default().to_string_lossy().into_owned();
-    let (backends, name) = (variable("WGPU_BACKEND"), variable("WGPU_ADAPTER_NAME"));
+    let backends = variable("WGPU_BACKEND");
+    let name = variable("WGPU_ADAPTER_NAME");
     let built_in = wgpu::Instance::enabled_backend_features();
     let list = || {
         let names: Vec<_> = wgpu::Backend::ALL.into_iter().filter(|&b| built_in.contains(b.into())).collect();

@@ -11,9 +11,10 @@ use haze_core::frame::{Light, Particle};
 use haze_core::settings::Settings;
 use haze_preset::Environment;
 
+use super::bloom::add_bloom;
 use super::outline::Outlines;
 use super::ray_caster::{self, SceneColor};
-use super::scene::{Scene, coefficients};
+use super::scene::coefficients;
 use super::shadow_views::ShadowView;
 use super::shot::Shot;
 use haze_author::backdrop::Backdrop;
@@ -61,7 +62,9 @@ impl Shot {
             front: &front,
             smoke_depths: frame.smoke_depths(),
         };
-        Ok(outlines.completed())
+        let mut completed = outlines.completed();
+        add_bloom(&mut completed, self.bloom());
+        Ok(completed)
     }
 
     pub(super) fn reference_systems<'a>(
@@ -96,7 +99,8 @@ impl Shot {
 /// Shadow maps of a scene, in memory.
 pub(super) struct ShadowLayers {
     /// Scene that the maps show.
-    of: (Environment, Backdrop),
+    environment: Environment,
+    backdrop: Backdrop,
     maps: Vec<(ShadowView, Vec<Image<f32>>)>,
 }
 
@@ -107,19 +111,28 @@ impl ShadowLayers {
             static LAST: RefCell<Option<Rc<ShadowLayers>>> = const { RefCell::new(None) };
         }
         let views = shot.shadow_views();
-        let of = (shot.preset.environment.clone(), shot.backdrop.clone());
-        let is_same = |last: &Rc<Self>| last.of == of && last.maps.iter().map(|(view, _)| view).eq(&views);
-        let layers = LAST.take().filter(is_same).unwrap_or_else(|| Rc::new(Self::new(&shot.scene(), views, of)));
+        let is_same = |last: &Rc<Self>| {
+            last.environment == shot.preset.environment
+                && last.backdrop == shot.backdrop
+                && last.maps.iter().map(|(view, _)| view).eq(&views)
+        };
+        let kept = LAST.take().filter(is_same);
+        let layers = kept.unwrap_or_else(|| Rc::new(Self::new(shot, views)));
         LAST.set(Some(layers.clone()));
         layers
     }
 
-    fn new(scene: &Scene, views: Vec<ShadowView>, of: (Environment, Backdrop)) -> Self {
+    fn new(shot: &Shot, views: Vec<ShadowView>) -> Self {
+        let scene = shot.scene();
         let drawn = |view: ShadowView| {
-            let layers = view.clip_from_world.iter().map(|matrix| view.layer(scene, matrix)).collect();
+            let layers = view.clip_from_world.iter().map(|matrix| view.layer(&scene, matrix)).collect();
             (view, layers)
         };
-        Self { of, maps: views.into_iter().map(drawn).collect() }
+        Self {
+            environment: shot.preset.environment.clone(),
+            backdrop: shot.backdrop.clone(),
+            maps: views.into_iter().map(drawn).collect(),
+        }
     }
 
     pub fn maps(&self) -> Vec<haze_reference::ShadowMap<'_>> {

@@ -1,8 +1,8 @@
 //! Image metrics: PSNR of two images as displayed.
 
-use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
+use glam::{IVec2, Vec4, Vec4Swizzles};
 use haze_core::assets::image::Image;
-use haze_core::formula::tonemap::tonemapped;
+use haze_core::formula::tonemap::DisplayTransform;
 
 use super::texture_readback::TextureReadback;
 
@@ -22,17 +22,16 @@ const MIN_EDGE_JUMP: f32 = 0.1;
 const EDGE_RADIUS: i32 = 2;
 
 impl PsnrReport {
-    /// Compares two linear HDR images of equal size. `exposure` is the exposure factor of each; 0 for data, which is
-    /// not tonemapped. `depth` is the scene's view depth, metres.
-    pub fn compare(first: &Image<Vec4>, second: &Image<Vec4>, exposure: Vec2, depth: Option<&Image<f32>>) -> Self {
-        let code = |image: &Image<Vec4>, at: IVec2, exposure| {
-            let color = image.load(at).xyz();
-            if exposure == 0.0 { color.saturate() } else { tonemapped(color, exposure) }
+    /// Compares two linear HDR images of equal size, by the transform of each. `depth` is the scene's view depth, metres.
+    pub fn compare(images: [&Image<Vec4>; 2], transforms: [DisplayTransform; 2], depth: Option<&Image<f32>>) -> Self {
+        let [first, second] = images;
+        let code = |image: &Image<Vec4>, at: IVec2, transform: DisplayTransform| {
+            transform.code(image.load(at).xyz()).saturate()
         };
         let mut errors = Image::new(first.size, (0.0, false));
         errors.for_each(|at, error| {
             let at = at.as_ivec2();
-            let difference = code(first, at, exposure.x) - code(second, at, exposure.y);
+            let difference = code(first, at, transforms[0]) - code(second, at, transforms[1]);
             *error = (difference.length_squared() / 3.0, depth.is_some_and(|depth| is_near_edge(depth, at)));
         });
         let psnr = |errors: &mut dyn Iterator<Item = f32>| {
@@ -51,11 +50,13 @@ impl PsnrReport {
 fn is_near_edge(depth: &Image<f32>, at: IVec2) -> bool {
     let inside = |at: IVec2| at.clamp(IVec2::ZERO, depth.size.as_ivec2() - 1);
     let jumps = |a: IVec2, b: IVec2| {
-        let (a, b) = (depth.load(inside(a)), depth.load(inside(b)));
+        let a = depth.load(inside(a));
+        let b = depth.load(inside(b));
         (a - b).abs() > MIN_EDGE_JUMP * a.min(b)
     };
     (-EDGE_RADIUS..EDGE_RADIUS).any(|step| {
-        let (x, y) = (at + IVec2::X * step, at + IVec2::Y * step);
+        let x = at + IVec2::X * step;
+        let y = at + IVec2::Y * step;
         jumps(x, x + IVec2::X) || jumps(y, y + IVec2::Y)
     })
 }
@@ -64,7 +65,7 @@ fn is_near_edge(depth: &Image<f32>, at: IVec2) -> bool {
 #[derive(Clone, Debug)]
 pub struct Comparison {
     readback: TextureReadback,
-    exposure: Vec2,
+    transforms: [DisplayTransform; 2],
 }
 
 impl Comparison {
@@ -74,14 +75,14 @@ impl Comparison {
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         images: [&wgpu::Texture; 2],
-        exposure: Vec2,
+        transforms: [DisplayTransform; 2],
         depth: Option<&wgpu::Texture>,
     ) -> Option<Self> {
         let [first, second] = images;
         let depth = depth.filter(|depth| depth.size() == first.size());
         let textures: Vec<_> = images.into_iter().chain(depth).collect();
         let have_same_size = first.size() == second.size();
-        have_same_size.then(|| Self { readback: TextureReadback::record(device, encoder, &textures), exposure })
+        have_same_size.then(|| Self { readback: TextureReadback::record(device, encoder, &textures), transforms })
     }
 
     /// True once the readback has finished or failed.
@@ -96,8 +97,8 @@ impl Comparison {
         let [first, second, depth @ ..] = self.readback.regions.as_slice() else { return None };
         let size = first.size();
         let depth = depth.first().map(|region| region.depths(&bytes, size));
-        let [first, second] = [first, second].map(|region| region.colors(&bytes, 0, size));
-        Some(PsnrReport::compare(&first, &second, self.exposure, depth.as_ref()))
+        let images = [first, second].map(|region| region.colors(&bytes, 0, size));
+        Some(PsnrReport::compare(images.each_ref(), self.transforms, depth.as_ref()))
     }
 }
 
@@ -109,10 +110,11 @@ mod tests {
     #[test]
     fn psnr_matches_its_definition() {
         let size = UVec2::new(20, 10);
-        let (black, mut gray) = (Image::new(size, Vec4::W), Image::new(size, Vec4::splat(0.1)));
-        // Exposure 0 means data: an error of 0.1 is 20 dB.
+        let black = Image::new(size, Vec4::W);
+        let mut gray = Image::new(size, Vec4::splat(0.1));
+        // In data, an error of 0.1 is 20 dB.
         fn report(a: &Image<Vec4>, b: &Image<Vec4>, depth: Option<&Image<f32>>) -> PsnrReport {
-            PsnrReport::compare(a, b, Vec2::ZERO, depth)
+            PsnrReport::compare([a, b], [DisplayTransform::DATA; 2], depth)
         }
         assert!((report(&black, &gray, None).psnr - 20.0).abs() < 1e-3);
         assert_eq!(report(&gray, &gray, None), PsnrReport { psnr: f32::INFINITY, edge_psnr: None });

@@ -13,13 +13,17 @@ impl Shot {
         let mut shot = self.clone();
         let Preset { environment, lights, systems, .. } = &mut shot.preset;
         environment.scene = SceneName::Empty;
-        (environment.zenith, environment.horizon) = (Vec3::ZERO, Vec3::ZERO);
+        environment.zenith = Vec3::ZERO;
+        environment.horizon = Vec3::ZERO;
         lights.clear();
         for Settings { diffuse, soft_scatter, specular_scatter, shadow, ambient, .. } in
             systems.iter_mut().map(|system| &mut system.settings)
         {
-            (diffuse.intensity, ambient.intensity) = (0.0, 0.0);
-            (soft_scatter.intensity, specular_scatter.intensity, shadow.strength) = (0.0, 0.0, 0.0);
+            diffuse.intensity = 0.0;
+            ambient.intensity = 0.0;
+            soft_scatter.intensity = 0.0;
+            specular_scatter.intensity = 0.0;
+            shadow.strength = 0.0;
         }
         shot
     }
@@ -45,15 +49,19 @@ impl Shot {
             ParticleScalar::ViewDepth => self.preset.camera.far,
             _ => self.size.max_element() as f32,
         };
-        let (low, high) = (low.clamp(-most, most), high.clamp(-most, most));
+        let low = low.clamp(-most, most);
+        let high = high.clamp(-most, most);
         let shown = ShownScalar { scalar, low, high: high.max(low + 1.0e-3) };
         let mut shot = self.without_light();
         for settings in shot.preset.systems.iter_mut().map(|system| &mut system.settings) {
             settings.fire.intensity = 0.0;
-            (settings.sprite.tint, settings.sprite.age_color) = (1.0, 0.0);
+            settings.sprite.tint = 1.0;
+            settings.sprite.age_color = 0.0;
             let scatter = &mut settings.soft_scatter;
-            (scatter.mode, scatter.intensity) = (SoftScatterMode::Smoothstep, 1.0);
-            (scatter.scatter_color, scatter.ambient_color) = (Vec3::ONE, Vec3::ONE);
+            scatter.mode = SoftScatterMode::Smoothstep;
+            scatter.intensity = 1.0;
+            scatter.scatter_color = Vec3::ONE;
+            scatter.ambient_color = Vec3::ONE;
         }
         shot.shown_scalar = Some(shown);
         Some((shot, shown))
@@ -92,9 +100,16 @@ mod tests {
         let system = &mut shot.preset.systems[0];
         let emitter = &mut system.emitter;
         *emitter = haze_core::emitter::Emitter::default();
-        (emitter.rate, emitter.lifetime, emitter.lifetime_spread, emitter.duration) = (1.0, 9.0, 0.0, 1.0);
-        (emitter.velocity, emitter.velocity_spread) = (velocity, 0.0);
-        (emitter.wind, emitter.buoyancy, emitter.turbulence, emitter.drag) = (Vec3::ZERO, 0.0, 0.0, 0.0);
+        emitter.rate = 1.0;
+        emitter.lifetime = 9.0;
+        emitter.lifetime_spread = 0.0;
+        emitter.duration = 1.0;
+        emitter.velocity = velocity;
+        emitter.velocity_spread = 0.0;
+        emitter.wind = Vec3::ZERO;
+        emitter.buoyancy = 0.0;
+        emitter.turbulence = 0.0;
+        emitter.drag = 0.0;
         shot.preset.time = 2.0;
         shot
     }
@@ -109,7 +124,8 @@ mod tests {
             let expected = by_hand(&shot, scalar, particle.position, velocity * 0.1);
             // The range of one particle's values is empty; a wider one lets the image show the value.
             let (mut shown_shot, mut shown) = shot.showing(scalar).unwrap();
-            (shown.low, shown.high) = (expected - 8.0, expected + 8.0);
+            shown.low = expected - 8.0;
+            shown.high = expected + 8.0;
             shown_shot.shown_scalar = Some(shown);
             let image = shown.values(&shown_shot.render_on_cpu().unwrap());
             let found: Vec<f32> = image.texels.iter().copied().flatten().collect();

@@ -3,6 +3,8 @@
 
 mod adapter_choice;
 mod address_space;
+pub mod bloom;
+pub mod bloom_pass;
 mod boxes;
 mod camera_rays;
 pub mod capture;

@@ -1,5 +1,7 @@
 //! CPU ray caster for a scene from a file: renders the same color and depth as `scene_mesh.wgsl`.
 
+use std::ops::RangeInclusive;
+
 use glam::{Mat4, UVec2, Vec2, Vec3};
 use haze_core::formula::depth::DepthConvention;
 use haze_core::formula::lighting::sample_light;
@@ -10,7 +12,7 @@ use super::camera_rays::CameraRays;
 use super::outline::SAMPLES;
 use super::scene::Scene;
 use super::shading::Lit;
-use haze_author::backdrop::{RayHit, SceneMesh};
+use haze_author::backdrop::{Ray, RayHit, SceneMesh};
 
 /// Distance beyond everything, metres. `MESH_SUN_DISTANCE` in scene_mesh.wgsl.
 const SUN_DISTANCE: f32 = 1.0e6;
@@ -29,7 +31,7 @@ pub(crate) struct MeshCaster<'a> {
     clip_from_world: Mat4,
     rays: CameraRays,
     /// View depths of the near and the far plane, metres.
-    planes: (f32, f32),
+    planes: RangeInclusive<f32>,
     /// Height of a pixel at view depth 1.
     pixel_size: f32,
 }
@@ -61,7 +63,7 @@ impl<'a> MeshCaster<'a> {
             pixel_size: rays.up.length() * 2.0 / view.size.y.max(1) as f32,
             rays,
             planes: DepthConvention::from_clip_from_view(&view.clip_from_view)
-                .map_or((0.0, f32::INFINITY), |depth| (depth.near, depth.far)),
+                .map_or(0.0..=f32::INFINITY, |depth| depth.near..=depth.far),
         })
     }
 
@@ -80,7 +82,7 @@ impl<'a> MeshCaster<'a> {
 
     /// Nearest surface between the planes. Its distance is a view depth, because the ray leads to view depth 1.
     fn hit(&self, ray: Vec3) -> Option<RayHit> {
-        self.mesh.nearest((self.rays.eye / self.scale, ray / self.scale), self.planes)
+        self.mesh.nearest(Ray { origin: self.rays.eye / self.scale, direction: ray / self.scale }, self.planes.clone())
     }
 
     fn sample(&self, pixel: Vec2) -> Sample {
@@ -109,7 +111,8 @@ impl<'a> MeshCaster<'a> {
         if samples.iter().any(|sample| sample.surface.is_some()) {
             self.add_lights(&mut samples, is_in_group, through);
         }
-        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        let mut sum = Vec3::ZERO;
+        let mut weights = 0.0;
         for (Sample { paint, lit, .. }, is_in_group) in samples.into_iter().zip(is_in_group) {
             if !is_in_group {
                 continue;
@@ -144,11 +147,13 @@ impl<'a> MeshCaster<'a> {
                         true => SUN_DISTANCE,
                         false => (light.position - surface.world).length() - LIGHT_GAP,
                     };
-                    !self.mesh.is_blocked((origin / self.scale, sample.direction), distance / self.scale)
+                    let ray = Ray { origin: origin / self.scale, direction: sample.direction };
+                    !self.mesh.is_blocked(ray, distance / self.scale)
                 };
                 if visible[i] {
                     let direct = light.color * (facing.max(0.0) * sample.attenuation);
-                    (lit.full, lit.shaded) = (lit.full + direct, lit.shaded + direct * through(index));
+                    lit.full += direct;
+                    lit.shaded += direct * through(index);
                 }
             }
         }

@@ -186,7 +186,8 @@ mod tests {
             let scene = Scene::new(&preset.environment, &preset.lights, &Backdrop::default());
             let everything =
                 Scene { occluders: Occluders { masks: Image::new(UVec2::ONE, ALL_BOXES) }, ..scene.clone() };
-            let (mut points, mut tested) = (0, 0);
+            let mut points = 0;
+            let mut tested = 0;
             for index in 0..4000_u32 {
                 let random = |salt| {
                     let hash = pcg3d(UVec3::new(index, salt, 3));
@@ -194,7 +195,8 @@ mod tests {
                 };
                 // A random point on a face of a box.
                 let b = &scene.boxes[index as usize % scene.boxes.len()];
-                let (place, side) = (random(0), random(1));
+                let place = random(0);
+                let side = random(1);
                 let normal = side.signum()
                     * Vec3::select(side.abs().cmpeq(Vec3::splat(side.abs().max_element())), Vec3::ONE, Vec3::ZERO);
                 let local = Vec3::select(normal.cmpeq(Vec3::ZERO), place, normal) * b.half_size;

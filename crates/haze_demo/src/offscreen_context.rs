@@ -1,10 +1,11 @@
 //! Pipelines and uploaded materials that the off-screen renderers of a device share.
 
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::error::Error;
 
+use super::bloom_pass::{BLOOM_SHADER, BloomPass};
 use super::outline_pass::OutlinePass;
 use super::scene_pipeline::LINEAR_FORMAT;
 use super::scene_renderer::SceneRenderer;
@@ -19,6 +20,8 @@ pub struct OffscreenContext {
     pub(super) haze: Context,
     pub(super) scene: Arc<SceneRenderer>,
     pub(super) outlines: Arc<OutlinePass>,
+    /// Compiled on first use: few pictures have bloom.
+    bloom: Arc<OnceLock<BloomPass>>,
     /// Materials that existing renderers have uploaded. Shared images are uploaded once.
     materials: Arc<Mutex<Vec<Weak<UploadedMaterial>>>>,
     /// True to attach the scene's depth buffer to the smoke pass: it is not sampled there, or the device supports
@@ -42,6 +45,7 @@ impl OffscreenContext {
             outlines: Arc::new(OutlinePass::new(device, queue, &scene.scene_layout)),
             scene: Arc::new(scene),
             haze,
+            bloom: Arc::default(),
             materials: Arc::default(),
             attaches_depth: draws_linear || read_only_depth_is_supported(device),
         }
@@ -81,6 +85,10 @@ impl OffscreenContext {
     /// As [`Context::with_shaders`].
     pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
         Ok(self.with_context(self.haze.with_shaders(sources)?))
+    }
+
+    pub(super) fn bloom(&self) -> &BloomPass {
+        self.bloom.get_or_init(|| BloomPass::new(&self.device, BLOOM_SHADER))
     }
 
     /// Uploads images, or returns those that another renderer of the context has uploaded.

@@ -13,6 +13,7 @@ use haze_core::frame::EmitterPaths;
 use haze_core::settings::DebugView;
 use haze_preset::Environment;
 
+use super::bloom_pass::BloomLevels;
 use super::capture::Capture;
 pub use super::offscreen_context::OffscreenContext;
 use super::offscreen_context::UploadedMaterial;
@@ -84,6 +85,8 @@ struct SizedTargets {
     pictures: [Option<wgpu::Texture>; DebugView::ALL.len()],
     /// The final image before its outlines are completed.
     smoked: Option<OutlineInputs>,
+    /// Of the final image, if it has bloom.
+    bloom: Option<BloomLevels>,
 }
 
 /// Part of a frame that is measured by itself.
@@ -170,7 +173,7 @@ impl OffscreenRenderer {
     /// # Errors
     /// As [`Renderer::set_timing`].
     pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
-        self.renderer.set_timing(timing)
+        Ok(self.renderer.set_timing(timing)?)
     }
 
     /// Returns the GPU memory in use.
@@ -244,6 +247,7 @@ impl OffscreenRenderer {
                 scene_inputs: None,
                 pictures: Default::default(),
                 smoked: None,
+                bloom: None,
             }),
         };
         let backdrop = match self.backdrop.take() {
@@ -279,7 +283,8 @@ impl OffscreenRenderer {
                 ParticleSystem::new(key, particles, settings, &uploaded.material)
             })
             .collect();
-        let (depth, linear) = (sized.targets.depth.clone(), sized.targets.linear.clone());
+        let depth = sized.targets.depth.clone();
+        let linear = sized.targets.linear.clone();
         let scene_depth = match &linear {
             Some(linear) => SceneDepth::BufferAndLinear { buffer: &depth, linear },
             None => SceneDepth::Buffer(&depth),
@@ -364,24 +369,36 @@ impl OffscreenRenderer {
                 .fold([SKY_VIEW_DEPTH, 0.0], |[nearest, farthest], [near, far]| [nearest.min(near), farthest.max(far)]);
             outlines.record(encoder, &sized.targets, inputs, depths, &default_view(picture));
         }
+        let strength = shot.bloom();
+        match picture.filter(|_| strength > 0.0 && stages.contains(&DebugView::Final)) {
+            Some(picture) => {
+                let bloom = self.context.bloom();
+                let held = sized.bloom.take().filter(|levels| levels.is_of(picture));
+                let levels = sized.bloom.insert(held.unwrap_or_else(|| bloom.levels(picture)));
+                bloom.record(encoder, levels, strength);
+            }
+            None => sized.bloom = None,
+        }
         end_part(encoder, FramePart::Scene)
     }
 
     /// Forces the scene to be redrawn in the next frame. Call it if the last recorded encoder was dropped without being
     /// submitted.
     pub fn invalidate_scene(&mut self) {
-        self.sized.iter_mut().for_each(|sized| sized.scene_inputs = None);
+        if let Some(sized) = &mut self.sized {
+            sized.scene_inputs = None;
+        }
         self.shadow_maps = ShadowMaps::default();
     }
 
     /// Compiles the pipelines that a shot needs.
     ///
     /// # Errors
-    /// [`Error::Shader`] with the name of the pass, if custom shaders cannot be compiled.
+    /// [`PrepareError::Shader`](haze_core::error::PrepareError::Shader) with the name of the pass, if custom shaders cannot be compiled.
     pub fn warm_up(&self, shot: &Shot) -> Result<(), Error> {
         let shot = shot.at_its_time();
         let settings: Vec<_> = shot.preset.systems.iter().map(|system| system.settings).collect();
-        self.renderer.warm_up(&WarmUp {
+        Ok(self.renderer.warm_up(&WarmUp {
             view: shot.preset.camera.view(shot.size),
             scene_depth: if self.context.scene.draws_linear {
                 SceneDepthKind::BufferAndLinear(DEPTH_FORMAT)
@@ -390,7 +407,7 @@ impl OffscreenRenderer {
             },
             settings: &settings,
             debug_views: &[shot.debug_view],
-        })
+        })?)
     }
 
     /// Returns the output image of a debug view as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
@@ -464,6 +481,7 @@ impl SizedTargets {
             u64::from(texel) * u64::from(texture.width()) * u64::from(texture.height())
         };
         let smoked = self.smoked.iter().map(|outline| outline.smoked.texture());
-        self.targets.textures().chain(self.pictures.iter().flatten()).chain(smoked).map(bytes).sum()
+        let bloom = self.bloom.iter().flat_map(BloomLevels::textures);
+        self.targets.textures().chain(self.pictures.iter().flatten()).chain(smoked).chain(bloom).map(bytes).sum()
     }
 }

@@ -98,7 +98,8 @@ impl Outlines<'_> {
     fn smoke_before(&self, pixel: IVec2) -> Vec4 {
         let depth = self.groups.load(pixel).front_depth;
         let last = self.smoked.size.as_ivec2() - 1;
-        let (mut sum, mut count) = (Vec4::ZERO, 0.0);
+        let mut sum = Vec4::ZERO;
+        let mut count = 0.0;
         for i in 0..9 {
             let at = (pixel + IVec2::new(i % 3, i / 3) - 1).clamp(IVec2::ZERO, last);
             let view_depth = view_depth_from_ndc_depth(self.groups.load(at).back, self.coefficients);

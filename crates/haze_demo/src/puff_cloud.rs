@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::camera::rh::proj::directx::orthographic;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles as _, vec3};
-use haze::{Error, Light, LightKind, MaterialAssets, Particle, View};
+use haze::{Light, LightKind, MaterialAssets, Particle, View};
 use haze_author::path_trace::{DensityVolume, Medium, PathTrace};
 use haze_author::ramp::response::{Response, ShadedLight};
 use haze_author::sprite::bake::SpriteRecipe;
@@ -15,6 +15,7 @@ use haze_core::assets::image::Image;
 use haze_core::assets::noise::{pcg3d, unit};
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::Sprite;
+use haze_core::error::Error;
 use haze_core::settings::{Backlight, DebugView, Lighting, Settings, Technique};
 use haze_preset::{ImageSource, MaterialSources};
 use haze_reference::{FrameInput, ParticleSystem, PreparedFrame};
@@ -116,7 +117,8 @@ impl PuffKind {
     /// A cloud of puffs at random places.
     pub fn cloud(&self, shape: CloudShape, seed: u32) -> PuffCloud<'_> {
         let puff = |index: u32| {
-            let (a, b) = (pcg3d(UVec3::new(index, 0, seed)), pcg3d(UVec3::new(index, 1, seed)));
+            let a = pcg3d(UVec3::new(index, 0, seed));
+            let b = pcg3d(UVec3::new(index, 1, seed));
             let place = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
             Particle {
                 position: place * shape.half_extent(),
@@ -151,8 +153,9 @@ impl PuffKind {
     /// If an image cannot be baked.
     pub fn material(&self) -> Result<PuffMaterial, Error> {
         let mut settings = Settings { boost: 1.0, technique: Technique::Hard, ..Settings::default() };
-        settings.accumulate.scale = 1;
-        (settings.soft_scatter.intensity, settings.specular_scatter.intensity) = (0.0, 0.0);
+        settings.accumulate.downscale = 1;
+        settings.soft_scatter.intensity = 0.0;
+        settings.specular_scatter.intensity = 0.0;
         let sheet = self.recipe.bake(|_| Ok::<_, Error>(()))?.picture;
         let assets = MaterialAssets {
             sprite: Sprite::from_image(Path::new("puff"), &sheet, self.recipe.layout())?,
@@ -272,7 +275,8 @@ impl PuffCloud<'_> {
             self.prepared(Vec3::Z, material, |frame| frame.render(&mut picture))?;
             Ok::<_, Error>(picture)
         });
-        let (black, white) = (black?, white?);
+        let black = black?;
+        let white = white?;
         let texels = black.texels.iter().zip(&white.texels).map(|(black, white)| 1.0 - (white.y - black.y));
         Ok(Image { size, texels: texels.collect() })
     }

@@ -169,13 +169,15 @@ impl<'a> RayCaster<'a> {
     fn hit(&self, pixel: Vec2) -> Option<Hit<'_>> {
         let at = pixel.as_uvec2();
         let at_unit_depth = self.rays.at_unit_depth(pixel / self.size);
-        let (direction, length) = (at_unit_depth.normalize(), at_unit_depth.length());
+        let direction = at_unit_depth.normalize();
+        let length = at_unit_depth.length();
         let visible_range = self.visible_depth.start() * length..=self.visible_depth.end() * length;
         let mut nearest = f32::INFINITY;
         let mut hit = None;
         let boxes = &self.scene.boxes;
         for b in indices(self.tiles.load((at / TILE_SIZE).as_ivec2()), boxes.len()).map(|index| &boxes[index]) {
-            let (origin, local) = (b.to_local(self.rays.eye - b.center), b.to_local(direction));
+            let origin = b.to_local(self.rays.eye - b.center);
+            let local = b.to_local(direction);
             let (enter, leave) = box_interval(b, origin, local);
             if enter >= leave {
                 continue;
@@ -208,7 +210,8 @@ impl<'a> RayCaster<'a> {
         let center = self.direction(at.as_vec2() + 0.5);
         let pixel_angle = (self.direction(at.as_vec2() + Vec2::new(0.5, 1.5)) - center).length();
         let shared_light = is_one_face.then(|| self.light(&hits[0], center, pixel_angle, through));
-        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        let mut sum = Vec3::ZERO;
+        let mut weights = 0.0;
         for ((hit, direction), is_in_group) in hits.iter().zip(directions).zip(is_in_group) {
             if !is_in_group {
                 continue;

@@ -207,7 +207,8 @@ impl SceneRenderer {
                 mapped_at_creation: false,
             })
         };
-        let (boxes, lights) = (size_of::<[SceneBox; MAX_BOXES]>(), size_of::<[LightUniform; MAX_LIGHTS]>());
+        let boxes = size_of::<[SceneBox; MAX_BOXES]>();
+        let lights = size_of::<[LightUniform; MAX_LIGHTS]>();
         SceneTargets {
             color: texture("demo scene color", size, COLOR_FORMAT),
             front: target("demo scene front", size, COLOR_FORMAT),
@@ -336,7 +337,8 @@ impl SceneRenderer {
         let mut boxes = [SceneBox::default(); MAX_BOXES];
         let mut count = 0;
         for (slot, caster) in boxes.iter_mut().zip(casters(&scene.boxes)) {
-            (*slot, count) = (caster, count + 1);
+            *slot = caster;
+            count += 1;
         }
         let buffer = |contents: &[u8]| {
             let usage = wgpu::BufferUsages::UNIFORM;

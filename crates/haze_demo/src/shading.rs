@@ -128,7 +128,8 @@ impl Scene {
             if b.surface == Surface::Glow as u32 {
                 continue;
             }
-            let (o, d) = (b.to_local(origin - b.center), b.to_local(direction));
+            let o = b.to_local(origin - b.center);
+            let d = b.to_local(direction);
             let (enter, leave) = box_interval(b, o, d);
             if enter < leave {
                 if leave > 0.0 && enter < distance {
@@ -146,8 +147,10 @@ impl Scene {
 
     /// Returns the unoccluded fraction of the sky over a point.
     fn ambient_visibility(&self, p: Vec3, n: Vec3) -> f32 {
-        let (near, far) = (p + n * 0.15, p + n * AMBIENT_REACH);
-        let (mut open_near, mut open_far) = (0.15_f32, AMBIENT_REACH);
+        let near = p + n * 0.15;
+        let far = p + n * AMBIENT_REACH;
+        let mut open_near = 0.15_f32;
+        let mut open_far = AMBIENT_REACH;
         for b in indices(self.occluders.at(0, p), self.boxes.len()).map(|index| &self.boxes[index]) {
             open_near = open_near.min(box_distance(b, b.to_local(near - b.center)));
             open_far = open_far.min(box_distance(b, b.to_local(far - b.center)));

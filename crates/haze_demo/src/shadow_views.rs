@@ -9,6 +9,7 @@ use haze_core::frame::{Light, LightKind, ShadowProjection};
 
 use super::boxes::{SceneBox, Surface, box_interval};
 use super::scene::Scene;
+use haze_author::backdrop::Ray;
 
 /// Lights that get a map, from the first on.
 const MAX_MAPS: usize = 8;
@@ -54,7 +55,8 @@ impl ShadowView {
                 // A box around the light shows its far side.
                 (enter < leave).then_some(if enter > 0.0 { enter } else { leave }).filter(|distance| *distance > 0.0)
             });
-            let of_mesh = scene.backdrop.mesh().and_then(|mesh| mesh.nearest((near / scale, ray / scale), (0.0, 1.0)));
+            let in_mesh = Ray { origin: near / scale, direction: ray / scale };
+            let of_mesh = scene.backdrop.mesh().and_then(|mesh| mesh.nearest(in_mesh, 0.0..=1.0));
             let nearest = enter.chain(of_mesh.map(|hit| hit.distance)).fold(f32::INFINITY, f32::min);
             if nearest < 1.0 {
                 *depth = clip_from_world.project_point3(near + ray * nearest).z;

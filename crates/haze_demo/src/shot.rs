@@ -5,11 +5,11 @@ use std::path::Path;
 
 use glam::{UVec2, Vec3};
 use haze_core::assets::material_assets::MaterialAssets;
-use haze_core::error::Error;
+use haze_core::error::{AssetError, Error};
 use haze_core::fire::FireLight;
 use haze_core::frame::{EmitterPaths, EmitterSnapshot, Light, MAX_LIGHTS, Particle};
 use haze_core::settings::{DebugView, Settings};
-use haze_preset::{AssetFolders, Preset, PresetSystem};
+use haze_preset::{AssetFolders, Camera, Preset, PresetSystem, system_list};
 
 use super::particle_scalar::ShownScalar;
 use super::scene::Scene;
@@ -71,11 +71,18 @@ impl Shot {
         let materials = preset.load_materials_from(path, folders)?;
         for (index, (system, material)) in preset.systems.iter().zip(&materials).enumerate() {
             let fits = material.info().validate(index, &system.settings);
-            fits.map_err(|error| Error::JsonField { path: path.into(), error })?;
+            fits.map_err(|error| Error::from(AssetError::JsonField { path: path.into(), error }))?;
         }
         let caches = load_particle_files(&preset, path, folders)?;
         let backdrop = Backdrop::load(&preset, path, folders)?;
         Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches, backdrop, shown_scalar: None })
+    }
+
+    /// Removes all systems but one.
+    pub fn keep_only_system(&mut self, index: usize) {
+        system_list::keep_only(&mut self.preset, index);
+        self.materials = self.materials.drain(..).skip(index).take(1).collect();
+        self.caches = self.caches.drain(..).skip(index).take(1).collect();
     }
 
     /// The shot at the time of its preset: its settings have the values of their tracks, and the ambient colors of smoke those
@@ -91,7 +98,8 @@ impl Shot {
             let light = sky.light.scaled(preset.environment.sky_exposure.exp2()).hemispheres();
             let [sky, ground] = light.map(|light| light.min(Vec3::splat(100.0)));
             for system in &mut preset.systems {
-                (system.settings.ambient.sky_color, system.settings.ambient.ground_color) = (sky, ground);
+                system.settings.ambient.sky_color = sky;
+                system.settings.ambient.ground_color = ground;
             }
         }
         Cow::Owned(Self {
@@ -109,18 +117,25 @@ impl Shot {
     /// are compared by address.
     pub fn has_same_image(&self, other: &Self) -> bool {
         let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares_memory(b);
-        let differs_only_in_exposure = || {
+        let own = self.preset.camera;
+        let differs_only_in_display = || {
             let mut preset = other.preset.clone();
-            preset.camera.exposure = self.preset.camera.exposure;
+            preset.camera = Camera { exposure: own.exposure, tonemap: own.tonemap, ..preset.camera };
             preset == self.preset
         };
-        let has_same_exposure = self.preset.camera.exposure.to_bits() == other.preset.camera.exposure.to_bits();
+        let of_other = other.preset.camera;
+        let has_same_display = own.exposure.to_bits() == of_other.exposure.to_bits() && own.tonemap == of_other.tonemap;
         (self.size, self.debug_view, self.shown_scalar) == (other.size, other.debug_view, other.shown_scalar)
-            && (self.preset == other.preset || !has_same_exposure && differs_only_in_exposure())
+            && (self.preset == other.preset || !has_same_display && differs_only_in_display())
             && self.materials.len() == other.materials.len()
             && self.materials.iter().zip(&other.materials).all(shares)
             && self.backdrop == other.backdrop
             && ParticleFrames::share_all_memory(&self.caches, &other.caches)
+    }
+
+    /// Fraction of the light that the camera's lens spreads. Only the final image has bloom.
+    pub(super) fn bloom(&self) -> f32 {
+        if self.shows_scene() && self.shown_scalar.is_none() { self.preset.camera.bloom } else { 0.0 }
     }
 
     /// True if the scene is visible. Debug views other than the final image are shown on black.
@@ -130,7 +145,7 @@ impl Shot {
 
     /// Shadow maps of the preset's lights, if the scene shades smoke. Fires have none: their lights move in every frame.
     pub(super) fn shadow_views(&self) -> Vec<ShadowView> {
-        let by_depth = self.preset.systems.iter().any(|system| system.settings.lights_by_depth());
+        let by_depth = self.preset.systems.iter().any(|system| system.settings.receives_shadow_by_depth());
         if by_depth { shadow_views(&self.preset.lights, self.mesh_bounds()) } else { Vec::new() }
     }
 
@@ -234,7 +249,7 @@ impl Shot {
         particles: &[Particle],
         seconds: f32,
     ) -> Vec<Vec3> {
-        if cache.is_some() && system.cache.is_used() {
+        if cache.is_some() && system.particle_files.is_used() {
             return particles.iter().map(|particle| particle.velocity * seconds).collect();
         }
         let mut displacements = Vec::new();

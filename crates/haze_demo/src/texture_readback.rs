@@ -73,7 +73,8 @@ impl BufferRegion {
         zero: T,
         texel: impl Fn(&[u8]) -> T + Sync,
     ) -> Image<T> {
-        let (row, step) = (self.bytes_per_row() as usize, self.texel_size() as usize);
+        let row = self.bytes_per_row() as usize;
+        let step = self.texel_size() as usize;
         let mut image = Image::new(size, zero);
         let first = self.offset as usize + layer as usize * row * self.size.height as usize;
         image.for_each(|at, out| {
@@ -135,7 +136,8 @@ impl TextureReadback {
             encoder.copy_texture_to_buffer(texture.as_image_copy(), target, region.size);
         }
         let bytes = Arc::new(Mutex::new(None));
-        let (shared_bytes, mapped) = (bytes.clone(), buffer.clone());
+        let shared_bytes = bytes.clone();
+        let mapped = buffer.clone();
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |result| {
             // Empty on failure, so that `is_finished` still becomes true.
             let view = if result.is_ok() { mapped.get_mapped_range(..).ok() } else { None };

@@ -3,29 +3,28 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::image::Image;
-use haze_core::formula::tonemap::{dither, tonemapped};
+use haze_core::formula::tonemap::{DisplayTransform, dither};
 use image::{RgbImage, RgbaImage};
 
 use super::shot::Shot;
 use haze::shader;
 
-/// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colors, unchanged values for
+/// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the tonemap of its camera for colors, unchanged values for
 /// data.
 pub fn tonemap(image: &Image<Vec4>, shot: &Shot) -> RgbImage {
     let mut rounded = Image::new(image.size, [0_u8; 3]);
-    let encoded = encoded(image, exposure(shot));
+    let encoded = encoded(image, display_transform(shot));
     rounded.for_each(|at, out| *out = quantise(encoded.load(at.as_ivec2()).xyz(), at));
     // Never the default: there is one texel per pixel.
     RgbImage::from_raw(image.size.x, image.size.y, rounded.texels.into_flattened()).unwrap_or_default()
 }
 
-/// As [`tonemap`], but not rounded. `exposure`: that of [`exposure`]. Alpha stays.
-pub fn encoded(image: &Image<Vec4>, exposure: f32) -> Image<Vec4> {
-    let encode = |color: Vec3| if exposure == 0.0 { color } else { tonemapped(color, exposure) };
+/// As [`tonemap`], but not rounded. Alpha stays.
+pub fn encoded(image: &Image<Vec4>, transform: DisplayTransform) -> Image<Vec4> {
     let mut encoded = Image::new(image.size, Vec4::ZERO);
     encoded.for_each(|at, out| {
         let texel = image.load(at.as_ivec2());
-        *out = encode(texel.xyz()).extend(texel.w);
+        *out = transform.code(texel.xyz()).extend(texel.w);
     });
     encoded
 }
@@ -44,14 +43,14 @@ pub fn rgba8_codes(encoded: Vec4, at: UVec2) -> [u8; 4] {
     [r, g, b, (encoded.w * 255.0 + 0.5) as u8]
 }
 
-/// Returns the exposure factor of a shot; 0 if its debug view shows data.
-pub fn exposure(shot: &Shot) -> f32 {
-    let preset = &shot.preset;
-    match (shot.debug_view.is_data(), preset.animation.is_empty()) {
-        (true, _) => 0.0,
-        (false, true) => preset.camera.exposure.exp2(),
-        (false, false) => preset.evaluate(preset.time).camera.exposure.exp2(),
+/// Returns the exposure and the tonemap of a shot, at its time.
+pub fn display_transform(shot: &Shot) -> DisplayTransform {
+    if shot.debug_view.is_data() {
+        return DisplayTransform::DATA;
     }
+    let preset = &shot.preset;
+    let camera = if preset.animation.is_empty() { preset.camera } else { preset.evaluate(preset.time).camera };
+    DisplayTransform { exposure: camera.exposure.exp2(), tonemap: camera.tonemap }
 }
 
 /// Dithers and rounds to 8 bits.
@@ -76,12 +75,28 @@ pub struct TonemapUniform {
     pub origin: Vec2,
     /// Size in the target, pixels. Images are stretched to it.
     pub size: Vec2,
-    /// [`exposure`] of the first and the second image.
+    /// Exposure factors of the first and the second image.
     pub exposure: Vec2,
     /// Distance from the left, pixels, from which on the second image is shown.
     pub split: f32,
     /// Factor on the difference of the two images in sRGB code. 0 shows the images instead.
     pub difference: f32,
+    /// Tonemap curves of the first and the second image.
+    pub curves: UVec2,
+    /// Zero.
+    pub padding: UVec2,
+}
+
+impl TonemapUniform {
+    /// Returns it with the transforms of the first and the second image.
+    pub fn with_transforms(self, transforms: [DisplayTransform; 2]) -> Self {
+        let [first, second] = transforms;
+        Self {
+            exposure: Vec2::new(first.exposure, second.exposure),
+            curves: UVec2::new(first.tonemap as u32, second.tonemap as u32),
+            ..self
+        }
+    }
 }
 
 /// Bind group of two images.

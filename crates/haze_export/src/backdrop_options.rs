@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::backdrop::{BLENDER_SKY_ROTATION, Backdrop};
+use haze_core::error::{AssetError, Error};
 use haze_core::settings::BackdropKind;
 use haze_demo::shot::Shot;
-use haze_preset::{Preset, backdrop_kind};
+use haze_preset::{Preset, backdrop_endings, backdrop_kind};
 
 /// Scene and sky from files, in place of those of the preset.
 #[derive(Args, Clone, Debug, Default)]
@@ -64,7 +65,7 @@ impl BackdropArguments {
         for (kind, option, file) in self.named() {
             let Some(file) = file else { continue };
             if backdrop_kind(file) != Some(kind) {
-                let expected = format!("a file that ends in .{}", kind.endings().join(" or ."));
+                let expected = format!("a file that ends in .{}", backdrop_endings(kind).join(" or ."));
                 return Err(FieldError::new(option, file.display(), expected).into());
             }
             preset.environment.backdrop_name_mut(kind).clear();
@@ -72,7 +73,7 @@ impl BackdropArguments {
         let mut shot = load(preset)?;
         for (kind, option, file) in self.named() {
             let Some(file) = file else { continue };
-            let named = |error| Error::Asset { named_by: option.into(), error: Box::new(error) };
+            let named = |error| AssetError::Named { named_by: option.into(), error: Box::new(error) };
             shot.backdrop.load_file(kind, file).map_err(named)?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             *shot.preset.environment.backdrop_name_mut(kind) = name;

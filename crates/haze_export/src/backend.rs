@@ -3,9 +3,9 @@
 use std::cell::RefCell;
 
 use glam::Vec4;
-use haze::Error;
 use haze::shader::Sources;
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_demo::headless::Headless;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;

@@ -43,7 +43,7 @@ impl Engine {
 
     /// Returns true if a material comes with the sprite.
     pub fn takes_sprite(self) -> bool {
-        self == Self::Three
+        matches!(self, Self::Godot | Self::Three)
     }
 
     /// Order of the sides in two maps of six-way light.

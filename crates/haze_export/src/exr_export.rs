@@ -8,11 +8,11 @@ use exr::prelude::{
 };
 use glam::{UVec2, Vec4, Vec4Swizzles};
 use half::f16;
-use haze::Error;
 use haze_core::assets::image::Image;
+use haze_core::error::{AssetError, Error};
 use haze_demo::particle_scalar::ParticleScalar;
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::exposure;
+use haze_demo::tonemap_pass::display_transform;
 use haze_preset::write_file;
 
 use crate::backend::Backend;
@@ -58,7 +58,7 @@ impl ExrOptions {
 /// | `emission.R`, `.G`, `.B` | light of fire alone, premultiplied; if a system burns, in one of the frames of a sequence |
 pub async fn write(backend: &Backend, shot: &Shot, options: ExrOptions, path: &Path) -> Result<(), Error> {
     let channels = channels(backend, shot, options).await?;
-    write_file(path, &encode(shot.size, channels, path)?)
+    Ok(write_file(path, &encode(shot.size, channels, path)?)?)
 }
 
 /// Writes every frame to its own file. If it is stopped, the files written so far stay.
@@ -74,7 +74,8 @@ pub async fn write_sequence(
         if !progress.goes_on(done, frames.count()) {
             return Err(frames.stopped_sequence(names, done));
         }
-        let (shot, path) = (frames.shot(shot, frame), names.of(frame));
+        let shot = frames.shot(shot, frame);
+        let path = names.of(frame);
         let written = write(backend, &shot, options, &path);
         progress.show(format!("haze: {}", path.display()), written).await?;
     }
@@ -86,7 +87,7 @@ async fn channels(backend: &Backend, shot: &Shot, options: ExrOptions) -> Result
     let ExrOptions { background, seconds, has_fire } = options;
     let is_transparent = background.is_transparent(shot);
     let shot = &*shot.at_its_time();
-    let exposure = exposure(shot);
+    let exposure = display_transform(shot).exposure;
     let lit = |texel: Vec4| (texel.xyz() * if exposure > 0.0 { exposure } else { 1.0 }).extend(texel.w);
     let mut channels = Vec::new();
     if !is_transparent {
@@ -125,9 +126,11 @@ fn encode(size: UVec2, channels: Vec<Channel>, path: &Path) -> Result<Vec<u8>, E
         Layer::new(size, attributes, Encoding::SMALL_FAST_LOSSLESS, AnyChannels::sort(SmallVec::from_vec(channels)));
     let mut bytes = Vec::new();
     let written = exr::prelude::Image::from_layer(layer).write().to_buffered(Cursor::new(&mut bytes));
-    written.map_err(|error| Error::Image {
-        path: path.into(),
-        reason: format!("{error}; expected an image that OpenEXR can hold"),
+    written.map_err(|error| {
+        Error::from(AssetError::Image {
+            path: path.into(),
+            reason: format!("{error}; expected an image that OpenEXR can hold"),
+        })
     })?;
     Ok(bytes)
 }
@@ -189,7 +192,9 @@ mod tests {
         let expected = ["A", "B", "G", "R", "amount.Y", "depth.Z", "motion.X", "motion.Y", "motion.Z"];
         assert_eq!(names, [&expected[..], &["normal.X", "normal.Y", "normal.Z"]].concat());
         let values = |wanted: &str| &channels.iter().find(|(name, _)| name == wanted).unwrap().1;
-        let (alpha, normal_z, depth) = (values("A"), values("normal.Z"), values("depth.Z"));
+        let alpha = values("A");
+        let normal_z = values("normal.Z");
+        let depth = values("depth.Z");
         assert!(alpha.iter().any(|a| *a > 0.9) && alpha.contains(&0.0));
         // Clear pixels have no normal and no depth, and most of the smoke faces the viewer.
         assert!(alpha.iter().zip(normal_z).all(|(a, z)| *a > 0.0 || *z == 0.0));
@@ -239,7 +244,8 @@ mod tests {
     fn fire_is_a_part_of_the_light() {
         let channels = written("campfire");
         let values = |wanted: &str| &channels.iter().find(|(name, _)| name == wanted).unwrap().1;
-        let (fire, all) = (values("emission.R"), values("R"));
+        let fire = values("emission.R");
+        let all = values("R");
         assert!(fire.iter().any(|fire| *fire > 1.0));
         // Half floats have steps of a thousandth.
         assert!(fire.iter().zip(all).all(|(fire, all)| *fire <= all * 1.002 + 1.0e-3));

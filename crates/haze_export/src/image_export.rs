@@ -6,11 +6,12 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_core::error::{AssetError, Error};
 use haze_demo::shot::Shot;
 #[cfg(not(target_arch = "wasm32"))]
-use haze_preset::{AnimatedPreset, Preset};
-use haze_preset::{CompressionEffort, write_file, write_png};
+use haze_preset::AnimatedPreset;
+use haze_preset::{CompressionEffort, Preset, write_file, write_png};
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, DynamicImage, Frame};
 
@@ -60,7 +61,8 @@ impl ExportProgress<'_> {
     /// Renders an image; `None` if the work is to stop.
     async fn render(
         &self,
-        (done, count): (u32, u32),
+        done: u32,
+        count: u32,
         backend: &Backend,
         shot: &Shot,
         format: ImageFormat,
@@ -140,8 +142,8 @@ impl Frames {
     ) -> Result<(), Error> {
         let format = self.format.resolved(shot);
         for (done, frame) in (0..).zip(self.range.clone()) {
-            let (shot, place) = (self.shot(shot, frame), (done, self.count()));
-            let picture = progress.render(place, backend, &shot, format).await?;
+            let shot = self.shot(shot, frame);
+            let picture = progress.render(done, self.count(), backend, &shot, format).await?;
             let picture = picture.ok_or_else(|| stopped(done))?;
             take(frame, picture)?;
         }
@@ -150,7 +152,6 @@ impl Frames {
 }
 
 /// True if a system burns.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn burns(preset: &Preset) -> bool {
     preset.systems.iter().any(|system| system.settings.burns())
 }
@@ -162,7 +163,10 @@ pub fn image_label(done: u32, count: u32) -> String {
 
 /// Error of work that was stopped.
 pub fn stopped(path: &Path, what: String) -> Error {
-    Error::Io { path: path.into(), error: IoError::new(ErrorKind::Interrupted, format!("stopped: {what}")) }
+    Error::from(AssetError::Io {
+        path: path.into(),
+        error: IoError::new(ErrorKind::Interrupted, format!("stopped: {what}")),
+    })
 }
 
 /// Error of a single output file, which is not written if the work is stopped.
@@ -179,7 +183,7 @@ pub async fn write_sequence(
     effort: CompressionEffort,
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
-    let write = |frame, picture: DynamicImage| write_png(&names.of(frame), &picture, effort);
+    let write = |frame, picture: DynamicImage| Ok(write_png(&names.of(frame), &picture, effort)?);
     frames.render(backend, shot, progress, write, |done| frames.stopped_sequence(names, done)).await
 }
 
@@ -194,7 +198,8 @@ pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), 
 
 /// The same, without a check of the memory.
 pub fn check_cells(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), Error> {
-    let (rows, columns) = (cells.x, cells.y);
+    let rows = cells.x;
+    let columns = cells.y;
     let count = frames.count();
     if count > cells.element_product() {
         let expected = format!("at least {count} cells, one for each frame");
@@ -248,7 +253,7 @@ pub async fn write_gif(
     path: &Path,
     progress: &ExportProgress<'_>,
 ) -> Result<(), Error> {
-    let failed = |error| Error::Image { path: path.into(), reason: format!("{error}") };
+    let failed = |error| Error::from(AssetError::Image { path: path.into(), reason: format!("{error}") });
     let mut bytes = Vec::new();
     let mut encoder = GifEncoder::new_with_speed(&mut bytes, 10);
     encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
@@ -263,7 +268,7 @@ pub async fn write_gif(
     let stopped = |done| stopped_before_writing(path, done, frames.count());
     frames.render(backend, shot, progress, encode, stopped).await?;
     drop(encoder);
-    write_file(path, &bytes)
+    Ok(write_file(path, &bytes)?)
 }
 
 /// Images on labelled sheets, and frames of a GIF, which has no partial opacity.
@@ -285,7 +290,7 @@ pub async fn render_sheet(
     let size = cells.first().map_or(UVec2::ONE, |(_, shot)| shot.size);
     let mut sheet = ContactSheet::new(size, columns, count);
     for (index, (label, shot)) in (0..).zip(cells) {
-        let picture = progress.render((index, count), backend, shot, SCENE).await?;
+        let picture = progress.render(index, count, backend, shot, SCENE).await?;
         let picture = picture.ok_or_else(|| stopped_before_writing(path, index, count))?;
         sheet.place(index, label, &picture.into_rgb8());
     }

@@ -1,11 +1,11 @@
 //! Pixels of exported images: background, alpha, and bits per channel.
 
 use glam::{UVec2, Vec4};
-use haze::Error;
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::{encoded, exposure, rgba8, tonemap};
+use haze_demo::tonemap_pass::{display_transform, encoded, rgba8, tonemap};
 use haze_preset::{KeyValue, Preset, SceneName};
 use image::{DynamicImage, ImageBuffer, imageops};
 
@@ -66,6 +66,19 @@ pub enum Alpha {
     Premultiplied,
 }
 
+/// Light of fire in the color of a flipbook for an engine. It is in `emission.png` in any case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(not(target_arch = "wasm32"), derive(clap::ValueEnum))]
+#[cfg_attr(test, derive(serde::Deserialize))]
+#[serde(rename_all = "snake_case")]
+pub enum Emission {
+    /// Part of the color, which is complete.
+    #[default]
+    Contained,
+    /// Not part of the color; to be added to it.
+    Separate,
+}
+
 /// Bits per channel of PNGs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(not(target_arch = "wasm32"), derive(clap::ValueEnum))]
@@ -106,7 +119,9 @@ impl ImageFormat {
             let image = render(shot).await?;
             return Ok(match self.bits {
                 BitDepth::Eight => tonemap(&image, shot).into(),
-                BitDepth::Sixteen => DynamicImage::from(rgba16(&encoded(&image, exposure(shot)))).into_rgb16().into(),
+                BitDepth::Sixteen => {
+                    DynamicImage::from(rgba16(&encoded(&image, display_transform(shot)))).into_rgb16().into()
+                }
             });
         }
         let [dark, bright] = before_two_skies(shot);
@@ -115,7 +130,7 @@ impl ImageFormat {
             Alpha::Straight => straight(&smoke),
             Alpha::Premultiplied => smoke,
         };
-        let encoded = encoded(&smoke, exposure(shot));
+        let encoded = encoded(&smoke, display_transform(shot));
         Ok(match self.bits {
             BitDepth::Eight => rgba8(&encoded).into(),
             BitDepth::Sixteen => rgba16(&encoded).into(),
@@ -150,7 +165,8 @@ fn rgba16(encoded: &Image<Vec4>) -> ImageBuffer<image::Rgba<u16>, Vec<u16>> {
 /// Copies an image onto a sheet of the same pixels. `imageops` would convert those of a [`DynamicImage`] to 8 bits.
 pub fn place(sheet: &mut DynamicImage, picture: &DynamicImage, at: UVec2) {
     use DynamicImage::{ImageRgb8, ImageRgb16, ImageRgba8, ImageRgba16};
-    let (x, y) = (i64::from(at.x), i64::from(at.y));
+    let x = i64::from(at.x);
+    let y = i64::from(at.y);
     match (sheet, picture) {
         (ImageRgb8(sheet), ImageRgb8(picture)) => imageops::replace(sheet, picture, x, y),
         (ImageRgba8(sheet), ImageRgba8(picture)) => imageops::replace(sheet, picture, x, y),

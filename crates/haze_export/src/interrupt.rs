@@ -4,7 +4,7 @@
 use std::io;
 use std::sync::atomic::{AtomicI32, Ordering};
 
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 
 /// Number of the signal that came; 0 for none.
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
@@ -22,7 +22,7 @@ pub fn is_requested() -> bool {
 /// Stops work if that was requested. `work` and `outcome` are named in the error.
 ///
 /// # Errors
-/// [`Error::Io`] with the name of the signal.
+/// [`AssetError::Io`] with the name of the signal.
 pub fn check(work: &str, outcome: &str) -> Result<(), Error> {
     let signal = match SIGNAL.load(Ordering::Relaxed) {
         0 => return Ok(()),
@@ -31,7 +31,7 @@ pub fn check(work: &str, outcome: &str) -> Result<(), Error> {
         _ => "Ctrl-C",
     };
     let reason = format!("stopped by {signal}; {outcome}");
-    Err(Error::Io { path: work.into(), error: io::Error::new(io::ErrorKind::Interrupted, reason) })
+    Err(Error::from(AssetError::Io { path: work.into(), error: io::Error::new(io::ErrorKind::Interrupted, reason) }))
 }
 
 #[cfg(unix)]

@@ -1,7 +1,7 @@
 //! Checks that an image fits into memory.
 
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 
 /// Bytes of memory per pixel between rendering and the file. The CPU renderer takes 40: color 16, depth 4, and at full
 /// scale accumulation 16 and reduced depth 4. A readback from the GPU takes 32: two buffers of 8, then 16. Half as much
@@ -21,5 +21,5 @@ pub fn check_memory(option: &str, size: UVec2, bytes_per_pixel: u64) -> Result<(
     }
     let reason = format!("out of memory: it needs {} MiB; expected a smaller size", bytes >> 20);
     let error = std::io::Error::new(std::io::ErrorKind::OutOfMemory, reason);
-    Err(Error::Io { path: format!("{option} {}x{}", size.x, size.y).into(), error })
+    Err(Error::from(AssetError::Io { path: format!("{option} {}x{}", size.x, size.y).into(), error }))
 }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::ramp::RampRecipe;
+use haze_core::error::Error;
 use haze_preset::{AssetFolders, Preset, encode_baked_png};
 
 use super::share_link::{Look, fragment_of_name};

@@ -7,14 +7,15 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::UVec2;
+use haze::FieldError;
 use haze::shader::Sources;
-use haze::{Error, FieldError};
 use haze_author::particle_files::unused_columns;
 use haze_author::preset::no_effect_reason_of_set;
+use haze_core::error::Error;
 use haze_core::settings::{Choice, ParseChoiceError, RenderPath, ScaleMode, Technique};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
-use haze_preset::{AssetFolders, CompressionEffort, MAX_TIME, Preset, write_png};
+use haze_preset::{AssetFolders, CompressionEffort, MAX_TIME, Preset, system_list, write_png};
 use image::DynamicImage;
 
 use super::backdrop_options::{BackdropArguments, BackdropShot, SKY_ROTATION};
@@ -62,10 +63,13 @@ pub struct ShotArguments {
     /// Seed of every emitter. Default: the preset's.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_hyphen_values = true)]
     seed: Option<u32>,
-    /// Set a field of the preset, named by its path or the end of it: `accumulate.scale=4`, `lights[0].intensity=30`.
+    /// Set a field of the preset, named by its path or the end of it: `accumulate.downscale=4`, `lights[0].intensity=30`.
     /// It replaces keyframes. May be given more than once.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
     set: Vec<(String, String)>,
+    /// Draw only this particle system: its name, or its number, counted from 0.
+    #[arg(long, value_name = "NAME|INDEX")]
+    solo: Option<String>,
     /// PNG to write.
     #[arg(short, long, value_name = "FILE.png")]
     pub output: PathBuf,
@@ -137,7 +141,7 @@ impl ShotArguments {
     /// Like [`Self::load_for`], with the ending of each output. Says which parts of a scene file are not shown, which columns of
     /// particle files are not used, and which changes have no effect.
     pub fn load_outputs(&self, outputs: &[(&str, PathBuf, &str)]) -> Result<Shot, Error> {
-        let ChangedShot { shot, names } = self.changed_shot(None)?;
+        let ChangedShot { mut shot, names, solo } = self.changed_shot(None)?;
         // Errors come first: a refused command says one line.
         self.check_outputs(&shot, outputs)?;
         for note in shot.backdrop.notes(&shot.preset.environment) {
@@ -157,6 +161,10 @@ impl ShotArguments {
         if let Some(line) = self.backdrop.sky_note(&shot, is_turned) {
             print_error(line);
         }
+        // Last, because it renumbers the systems.
+        if let Some(index) = solo {
+            shot.keep_only_system(index);
+        }
         Ok(shot)
     }
 
@@ -169,9 +177,11 @@ impl ShotArguments {
     }
 
     /// Builds the shot with one more field set, as by `--set`.
-    pub fn varied_shot(&self, option: &'static str, assignment: (&str, &str)) -> Result<VariedShot, Error> {
-        let (field, value) = assignment;
-        let ChangedShot { shot, names } = self.changed_shot(Some(Assignment { option, field, value }))?;
+    pub fn varied_shot(&self, option: &'static str, field: &str, value: &str) -> Result<VariedShot, Error> {
+        let ChangedShot { mut shot, names, solo } = self.changed_shot(Some(Assignment { option, field, value }))?;
+        if let Some(index) = solo {
+            shot.keep_only_system(index);
+        }
         Ok(VariedShot { shot, name: names.last().cloned().unwrap_or_default() })
     }
 
@@ -181,7 +191,7 @@ impl ShotArguments {
         let of_systems = [
             ("systems.emitter.seed", self.seed.map(|seed| seed.to_string())),
             ("systems.settings.accumulate.scale_mode", self.scale.map(|scale| scale.mode().name().into())),
-            ("systems.settings.accumulate.scale", self.scale.and_then(ScaleArgument::pixels)),
+            ("systems.settings.accumulate.downscale", self.scale.and_then(ScaleArgument::pixels)),
             ("systems.settings.path", self.run.path.map(|path| path.name().into())),
             ("systems.settings.technique", self.technique.map(|technique| technique.name().into())),
         ];
@@ -202,6 +212,7 @@ impl ShotArguments {
             }
         }
         preset.validate()?;
+        let solo = self.solo.as_ref().map(|name| system_list::find(&preset, "--solo", name)).transpose()?;
         let load = |preset| Shot::from_folders(preset, &path, &folders, self.run.size);
         let BackdropShot { mut shot, replaced } = self.backdrop.apply(preset, load)?;
         for (assignment, name) in assignments.iter().zip(&mut names) {
@@ -211,7 +222,7 @@ impl ShotArguments {
             }
         }
         shot.preset.validate()?;
-        Ok(ChangedShot { shot, names })
+        Ok(ChangedShot { shot, names, solo })
     }
 
     /// Effort to compress PNGs.
@@ -231,6 +242,8 @@ struct ChangedShot {
     shot: Shot,
     /// Full names of the fields of all assignments.
     names: Vec<String>,
+    /// Index of the only system to draw.
+    solo: Option<usize>,
 }
 
 /// A shot with one more field set.
@@ -322,7 +335,7 @@ pub fn parse_size(text: &str) -> Result<UVec2, String> {
 /// A line that says what is expected.
 pub fn parse_assignment(text: &str) -> Result<(String, String), String> {
     let (field, value) = text.split_once('=').ok_or_else(|| {
-        format!("{text:?} is not an assignment; expected FIELD=VALUE, for example accumulate.scale=4")
+        format!("{text:?} is not an assignment; expected FIELD=VALUE, for example accumulate.downscale=4")
     })?;
     Ok((field.into(), value.into()))
 }

@@ -4,9 +4,9 @@ use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_core::assets::file_type;
-use haze_core::error::{alters_line, io_expected, io_problem};
+use haze_core::error::{AssetError, Error, alters_line, io_expected, io_problem};
 use haze_preset::{FileIdentity, check_writable};
 
 use super::recipe_files::has_extension;
@@ -21,7 +21,7 @@ pub use print_line;
 /// Writes one line to standard output; control characters are escaped.
 ///
 /// # Errors
-/// [`Error::Io`] if standard output cannot be written; a closed pipe is none.
+/// [`AssetError::Io`] if standard output cannot be written; a closed pipe is none.
 pub fn write_line(line: Arguments<'_>) -> Result<(), Error> {
     write_text(one_line(line))
 }
@@ -32,7 +32,7 @@ pub fn write_text(text: impl Display) -> Result<(), Error> {
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
         // The reader has closed the pipe, as in `haze preset schema | head`.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(|error| Error::Io { path: "standard output".into(), error }),
+        written => written.map_err(|error| Error::from(AssetError::Io { path: "standard output".into(), error })),
     }
 }
 
@@ -68,7 +68,8 @@ impl Failures {
         items: impl IntoIterator<Item = T>,
         work: impl FnMut(T) -> Result<U, Error>,
     ) -> (Vec<U>, Self) {
-        let (mut done, mut failures) = (Vec::new(), Vec::new());
+        let mut done = Vec::new();
+        let mut failures = Vec::new();
         for result in items.into_iter().map(work) {
             match result {
                 Ok(value) => done.push(value),
@@ -116,14 +117,14 @@ impl OutputFolder {
     /// Makes a folder, and those above it, where they do not exist.
     ///
     /// # Errors
-    /// As [`check_folder`]; [`Error::Io`] if it cannot be made.
+    /// As [`check_folder`]; [`AssetError::Io`] if it cannot be made.
     pub fn make(option: &str, folder: &Path) -> Result<Self, Error> {
         check_folder(option, folder)?;
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
         // Dropped, and so removed, if only a part of it can be made.
         let made = Self { made };
-        std::fs::create_dir_all(folder).map_err(|error| Error::Io { path: folder.into(), error })?;
+        std::fs::create_dir_all(folder).map_err(|error| Error::from(AssetError::Io { path: folder.into(), error }))?;
         Ok(made)
     }
 }

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 
 use eframe::wgpu;
 use glam::Vec4;
-use haze::Error;
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use wasm_bindgen_futures::JsFuture;

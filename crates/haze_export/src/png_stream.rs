@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use haze::Error;
 use haze_core::assets::parallel::parallel_for_each;
+use haze_core::error::{AssetError, Error};
 use haze_preset::{CompressionEffort, write_file_from};
 use png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter, StreamWriter};
 
@@ -41,7 +41,7 @@ impl PngStream {
     /// Starts a PNG.
     ///
     /// # Errors
-    /// [`Error::Io`] if no temporary file can be created.
+    /// [`AssetError::Io`] if no temporary file can be created.
     pub fn new(shape: PngShape<'_>, effort: CompressionEffort) -> Result<Self, Error> {
         let filters = match effort {
             CompressionEffort::Quick => &[Filter::Adaptive][..],
@@ -63,19 +63,19 @@ impl PngStream {
         let tries: Result<_, EncodingError> = filters.iter().map(start).collect();
         match tries {
             Ok(tries) => Ok(Self { path: shape.path, tries }),
-            Err(error) => Err(Error::Io { path: shape.path, error: error.into() }),
+            Err(error) => Err(Error::from(AssetError::Io { path: shape.path, error: error.into() })),
         }
     }
 
     /// Adds rows: the codes of their pixels.
     ///
     /// # Errors
-    /// [`Error::Io`] if they cannot be written.
+    /// [`AssetError::Io`] if they cannot be written.
     pub fn write_rows(&mut self, codes: &[u8]) -> Result<(), Error> {
         parallel_for_each(self.tries.iter_mut(), |attempt| attempt.result = attempt.rows.write_all(codes));
         for attempt in &mut self.tries {
             let result = std::mem::replace(&mut attempt.result, Ok(()));
-            result.map_err(|error| Error::Io { path: self.path.clone(), error })?;
+            result.map_err(|error| Error::from(AssetError::Io { path: self.path.clone(), error }))?;
         }
         Ok(())
     }
@@ -83,7 +83,7 @@ impl PngStream {
     /// Ends the PNG after its last row.
     ///
     /// # Errors
-    /// [`Error::Io`] if rows are missing, or it cannot be written.
+    /// [`AssetError::Io`] if rows are missing, or it cannot be written.
     pub fn finish(self) -> Result<EncodedPng, Error> {
         let Self { path, tries } = self;
         let finish = |attempt: Try| -> io::Result<(u64, File)> {
@@ -95,8 +95,8 @@ impl PngStream {
         match smallest {
             Ok(Some((_, file))) => Ok(EncodedPng { path, file }),
             // Never: every effort has a filter.
-            Ok(None) => Err(Error::Io { path, error: io::ErrorKind::InvalidInput.into() }),
-            Err(error) => Err(Error::Io { path, error }),
+            Ok(None) => Err(Error::from(AssetError::Io { path, error: io::ErrorKind::InvalidInput.into() })),
+            Err(error) => Err(Error::from(AssetError::Io { path, error })),
         }
     }
 }
@@ -111,11 +111,11 @@ impl EncodedPng {
     /// Writes the file as [`haze_preset::write_file`] does.
     ///
     /// # Errors
-    /// [`Error::Io`] if it cannot be written.
+    /// [`AssetError::Io`] if it cannot be written.
     pub fn write(&self) -> Result<(), Error> {
         let mut file = &self.file;
-        file.rewind().map_err(|error| Error::Io { path: self.path.clone(), error })?;
-        write_file_from(&self.path, &mut file)
+        file.rewind().map_err(|error| Error::from(AssetError::Io { path: self.path.clone(), error }))?;
+        Ok(write_file_from(&self.path, &mut file)?)
     }
 }
 

@@ -3,8 +3,9 @@
 //! Layers are multiplied by the smoke's opacity, which is in alpha: such images can be mixed, as the frames of a loop are.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use haze::{Error, Light, LightKind};
+use haze::{Light, LightKind};
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_core::formula::color::luminance;
 use haze_core::settings::DebugView;
 use haze_demo::particle_scalar::ParticleScalar;

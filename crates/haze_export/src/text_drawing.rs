@@ -11,7 +11,8 @@ pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, color: Rgb
         if let Some(outline) = font.outline_glyph(id.with_scale_and_position(height, point(x + left, baseline))) {
             let bounds = outline.px_bounds();
             outline.draw(|dx, dy, coverage| {
-                let (px, py) = (bounds.min.x as i64 + i64::from(dx), bounds.min.y as i64 + i64::from(dy));
+                let px = bounds.min.x as i64 + i64::from(dx);
+                let py = bounds.min.y as i64 + i64::from(dy);
                 let inside =
                     (0..i64::from(picture.width())).contains(&px) && (0..i64::from(picture.height())).contains(&py);
                 if inside {

@@ -18,7 +18,7 @@ use super::preset_file::Preset;
 ///     let preset = animated.evaluate(f64::from(frame) / 60.0);
 ///     let (lights, settings) = (&preset.lights, &preset.systems[0].settings);
 /// }
-/// # Ok::<(), haze_core::error::Error>(())
+/// # Ok::<(), haze_core::error::AssetError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct AnimatedPreset {
@@ -110,7 +110,7 @@ mod tests {
             r#"{"setting": "camera.exposure", "keys": [{"time": 1, "value": 0, "ease": "linear"}, {"time": 3, "value": 2}]},
             {"setting": "lights[1].color", "keys": [{"time": 0, "value": [1, 1, 1], "ease": "linear"}, {"time": 2, "value": [1, 0.5, 0]}]},
             {"setting": "lights[1].direction", "keys": [{"time": 0, "value": [0, -1, 0], "ease": "linear"}, {"time": 2, "value": [-1, 0, 0]}]},
-            {"setting": "systems[0].settings.accumulate.scale", "keys": [{"time": 0, "value": 1, "ease": "linear"}, {"time": 2, "value": 4}]},
+            {"setting": "systems[0].settings.accumulate.downscale", "keys": [{"time": 0, "value": 1, "ease": "linear"}, {"time": 2, "value": 4}]},
             {"setting": "systems[0].settings.path", "keys": [{"time": 0, "value": "raster"}, {"time": 2, "value": "tiled"}]},
             {"setting": "environment.lamp", "keys": [{"time": 2, "value": true}, {"time": 4, "value": false}]},
             {"setting": "lights[2].intensity", "flicker": {"amount": 0.5, "rate": 8}}"#,
@@ -134,7 +134,7 @@ mod tests {
         let early = preset.evaluate(1.0);
         assert!(early.lights[1].color.distance(Vec3::new(1.0, 0.75, 0.5)) < 1e-6, "linear light");
         assert!(early.lights[1].direction.distance(Vec3::new(-1.0, -1.0, 0.0).normalize()) < 1e-5);
-        assert_eq!(early.systems[0].settings.accumulate.scale, 3, "2.5 is rounded");
+        assert_eq!(early.systems[0].settings.accumulate.downscale, 3, "2.5 is rounded");
         let share = |time: f64| preset.evaluate(time).lights[2].intensity / preset.lights[2].intensity;
         assert!((0..50).any(|step| (share(f64::from(step) * 0.1) - 1.0).abs() > 0.2));
         assert!((0..50).all(|step| (share(f64::from(step) * 0.1) - 1.0).abs() <= 0.5 + 1e-6));
@@ -203,7 +203,7 @@ mod tests {
             (
                 r#"{"setting": "systems[0].settings.accumulate.depth_source", "keys": [{"time": 2, "value": "host"}]}"#
                     .into(),
-                "my.json: systems[0].settings.accumulate.scale: 2 is not valid at 2 s; expected 1 with depth_source \"host\"",
+                "my.json: systems[0].settings.accumulate.downscale: 2 is not valid at 2 s; expected 1 with depth_source \"host\"",
             ),
             (
                 format!(r#"{{"setting": "camera.fov", "period": 200000, {key}}}"#),
@@ -272,7 +272,7 @@ mod tests {
                 flicker: Flicker { amount: 0.25, ..Flicker::default() },
             },
             Track {
-                setting: "systems[0].settings.sprite.freeze_animation".into(),
+                setting: "systems[0].settings.debug.freeze_animation".into(),
                 keys: vec![key(0.0, KeyValue::Flag(true))],
                 ..Track::default()
             },

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 
 use super::sequence::exists;
 use crate::{builtin, directory};
@@ -64,8 +64,8 @@ impl AssetFolders {
     /// reading it gives the reason.
     ///
     /// # Errors
-    /// [`Error::Image`] if no folder has it, with the folders and the most similar name.
-    pub fn find(&self, file: &Path) -> Result<PathBuf, Error> {
+    /// [`AssetError::Image`] if no folder has it, with the folders and the most similar name.
+    pub fn find(&self, file: &Path) -> Result<PathBuf, AssetError> {
         self.candidate_paths(file).find(|place| exists(place)).ok_or_else(|| self.missing(file))
     }
 
@@ -73,7 +73,7 @@ impl AssetFolders {
         std::iter::once(&self.own).chain(&self.shared).map(PathBuf::as_path)
     }
 
-    fn missing(&self, file: &Path) -> Error {
+    fn missing(&self, file: &Path) -> AssetError {
         let folders: Vec<_> = self
             .all()
             .map(|folder| std::path::absolute(folder.join(".")).unwrap_or(folder.into()).display().to_string())
@@ -84,13 +84,14 @@ impl AssetFolders {
         let is_built_in = BUILT_IN.iter().any(|list| builtin::find(list, name).is_some());
         let nearest = if is_built_in { format!("; the built-in one is {name:?}") } else { nearest };
         let reason = format!("No such file in {}{nearest}", folders.join(", nor in "));
-        Error::Image { path: self.own.join(file), reason }
+        AssetError::Image { path: self.own.join(file), reason }
     }
 }
 
 /// Most similar name of a file in the same folder with the same extension, and its similarity.
 fn nearest(file: &Path) -> Option<(f64, String)> {
-    let (name, folder) = (file.file_name()?.to_str()?, file.parent()?);
+    let name = file.file_name()?.to_str()?;
+    let folder = file.parent()?;
     let ending = file.extension()?;
     let is_kind = |name: &String| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
     let names = directory::names(folder).ok()?.take(MAX_FOLDER_ENTRIES);

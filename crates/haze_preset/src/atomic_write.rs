@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use haze_core::assets::file_type::{self, nonblocking};
-use haze_core::error::{Error, LINK_LOOP, display_path};
+use haze_core::error::{AssetError, LINK_LOOP, display_path};
 
 /// Writes a temporary file in the same folder and renames it to `path`. Readers never see a partial file, and a failed
 /// write leaves the old file. The new file keeps the old one's owner and permissions. A symbolic link is followed and
@@ -25,17 +25,17 @@ use haze_core::error::{Error, LINK_LOOP, display_path};
 /// have, is overwritten in place. If that fails, the old contents are restored.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be written.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+/// [`AssetError::Io`] if the file cannot be written.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), AssetError> {
     write_file_from(path, &mut &*bytes)
 }
 
 /// As [`write_file`], for contents that are not in memory.
 ///
 /// # Errors
-/// [`Error::Io`] if the contents cannot be read, or the file cannot be written.
-pub fn write_file_from(path: &Path, contents: &mut dyn Read) -> Result<(), Error> {
-    let io = |error| Error::Io { path: path.into(), error };
+/// [`AssetError::Io`] if the contents cannot be read, or the file cannot be written.
+pub fn write_file_from(path: &Path, contents: &mut dyn Read) -> Result<(), AssetError> {
+    let io = |error| AssetError::Io { path: path.into(), error };
     let target = resolve_links(path).map_err(io)?;
     let old = replaceable_file(&target).map_err(|error| io(explain_link(path, &target, error)))?;
     write_atomically(&target, old.as_ref(), contents).map_err(io)
@@ -46,14 +46,14 @@ pub fn write_file_from(path: &Path, contents: &mut dyn Read) -> Result<(), Error
 /// this one gets the new contents.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be written, or no file can be created in the folder.
-pub fn write_state_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+/// [`AssetError::Io`] if the file cannot be written, or no file can be created in the folder.
+pub fn write_state_file(path: &Path, bytes: &[u8]) -> Result<(), AssetError> {
     let write = || {
         let old = replaceable_file(path)?;
         let (partial, file) = create_partial(path)?;
         put(&partial, file, path, old.as_ref(), &mut &*bytes)
     };
-    write().map_err(|error| Error::Io { path: path.into(), error })
+    write().map_err(|error| AssetError::Io { path: path.into(), error })
 }
 
 /// Checks that [`write_file`] could start now, for callers with long work before the write. Changes nothing.

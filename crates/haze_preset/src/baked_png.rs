@@ -10,7 +10,7 @@ use image::DynamicImage;
 
 use haze_core::assets::image::png_chunks::chunk;
 use haze_core::assets::image::read_file;
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 
 use crate::atomic_write::write_file;
 use crate::png_writer::{CompressionEffort, encode_png};
@@ -21,16 +21,16 @@ const MARK_BYTES: usize = 12 + KEYWORD.len() + 16;
 /// Writes the image of a recipe as a small PNG with a mark, as [`write_file`] does.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be written.
-pub fn write_baked_png(path: &Path, picture: &DynamicImage) -> Result<(), Error> {
+/// [`AssetError::Io`] if the file cannot be written.
+pub fn write_baked_png(path: &Path, picture: &DynamicImage) -> Result<(), AssetError> {
     write_file(path, &encode_baked_png(path, picture)?)
 }
 
 /// Encodes the image of a recipe as [`write_baked_png`] writes it. `path` is used only in errors.
 ///
 /// # Errors
-/// [`Error::Io`] if the encoder fails.
-pub fn encode_baked_png(path: &Path, picture: &DynamicImage) -> Result<Vec<u8>, Error> {
+/// [`AssetError::Io`] if the encoder fails.
+pub fn encode_baked_png(path: &Path, picture: &DynamicImage) -> Result<Vec<u8>, AssetError> {
     Ok(marked(encode_png(path, picture, CompressionEffort::Small)?))
 }
 

@@ -5,7 +5,7 @@ use haze_core::assets::json;
 use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_core::error::{Error, builtin_path};
+use haze_core::error::{AssetError, builtin_path};
 use haze_core::settings::ImageRole;
 
 /// A built-in file: its name and contents.
@@ -164,6 +164,18 @@ pub const PRESETS: &[Builtin] = presets!([
     "wildfire_sky"
 ]);
 
+/// Layers, in the order of their shelf: presets of one system.
+pub(crate) const LAYERS: &[Builtin] = presets!([
+    "layers/smoke",
+    "layers/steam",
+    "layers/flame",
+    "layers/sparks",
+    "layers/embers",
+    "layers/ground_dust",
+    "layers/shock_ring",
+    "layers/magic_wisps"
+]);
+
 /// Returns the built-in images for a role; empty for details and six-way maps.
 pub fn for_role(role: ImageRole) -> &'static [Builtin] {
     match role {
@@ -185,7 +197,7 @@ impl Builtin {
     ///
     /// # Errors
     /// As [`decode_color_png`].
-    pub fn ramp(&self) -> Result<Ramp, Error> {
+    pub fn ramp(&self) -> Result<Ramp, AssetError> {
         Ok(Ramp::from_image(&decode_color_png(&builtin_path(self.name), self.bytes)?))
     }
 
@@ -193,7 +205,7 @@ impl Builtin {
     ///
     /// # Errors
     /// As [`decode_png`] and [`Sprite::from_image`].
-    pub fn sprite(&self) -> Result<Sprite, Error> {
+    pub fn sprite(&self) -> Result<Sprite, AssetError> {
         self.decode(self.sprite_layout()?)
     }
 
@@ -201,13 +213,13 @@ impl Builtin {
     ///
     /// # Errors
     /// As [`Builtin::sprite`].
-    pub fn detail(&self) -> Result<Option<Sprite>, Error> {
+    pub fn detail(&self) -> Result<Option<Sprite>, AssetError> {
         let layout = self.sprite_layout()?;
         find(DETAILS, self.name).map(|detail| detail.decode(layout)).transpose()
     }
 
     /// The sheet's layout, from its recipe; bakes point y up.
-    pub fn sprite_layout(&self) -> Result<SpriteLayout, Error> {
+    pub fn sprite_layout(&self) -> Result<SpriteLayout, AssetError> {
         #[derive(serde::Deserialize)]
         struct Sheet {
             columns: u32,
@@ -217,7 +229,7 @@ impl Builtin {
         Ok(SpriteLayout { columns, rows, y_down: false })
     }
 
-    fn decode(&self, layout: SpriteLayout) -> Result<Sprite, Error> {
+    fn decode(&self, layout: SpriteLayout) -> Result<Sprite, AssetError> {
         let path = builtin_path(self.name);
         Sprite::from_image(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
     }
@@ -226,7 +238,7 @@ impl Builtin {
     ///
     /// # Errors
     /// As [`decode_png`] and [`NoiseVolume::from_image`].
-    pub fn noise(&self) -> Result<NoiseVolume, Error> {
+    pub fn noise(&self) -> Result<NoiseVolume, AssetError> {
         let path = builtin_path(self.name);
         NoiseVolume::from_image(&path, &decode_png(&path, self.bytes)?.to_rgba8())
     }

@@ -4,7 +4,7 @@ use haze_core::glam::camera::rh;
 use haze_core::glam::{UVec2, Vec3};
 
 use haze_core::frame::{FOV_RANGE, View};
-use haze_core::settings::settings;
+use haze_core::settings::{Tonemap, settings};
 
 settings! {
     /// Perspective camera.
@@ -26,6 +26,11 @@ settings! {
         /// Multiplies the linear picture by 2^exposure before it is tonemapped. Each step up doubles the light; glow
         /// turns white.
         exposure: f32 = 0.0, number(-16.0..=16.0, "EV");
+        /// Tonemap of the program's pictures. An engine has its own: choose the one that is most like it.
+        tonemap: Tonemap = Tonemap::default(), choice;
+        /// Fraction of the light that the lens spreads around bright places: fire and sparks glow into the air. 0.05 is a clean
+        /// lens, 0.3 a dreamy one. Pictures of smoke alone have none: it belongs to the engine that shows them.
+        bloom: f32 = 0.0, number(0.0..=1.0, "");
     }
 }
 

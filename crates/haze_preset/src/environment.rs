@@ -77,10 +77,18 @@ pub fn backdrop_file_path(name: &str, kind: BackdropKind) -> Option<&Path> {
     (stays && backdrop_kind(path) == Some(kind)).then_some(path)
 }
 
+/// Endings of the files of a kind: glTF scenes, panoramas.
+pub const fn backdrop_endings(kind: BackdropKind) -> [&'static str; 2] {
+    match kind {
+        BackdropKind::Scene => ["glb", "gltf"],
+        BackdropKind::Sky => ["hdr", "exr"],
+    }
+}
+
 /// Kind of a file by the ending of its name.
 pub fn backdrop_kind(path: &Path) -> Option<BackdropKind> {
     let ending = path.extension().and_then(OsStr::to_str)?;
-    let has_it = |kind: &BackdropKind| kind.endings().iter().any(|known| ending.eq_ignore_ascii_case(known));
+    let has_it = |kind: &BackdropKind| backdrop_endings(*kind).iter().any(|known| ending.eq_ignore_ascii_case(known));
     BackdropKind::ALL.into_iter().find(has_it)
 }
 

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use haze_core::assets::noise::NoiseVolume;
 use haze_core::assets::ramp::Ramp;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_core::error::{Error, FieldError};
+use haze_core::error::{AssetError, FieldError};
 
+use super::builtin::Builtin;
 use super::image_source::ImageSource;
 
 /// Maximum memory of the images of a preset, bytes. An image counts for every field that names it, because renderers
@@ -21,6 +22,10 @@ pub struct ImageCache<'a> {
     ramps: HashMap<PathBuf, Ramp>,
     sprites: HashMap<(PathBuf, SpriteLayout), Sprite>,
     noises: HashMap<PathBuf, NoiseVolume>,
+    /// Built-in sprites with their detail maps, by name.
+    builtin_sprites: HashMap<&'static str, (Sprite, Option<Sprite>)>,
+    /// Built-in noises, by name.
+    builtin_noises: HashMap<&'static str, NoiseVolume>,
     bytes: u64,
 }
 
@@ -28,11 +33,12 @@ impl<'a> ImageCache<'a> {
     /// Nothing loaded yet.
     pub fn new(source: ImageSource<'a>) -> Self {
         let (ramps, sprites, noises) = Default::default();
-        Self { source, ramps, sprites, noises, bytes: 0 }
+        let (builtin_sprites, builtin_noises) = Default::default();
+        Self { source, ramps, sprites, noises, builtin_sprites, builtin_noises, bytes: 0 }
     }
 
     /// Loads the ramp of this file, for a field of the material.
-    pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, Error> {
+    pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, AssetError> {
         self.count(field, 0)?;
         let source = &mut self.source;
         let load = |file: &PathBuf| source.read(file).and_then(|(path, bytes)| Ramp::decode(&path, &bytes));
@@ -43,7 +49,7 @@ impl<'a> ImageCache<'a> {
     }
 
     /// Loads the sprite of this file.
-    pub fn sprite(&mut self, field: &str, file: &Path, layout: SpriteLayout) -> Result<Sprite, Error> {
+    pub fn sprite(&mut self, field: &str, file: &Path, layout: SpriteLayout) -> Result<Sprite, AssetError> {
         self.count(field, 0)?;
         let source = &mut self.source;
         let load = |(file, layout): &(PathBuf, SpriteLayout)| {
@@ -56,7 +62,7 @@ impl<'a> ImageCache<'a> {
     }
 
     /// Loads the noise of this file.
-    pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, Error> {
+    pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, AssetError> {
         self.count(field, 0)?;
         let source = &mut self.source;
         let load = |file: &PathBuf| source.read(file).and_then(|(path, bytes)| NoiseVolume::decode(&path, &bytes));
@@ -64,6 +70,16 @@ impl<'a> ImageCache<'a> {
         let noise = noise.map_err(|error| named_by(field, error))?;
         self.count(field, noise.memory())?;
         Ok(noise)
+    }
+
+    /// Decodes a built-in sprite and its detail map.
+    pub fn builtin_sprite(&mut self, sprite: &'static Builtin) -> Result<(Sprite, Option<Sprite>), AssetError> {
+        get_or_load(&mut self.builtin_sprites, sprite.name, |_| Ok((sprite.sprite()?, sprite.detail()?)))
+    }
+
+    /// Decodes a built-in noise.
+    pub fn builtin_noise(&mut self, noise: &'static Builtin) -> Result<NoiseVolume, AssetError> {
+        get_or_load(&mut self.builtin_noises, noise.name, |_| noise.noise())
     }
 
     /// Counts bytes. Fails above the limit, after which nothing is decoded.
@@ -82,8 +98,8 @@ impl<'a> ImageCache<'a> {
 fn get_or_load<K: Hash + Eq, T: Clone>(
     loaded: &mut HashMap<K, T>,
     key: K,
-    load: impl FnOnce(&K) -> Result<T, Error>,
-) -> Result<T, Error> {
+    load: impl FnOnce(&K) -> Result<T, AssetError>,
+) -> Result<T, AssetError> {
     if let Some(picture) = loaded.get(&key) {
         return Ok(picture.clone());
     }
@@ -93,14 +109,15 @@ fn get_or_load<K: Hash + Eq, T: Clone>(
 }
 
 /// Adds the field of the preset that names it to the error of an image.
-fn named_by(field: &str, error: Error) -> Error {
-    Error::Asset { named_by: format!("material.{field}"), error: Box::new(error) }
+fn named_by(field: &str, error: AssetError) -> AssetError {
+    AssetError::Named { named_by: format!("material.{field}"), error: Box::new(error) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset_folders::AssetFolders;
+    use crate::builtin;
 
     #[test]
     fn a_file_is_read_once() {
@@ -122,5 +139,16 @@ mod tests {
         let other = SpriteLayout { y_down: true, ..layout };
         let error = pictures.sprite("sprite", file, other).unwrap_err().to_string();
         assert!(error.starts_with("material.sprite: ") && error.contains("own.png: No such file"), "{error}");
+    }
+
+    #[test]
+    fn built_in_images_are_decoded_once() {
+        let mut pictures = ImageCache::new(ImageSource::Folders(AssetFolders::new(Path::new(""))));
+        let puff = builtin::find(builtin::SPRITES, "puff").unwrap();
+        let [(first, _), (again, _)] = [(); 2].map(|()| pictures.builtin_sprite(puff).unwrap());
+        assert!(first.shares_memory(&again));
+        let noise = &builtin::NOISES[0];
+        let [first, again] = [(); 2].map(|()| pictures.builtin_noise(noise).unwrap());
+        assert!(first.shares_memory(&again));
     }
 }

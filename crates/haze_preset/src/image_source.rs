@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use haze_core::assets::image::{MAX_BYTES, read_file};
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 
 use super::asset_folders::AssetFolders;
 
@@ -28,12 +28,12 @@ impl ImageSource<'_> {
     /// Returns the path of a file, for messages, and its bytes.
     ///
     /// # Errors
-    /// [`Error::Image`] if no folder has the file or there is none, [`Error::Io`] if it cannot be read or has more than 64 MiB.
-    pub(super) fn read(&mut self, file: &Path) -> Result<(PathBuf, Vec<u8>), Error> {
+    /// [`AssetError::Image`] if no folder has the file or there is none, [`AssetError::Io`] if it cannot be read or has more than 64 MiB.
+    pub(super) fn read(&mut self, file: &Path) -> Result<(PathBuf, Vec<u8>), AssetError> {
         match self {
             Self::BuiltIn => {
                 let reason = "no folder to search; expected the name of a built-in image".into();
-                Err(Error::Image { path: file.into(), reason })
+                Err(AssetError::Image { path: file.into(), reason })
             }
             Self::Folders(folders) => {
                 if let Some(bytes) = folders.image(file) {
@@ -44,7 +44,7 @@ impl ImageSource<'_> {
                 Ok((path, bytes))
             }
             Self::Reader(read) => {
-                let io = |error| Error::Io { path: file.into(), error };
+                let io = |error| AssetError::Io { path: file.into(), error };
                 let bytes = read(file).map_err(io)?;
                 if bytes.len() as u64 > MAX_BYTES {
                     let reason =

@@ -140,7 +140,8 @@ mod tests {
         let mut count = 0;
         for_each_field(&mut default_preset.clone(), &mut |_, _| count += 1);
         for moved in 0..count {
-            let (mut preset, mut at) = (default_preset.clone(), 0);
+            let mut preset = default_preset.clone();
+            let mut at = 0;
             for_each_field(&mut preset, &mut |path, leaf| {
                 if at == moved && path[0].0 != "version" {
                     match leaf {

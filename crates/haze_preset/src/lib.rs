@@ -1,5 +1,5 @@
-//! Presets (a camera, lights and particle systems in a JSON file), the built-in images, and what reads and writes them: folders,
-//! atomic writes, PNG files.
+//! Presets (a camera, lights and particle systems in a JSON file), layers to add to them, the built-in images, and what reads and
+//! writes them: folders, atomic writes, PNG files.
 
 mod animated_preset;
 mod animation;
@@ -15,11 +15,13 @@ mod environment;
 mod image_cache;
 mod image_source;
 mod json_writer;
+pub mod layers;
 mod material_sources;
 mod particle_source;
 mod png_writer;
 mod preset_file;
 mod sequence;
+pub mod system_list;
 
 #[cfg(target_arch = "wasm32")]
 use haze_core::assets::memory_files as atomic_write;
@@ -34,7 +36,7 @@ pub use atomic_write::{FileIdentity, write_file, write_state_file};
 pub use atomic_write::{check_writable, write_file_from};
 pub use baked_png::{encode_baked_png, is_baked_png, write_baked_png};
 pub use camera::Camera;
-pub use environment::{Environment, SceneName, backdrop_file_path, backdrop_kind};
+pub use environment::{Environment, SceneName, backdrop_endings, backdrop_file_path, backdrop_kind};
 pub use image_cache::{ImageCache, MAX_IMAGE_BYTES};
 pub use image_source::ImageSource;
 pub use material_sources::{MaterialSources, image_file_path};

@@ -4,7 +4,7 @@ use std::path::{Component, Path};
 
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::assets::sprite::{Sprite, SpriteLayout, six_way_layout};
-use haze_core::error::{Error, FieldError};
+use haze_core::error::{AssetError, FieldError};
 use haze_core::settings::{ImageRole, settings};
 
 use super::asset_folders::MIN_SIMILARITY;
@@ -64,16 +64,19 @@ impl MaterialSources {
     /// Loads all images. Built-in ones are found by their names, and the source is asked for the others.
     ///
     /// # Errors
-    /// [`Error::Asset`] with the field and the file, or [`Error::Field`] for a name that is neither built in nor a
+    /// [`AssetError::Named`] with the field and the file, or [`AssetError::Field`] for a name that is neither built in nor a
     /// file inside the folder, and for more than [`MAX_IMAGE_BYTES`](super::MAX_IMAGE_BYTES).
-    pub fn load(&self, source: ImageSource<'_>) -> Result<MaterialAssets, Error> {
+    pub fn load(&self, source: ImageSource<'_>) -> Result<MaterialAssets, AssetError> {
         let loaded = self.load_with_cache(&mut ImageCache::new(source));
         loaded.map_err(|mut errors| errors.swap_remove(0).1)
     }
 
     /// As [`MaterialSources::load`], with the images that other systems have loaded already. The errors are those of all
     /// fields in order, at least one, each with its field. Images that belong to the sprite report under `sprite`.
-    pub fn load_with_cache(&self, pictures: &mut ImageCache<'_>) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
+    pub fn load_with_cache(
+        &self,
+        pictures: &mut ImageCache<'_>,
+    ) -> Result<MaterialAssets, Vec<(&'static str, AssetError)>> {
         let mut errors = Vec::new();
         let sprite = ok_or_record("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
@@ -96,7 +99,7 @@ impl MaterialSources {
             ramp("fire_ramp", &self.fire_ramp, builtin::RAMPS),
         );
         let noise = match builtin::find(builtin::NOISES, &self.noise) {
-            Some(noise) => noise.noise(),
+            Some(noise) => pictures.builtin_noise(noise),
             None => {
                 resolve_image_path("noise", &self.noise, builtin::NOISES).and_then(|file| pictures.noise("noise", file))
             }
@@ -145,8 +148,11 @@ impl MaterialSources {
                 "fire_ramp" => (&mut names.fire_ramp, &defaults.fire_ramp),
                 "noise" => (&mut names.noise, &defaults.noise),
                 _ => {
-                    (names.detail, names.six_way) = (String::new(), String::new());
-                    (names.columns, names.rows, names.y_down) = (1, 1, false);
+                    names.detail = String::new();
+                    names.six_way = String::new();
+                    names.columns = 1;
+                    names.rows = 1;
+                    names.y_down = false;
                     (&mut names.sprite, &defaults.sprite)
                 }
             };
@@ -155,9 +161,9 @@ impl MaterialSources {
         names
     }
 
-    fn load_sprite(&self, pictures: &mut ImageCache<'_>) -> Result<SpriteImages, Error> {
+    fn load_sprite(&self, pictures: &mut ImageCache<'_>) -> Result<SpriteImages, AssetError> {
         let ((sprite, detail), layout) = match builtin::find(builtin::SPRITES, &self.sprite) {
-            Some(builtin) => (self.load_builtin(builtin)?, builtin.sprite_layout()?),
+            Some(builtin) => (self.load_builtin(pictures, builtin)?, builtin.sprite_layout()?),
             None => {
                 let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: false };
                 let path = resolve_image_path("sprite", &self.sprite, builtin::SPRITES)?;
@@ -169,7 +175,11 @@ impl MaterialSources {
         Ok(SpriteImages { sprite, detail, six_way })
     }
 
-    fn load_builtin(&self, sprite: &Builtin) -> Result<(Sprite, Option<Sprite>), Error> {
+    fn load_builtin(
+        &self,
+        pictures: &mut ImageCache<'_>,
+        sprite: &'static Builtin,
+    ) -> Result<(Sprite, Option<Sprite>), AssetError> {
         let refuse = |field: &str, value: String, expected: &str| {
             let expected = format!("{expected} with a built-in sprite, which has its own");
             Err(FieldError::new(format!("material.{field}"), value, expected).into())
@@ -183,7 +193,7 @@ impl MaterialSources {
         if self.y_down {
             return refuse("y_down", self.y_down.to_string(), "false");
         }
-        Ok((sprite.sprite()?, sprite.detail()?))
+        pictures.builtin_sprite(sprite)
     }
 }
 
@@ -193,7 +203,7 @@ fn load_companion(
     field: &'static str,
     name: &str,
     layout: SpriteLayout,
-) -> Result<Option<Sprite>, Error> {
+) -> Result<Option<Sprite>, AssetError> {
     if name.is_empty() {
         return Ok(None);
     }
@@ -217,7 +227,7 @@ pub fn image_file_path(name: &str) -> Option<&Path> {
 }
 
 /// File that a name stands for, relative to the preset's folder.
-fn resolve_image_path<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, Error> {
+fn resolve_image_path<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, AssetError> {
     if let Some(path) = image_file_path(name) {
         return Ok(path);
     }
@@ -234,7 +244,11 @@ fn resolve_image_path<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Resul
 }
 
 /// Returns the value, or records the error.
-fn ok_or_record<T>(field: &'static str, found: Result<T, Error>, errors: &mut Vec<(&'static str, Error)>) -> Option<T> {
+fn ok_or_record<T>(
+    field: &'static str,
+    found: Result<T, AssetError>,
+    errors: &mut Vec<(&'static str, AssetError)>,
+) -> Option<T> {
     found.map_err(|error| errors.push((field, error))).ok()
 }
 

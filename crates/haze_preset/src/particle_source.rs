@@ -67,7 +67,7 @@ impl ParticleFiles {
     }
 }
 
-/// File that the path of a cache stands for, relative to the preset's folder. `None` if it is no CSV or PLY, lies
+/// File that the path of particle files stands for, relative to the preset's folder. `None` if it is no CSV or PLY, lies
 /// outside, or has more than one run of `#`.
 pub fn particle_file_path(name: &str) -> Option<&Path> {
     let path = Path::new(name);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use haze_core::assets::parallel::parallel_for_each;
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ImageError};
 
@@ -27,17 +27,17 @@ impl CompressionEffort {
 /// Writes a PNG as [`write_file`] does.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be written.
-pub fn write_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<(), Error> {
+/// [`AssetError::Io`] if the file cannot be written.
+pub fn write_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<(), AssetError> {
     write_file(path, &encode_png(path, picture, effort)?)
 }
 
 /// Encodes an image as PNG. `path` is used only in errors.
-pub fn encode_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<Vec<u8>, Error> {
-    let encoded = |compression, filter| -> Result<Vec<u8>, Error> {
+pub fn encode_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<Vec<u8>, AssetError> {
+    let encoded = |compression, filter| -> Result<Vec<u8>, AssetError> {
         let mut bytes = Vec::new();
         let encoder = PngEncoder::new_with_quality(&mut bytes, compression, filter);
-        let io = |error| Error::Io { path: path.into(), error: std::io::Error::other::<ImageError>(error) };
+        let io = |error| AssetError::Io { path: path.into(), error: std::io::Error::other::<ImageError>(error) };
         picture.write_with_encoder(encoder).map_err(io)?;
         Ok(bytes)
     };

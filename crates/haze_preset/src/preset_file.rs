@@ -6,10 +6,10 @@ use std::path::Path;
 use haze_core::assets::json;
 use haze_core::assets::material_assets::MaterialAssets;
 use haze_core::emitter::{Emitter, MAX_PARTICLES};
-use haze_core::error::{Error, FieldError, builtin_path, display_path};
+use haze_core::error::{AssetError, FieldError, builtin_path, display_path};
 use haze_core::frame::validate_input::validate_lights;
 use haze_core::frame::{EmitterSnapshot, Light, LightRole};
-use haze_core::settings::{FieldVisitor, Fields, Settings, validate};
+use haze_core::settings::{FieldVisitor, Fields, Settings, current_path, validate};
 use haze_core::view_setup::AttachmentSet;
 
 use super::animation::{MAX_TIME, Track, validate_tracks};
@@ -71,8 +71,8 @@ pub struct PresetSystem {
     #[serde(default)]
     pub emitter: Emitter,
     /// Particle files, which replace the emitter.
-    #[serde(default)]
-    pub cache: ParticleFiles,
+    #[serde(default, alias = "cache")]
+    pub particle_files: ParticleFiles,
     /// Images of the system.
     #[serde(default)]
     pub material: MaterialSources,
@@ -103,7 +103,7 @@ impl Default for PresetSystem {
         Self {
             name: "smoke".into(),
             emitter: Emitter::default(),
-            cache: ParticleFiles::default(),
+            particle_files: ParticleFiles::default(),
             material: MaterialSources::default(),
             settings: Settings::default(),
         }
@@ -131,7 +131,7 @@ impl Fields for PresetSystem {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.text("name", &mut self.name);
         visitor.group("emitter", &mut self.emitter);
-        visitor.group("cache", &mut self.cache);
+        visitor.group("particle_files", &mut self.particle_files);
         visitor.group("material", &mut self.material);
         visitor.group("settings", &mut self.settings);
     }
@@ -141,8 +141,8 @@ impl Preset {
     /// Loads a preset from a file, or a built-in one by name.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Json`] with line and column, or [`Error::JsonField`] with the field and its range.
-    pub fn load(name_or_path: impl AsRef<Path>) -> Result<Self, Error> {
+    /// [`AssetError::Io`], [`AssetError::Text`] with line and column, or [`AssetError::JsonField`] with the field and its range.
+    pub fn load(name_or_path: impl AsRef<Path>) -> Result<Self, AssetError> {
         Self::load_with_source(name_or_path).map(|(preset, _)| preset)
     }
 
@@ -150,7 +150,7 @@ impl Preset {
     ///
     /// # Errors
     /// As [`Preset::load`].
-    pub fn load_with_source(name_or_path: impl AsRef<Path>) -> Result<(Self, String), Error> {
+    pub fn load_with_source(name_or_path: impl AsRef<Path>) -> Result<(Self, String), AssetError> {
         let path = name_or_path.as_ref();
         if let Some(preset) = path.to_str().and_then(|name| builtin::find(builtin::PRESETS, name)) {
             let text = String::from_utf8_lossy(preset.bytes);
@@ -170,9 +170,12 @@ impl Preset {
     ///
     /// # Errors
     /// As [`Preset::load`].
-    pub fn parse(path: &Path, text: &str) -> Result<Self, Error> {
-        let preset: Self = json::parse_versioned(path, text, PRESET_VERSION)?;
-        preset.validate().map_err(|error| Error::JsonField { path: path.into(), error })?;
+    pub fn parse(path: &Path, text: &str) -> Result<Self, AssetError> {
+        let mut preset: Self = json::parse_versioned(path, text, PRESET_VERSION)?;
+        for track in &mut preset.animation {
+            track.setting = current_path(&track.setting);
+        }
+        preset.validate().map_err(|error| AssetError::JsonField { path: path.into(), error })?;
         Ok(preset)
     }
 
@@ -180,7 +183,7 @@ impl Preset {
     ///
     /// # Errors
     /// As [`MaterialSources::load`], with the preset and the system.
-    pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, Error> {
+    pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, AssetError> {
         self.load_materials_from(path, &AssetFolders::for_preset_file(path))
     }
 
@@ -188,7 +191,7 @@ impl Preset {
     ///
     /// # Errors
     /// As [`Preset::load_materials`].
-    pub fn load_materials_from(&self, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
+    pub fn load_materials_from(&self, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, AssetError> {
         self.load_images(path, ImageSource::Folders(folders.clone()))
     }
 
@@ -201,11 +204,11 @@ impl Preset {
         &self,
         path: &Path,
         mut read: impl FnMut(&Path) -> io::Result<Vec<u8>>,
-    ) -> Result<Vec<MaterialAssets>, Error> {
+    ) -> Result<Vec<MaterialAssets>, AssetError> {
         self.load_images(path, ImageSource::Reader(&mut read))
     }
 
-    fn load_images(&self, path: &Path, source: ImageSource<'_>) -> Result<Vec<MaterialAssets>, Error> {
+    fn load_images(&self, path: &Path, source: ImageSource<'_>) -> Result<Vec<MaterialAssets>, AssetError> {
         let mut pictures = ImageCache::new(source);
         let load = |(index, system): (usize, &PresetSystem)| {
             let loaded = system.material.load_with_cache(&mut pictures);
@@ -248,7 +251,7 @@ impl Preset {
         let mut most = 0.0;
         for (index, system) in self.systems.iter().enumerate() {
             system.emitter.validate(|| format!("systems[{index}].emitter"))?;
-            if !system.cache.is_used() {
+            if !system.particle_files.is_used() {
                 most += system.emitter.max_alive();
             }
             if most > f64::from(MAX_PARTICLES) {
@@ -265,14 +268,14 @@ impl Preset {
 }
 
 /// Adds the preset's file and the system to an error of the system's files.
-pub fn with_system_context(path: &Path, index: usize, error: Error) -> Error {
+pub fn with_system_context(path: &Path, index: usize, error: AssetError) -> AssetError {
     match error {
-        Error::Field(mut error) => {
+        AssetError::Field(mut error) => {
             error.field = format!("systems[{index}].{}", error.field);
-            Error::JsonField { path: path.into(), error }
+            AssetError::JsonField { path: path.into(), error }
         }
-        Error::Asset { named_by, error } => {
-            Error::Asset { named_by: format!("{}: systems[{index}].{named_by}", display_path(path)), error }
+        AssetError::Named { named_by, error } => {
+            AssetError::Named { named_by: format!("{}: systems[{index}].{named_by}", display_path(path)), error }
         }
         other => other,
     }
@@ -281,18 +284,20 @@ pub fn with_system_context(path: &Path, index: usize, error: Error) -> Error {
 impl PresetSystem {
     /// Unevaluated particles of the emitter at `time`, seconds.
     pub fn emitter_snapshot(&self, time: f64) -> EmitterSnapshot {
-        let frame_rate = if self.settings.sprite.freeze_animation { 0.0 } else { self.emitter.frame_rate };
+        let frame_rate = if self.settings.debug.freeze_animation { 0.0 } else { self.emitter.frame_rate };
         Emitter { frame_rate, ..self.emitter }.snapshot(time)
     }
 
     /// Flipbook frames per second, of the emitter or the files.
     pub fn frame_rate(&self) -> f32 {
-        if self.cache.is_used() { self.cache.flipbook_rate } else { self.emitter.frame_rate }
+        if self.particle_files.is_used() { self.particle_files.flipbook_rate } else { self.emitter.frame_rate }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use haze_core::settings::Exponential;
+
     use super::*;
 
     #[test]
@@ -312,13 +317,53 @@ mod tests {
             ramp.ramp().unwrap();
         }
         for builtin in builtin::SPRITES {
-            let (sprite, detail) = (builtin.sprite().unwrap(), builtin.detail().unwrap().unwrap());
+            let sprite = builtin.sprite().unwrap();
+            let detail = builtin.detail().unwrap().unwrap();
             assert!(sprite.frame_count() > 1);
             assert_eq!((detail.size() * 4, detail.frame_count()), (sprite.size(), sprite.frame_count()));
         }
         for noise in builtin::NOISES {
             assert_eq!(noise.noise().unwrap().size(), 32);
         }
+    }
+
+    #[test]
+    fn a_file_with_names_of_before_opens() {
+        let system = r#"{"name": "a", "cache": {"up": "z"}, "settings":
+            {"accumulate": {"scale": 4}, "density": {"density": 5}, "sprite": {"size": 2, "debug_loop": 3}}}"#;
+        let track = |setting: &str, value: &str| {
+            format!(r#"{{"setting": "systems[0].{setting}", "keys": [{{"time": 0, "value": {value}}}]}}"#)
+        };
+        let tracks = [
+            track("settings.accumulate.scale", "8"),
+            track("settings.density.density", "6"),
+            track("settings.sprite.debug_sprite", "true"),
+            track("cache.flipbook_rate", "7"),
+        ];
+        let tracks = tracks.join(", ");
+        let text = format!(r#"{{"version": 1, "name": "old", "systems": [{system}], "animation": [{tracks}]}}"#);
+        let preset = Preset::parse(Path::new("old.json"), &text).unwrap();
+        let at_rest = &preset.systems[0];
+        assert_eq!(at_rest.settings.accumulate.downscale, 4);
+        assert_eq!(at_rest.settings.exponential, Exponential { density: 5.0 });
+        assert_eq!((at_rest.settings.debug.draw_count, at_rest.settings.sprite.size), (3, 2.0));
+        assert_eq!(at_rest.particle_files.up, crate::UpAxis::Z);
+        let names: Vec<_> = preset.animation.iter().map(|track| track.setting.as_str()).collect();
+        let expected = [
+            "systems[0].settings.accumulate.downscale",
+            "systems[0].settings.exponential.density",
+            "systems[0].settings.debug.checkerboard",
+            "systems[0].particle_files.flipbook_rate",
+        ];
+        assert_eq!(names, expected);
+        let animated = &preset.evaluate(0.0).systems[0];
+        assert_eq!(animated.settings.accumulate.downscale, 8);
+        assert_eq!(animated.settings.exponential, Exponential { density: 6.0 });
+        assert!(animated.settings.debug.checkerboard);
+        assert_eq!(animated.particle_files, ParticleFiles { flipbook_rate: 7.0, ..at_rest.particle_files.clone() });
+        // New files have new names.
+        let saved = serde_json::to_string(&preset).unwrap();
+        assert!(!saved.contains("\"cache\"") && !saved.contains("debug_loop"), "{saved}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::io::{Error as IoError, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 
 use crate::directory;
 
@@ -57,9 +57,9 @@ impl Sequence {
 }
 
 /// Lists the files of a path with their frame numbers. A path without `#` is frame 0.
-pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, Error> {
+pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, AssetError> {
     let Some(sequence) = Sequence::of(path) else { return Ok(vec![(0, path.into())]) };
-    let io = |error| Error::Io { path: path.into(), error };
+    let io = |error| AssetError::Io { path: path.into(), error };
     let frames = sequence.frames().map_err(io)?;
     if frames.is_empty() {
         let reason = "no such files; expected names with digits in place of #";

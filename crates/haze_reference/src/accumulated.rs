@@ -82,7 +82,8 @@ impl AccumulatedTarget<'_> {
         }
         let upsample = self.visible.settings.accumulate.upsample;
         let corner = texel - 0.5;
-        let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
+        let base = corner.floor().as_ivec2();
+        let fraction = corner - corner.floor();
         let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
         let (depths, depth) = match upsample {
             Upsample::Bilinear => (Vec4::ZERO, 0.0),

@@ -49,7 +49,8 @@ impl<'a> PreparedFrame<'a> {
         let placed = place_systems(frame, picture)?;
         let volume = placed.shadow.map(|shadow| (shadow, Arc::new(placed.shadow_volume(frame, &shadow))));
         let mut systems = placed.visible;
-        let (mut scene_shadow, mut screen_shadow) = (None, None);
+        let mut scene_shadow = None;
+        let mut screen_shadow = None;
         if let Some((shadow, depths)) = volume {
             systems.iter_mut().for_each(|(_, visible)| visible.optical_depths = Some(depths.clone()));
             scene_shadow = SceneShadow::new(frame, &shadow, &depths);
@@ -94,7 +95,8 @@ impl<'a> PreparedFrame<'a> {
                 _ => visible.accumulate(&reduced_depth),
             };
             let baked = visible.diffuse_bake();
-            let (reduced_depth, textures) = (&reduced_depth, &textures);
+            let reduced_depth = &reduced_depth;
+            let textures = &textures;
             let is_lit = visible.lights_per_texel(self.debug_view);
             let mut smoke = AccumulatedTarget { visible, baked: &baked, reduced_depth, textures, is_lit, lit: None };
             if is_lit {

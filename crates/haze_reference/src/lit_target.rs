@@ -30,10 +30,12 @@ impl AccumulatedTarget<'_> {
             return Vec4::ZERO;
         }
         let corner = texel - 0.5;
-        let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
+        let base = corner.floor().as_ivec2();
+        let fraction = corner - corner.floor();
         let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
         let columns = |[a, b, c, d]: [Vec4; 4]| Mat4::from_cols(a, b, c, d);
-        let (values, slopes) = (columns(taps.map(&light)), columns(taps.map(slope)));
+        let values = columns(taps.map(&light));
+        let slopes = columns(taps.map(slope));
         if slopes == Mat4::ZERO {
             return values * upsample_weights(Upsample::Bilinear, fraction, Vec4::ZERO, 0.0);
         }

@@ -48,12 +48,14 @@ where
     let low = (place - 0.5).floor();
     let high_weight = place - 0.5 - low;
     let low_weight = 1.0 - high_weight;
-    let (low, size) = (low.as_ivec3(), size.as_ivec3());
+    let low = low.as_ivec3();
+    let size = size.as_ivec3();
     let mut sum = T::default();
     if low.cmpge(IVec3::ZERO).all() && (low + 1).cmplt(size).all() {
         // The usual case, in the same order as below.
         let row = ((low.z * size.y + low.y) * size.x + low.x) as usize;
-        let (next_y, next_z) = (size.x as usize, (size.y * size.x) as usize);
+        let next_y = size.x as usize;
+        let next_z = (size.y * size.x) as usize;
         for (row, weight_z) in [(row, low_weight.z), (row + next_z, high_weight.z)] {
             for (row, weight_y) in [(row, low_weight.y), (row + next_y, high_weight.y)] {
                 if let Some([first, second]) = cells.get(row..row + 2) {

@@ -94,8 +94,9 @@ impl VisibleSystem<'_> {
     ) {
         let width = grid.size.x as i32;
         let rows = band.len() as i32 / width;
-        let (top, bottom) = (first_row as i32, first_row as i32 + rows);
-        let loops = 0..self.settings.sprite.debug_loop;
+        let top = first_row as i32;
+        let bottom = first_row as i32 + rows;
+        let loops = 0..self.settings.debug.draw_count;
         for particle in loops.flat_map(|_| &self.particles) {
             let Some(sprite) = self.sprite_setup(particle, 1.0 / grid.scale) else { continue };
             let texel = |pixel: Vec2| pixel / grid.scale - grid.origin;
@@ -115,7 +116,8 @@ impl VisibleSystem<'_> {
 
     /// `sprite_vertex()`; `None` if the sprite is hidden.
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
-        let (technique, projector) = (self.settings.technique, self.projector());
+        let technique = self.settings.technique;
+        let projector = self.projector();
         let sprite = projector.project(particle, texels_per_pixel)?;
         let ProjectedSprite { center, radius, amount, frames, lod, stretch, .. } = sprite;
         let view_depth = -center.z;
@@ -198,7 +200,8 @@ impl VisibleSystem<'_> {
         match self.settings.order() {
             BlendOrder::Sorted => 1.0,
             BlendOrder::Weighted => {
-                let (near, far) = (system.smoke_near, system.smoke_far);
+                let near = system.smoke_near;
+                let far = system.smoke_far;
                 let in_front = optical_depth_in_front(&system.optical_depth_knots, view_depth, near, far);
                 order_weight(system.depth_weight, in_front)
             }
@@ -214,20 +217,23 @@ impl VisibleSystem<'_> {
         // Half the diagonal contains the sprite at every rotation.
         let ratio = 1.0 / (1.0 - stretch.length_squared()).max(1.0e-4);
         let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2 * ratio);
-        let (a, b) = (self.pixel_from_view(center - reach), self.pixel_from_view(center + reach));
+        let a = self.pixel_from_view(center - reach);
+        let b = self.pixel_from_view(center + reach);
         (a.min(b), a.max(b))
     }
 
     /// Values of a sprite at a pixel in front of a scene of this view depth; `None` if it is hidden.
     pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
-        let (system, technique) = (&self.system, self.settings.technique);
+        let system = &self.system;
+        let technique = self.settings.technique;
         if technique.is_sphere() {
             return self.sphere_fragment(sprite, pixel, scene);
         }
         let drawn = self.projector().clamped_to_near_plane(sprite.center);
         let offset = self.view_position(pixel, -drawn.z) - drawn;
         let local = unrotate(unstretched(offset.xy(), sprite.stretch), sprite.rotation) / sprite.radius;
-        let (low, high) = (trimmed_corner(Vec2::NEG_ONE, sprite.reach), trimmed_corner(Vec2::ONE, sprite.reach));
+        let low = trimmed_corner(Vec2::NEG_ONE, sprite.reach);
+        let high = trimmed_corner(Vec2::ONE, sprite.reach);
         if local.cmplt(low).any() || local.cmpgt(high).any() {
             return None;
         }
@@ -284,7 +290,8 @@ impl VisibleSystem<'_> {
 
     /// Grain at a position on a sprite: see [`sample_grain`].
     pub fn grain_of(&self, sprite: &SpriteSetup, uv: Vec2) -> Vec3 {
-        let (system, frames) = (&self.system, sprite.frames);
+        let system = &self.system;
+        let frames = sprite.frames;
         let phase = (frames.first as f32 + frames.blend) / system.frame_count;
         let octaves = self.settings.grain_octaves();
         sample_grain(&self.material.noise, uv, phase, system.grain_tiles, sprite.fineness, octaves)
@@ -312,7 +319,7 @@ impl VisibleSystem<'_> {
             let six_way = rotate_six_way(tilted.positive, tilted.negative, rotation);
             return SpriteFragment { normal: Vec3::Z, six_way, amount: positive.w, thickness: positive.w };
         }
-        let texel = if self.settings.sprite.debug_sprite {
+        let texel = if self.settings.debug.checkerboard {
             checkerboard(uv)
         } else {
             sample_sprite(&self.material.sprite, uv, frames, motion, lod)
@@ -362,7 +369,8 @@ impl VisibleSystem<'_> {
         let rotation = Mat3::from_mat4(self.view.view_from_world);
         let span = interval.leave - interval.enter;
         let opacity = system.volume_opacity * sprite.amount * span;
-        let (mut normal, mut transmittance) = (Vec3::ZERO, 1.0);
+        let mut normal = Vec3::ZERO;
+        let mut transmittance = 1.0;
         for i in 0..march_steps {
             let [begin, end] = [i, i + 1].map(|step| march_boundary(step as f32 / march_steps as f32));
             let position = origin + along * (interval.enter + 0.5 * (begin + end) * span);

@@ -185,8 +185,9 @@ pub fn place_systems<'a>(frame: &FrameInput<'a>, picture: UVec2) -> Result<Place
     }
     let boxes = measured.iter().map(|measured| (measured.boxes.casting, measured.settings));
     let is_mapped = |light| frame.shadow_maps.iter().any(|map| map.projection.light == light);
-    let shadow = SmokeShadow::new((&view, frame.up.normalize_or(Vec3::Y)), u32::MAX, frame.lights, is_mapped, boxes);
-    let (mut visible, mut hidden) = (Vec::new(), Vec::new());
+    let shadow = SmokeShadow::new(&view, frame.up.normalize_or(Vec3::Y), u32::MAX, frame.lights, is_mapped, boxes);
+    let mut visible = Vec::new();
+    let mut hidden = Vec::new();
     for (index, (system, measured)) in frame.systems.iter().zip(measured).enumerate() {
         match VisibleSystem::new(&view, frame, system, measured, shadow.as_ref()) {
             Ok(system) => visible.push((index, system)),

@@ -72,7 +72,7 @@ impl App {
     }
 
     /// Draws the smoke into the targets, which it makes as large as the panel.
-    fn draw(&mut self, gpu: &egui_wgpu::RenderState, size: UVec2) -> Result<egui::TextureId, haze::Error> {
+    fn draw(&mut self, gpu: &egui_wgpu::RenderState, size: UVec2) -> Result<egui::TextureId, haze::PrepareError> {
         if self.targets.as_ref().is_none_or(|held| held.size != size) {
             self.targets = Some(Targets::new(gpu, size, self.targets.take()));
         }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use eframe::egui;
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::Error;
 use haze_export::options::{AssetsArguments, parse_assignment, parse_size, with_option};
 use haze_export::share_link;
 

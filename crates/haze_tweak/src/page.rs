@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze::Error;
+use haze_core::error::Error;
 use wasm_bindgen_futures::spawn_local;
 
 use super::document::Document;

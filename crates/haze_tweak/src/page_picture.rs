@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::Error;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
 use wasm_bindgen::prelude::*;

@@ -29,8 +29,10 @@ const COMPUTED_PIXELS_RATIO: f32 = 8.0;
 /// Cost model by which the path `auto` chooses. It also decides whether lit smoke is upsampled by a compute shader before it
 /// is drawn: if the model is not the default, and [`fragment`](PathCosts::fragment) of `raster` is at least 8 times that of
 /// `tiled`. Measure it with [`Context::measure_paths`](crate::Context::measure_paths), or set it with
-/// [`Context::set_path_model`](crate::Context::set_path_model).
+/// [`Context::set_path_model`](crate::Context::set_path_model). To make one of your own, change the fields of
+/// [`for_device_type`](Self::for_device_type).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PathModel {
     /// Costs of the path `raster`.
     pub raster: PathCosts,
@@ -45,6 +47,7 @@ pub struct PathModel {
 
 /// Costs of one accumulation path, nanoseconds where nothing else is said, each 0 or more and finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PathCosts {
     /// Per system.
     pub frame: f32,
@@ -184,7 +187,8 @@ impl PathModel {
         let [raster, tiled] = [times[0] / bias[0], times[1] / bias[1]];
         let tolerance = if self.source == PathModelSource::Cpu { CPU_PROBE_TOLERANCE } else { 1.0 };
         let apart = tiled / raster;
-        let (both, apart) = ((raster * tiled).sqrt(), (apart / apart.clamp(tolerance.recip(), tolerance)).sqrt());
+        let both = (raster * tiled).sqrt();
+        let apart = (apart / apart.clamp(tolerance.recip(), tolerance)).sqrt();
         Self {
             raster: self.raster.scaled(both / apart),
             tiled: self.tiled.scaled(both * apart),
@@ -265,7 +269,8 @@ impl PathCosts {
             technique if technique.is_volumetric() => f64::from(self.march) * workload.lookups,
             _ => f64::from(self.fragment),
         };
-        let (attachments, octaves) = (f64::from(workload.attachments), f64::from(workload.grain_octaves));
+        let attachments = f64::from(workload.attachments);
+        let octaves = f64::from(workload.grain_octaves);
         let more = f64::from(self.attachment) * (attachments - 1.0).max(0.0) + f64::from(self.octave) * octaves;
         let of_fragment = of_fragment + f64::from(self.fragment) * more;
         let nanoseconds = f64::from(self.frame)

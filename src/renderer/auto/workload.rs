@@ -14,10 +14,11 @@ const ASSUMED_DEPTH: f64 = 0.05;
 
 /// Accumulation workload of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PathWorkload {
     /// Technique of the sprites.
     pub technique: Technique,
-    /// Number of sprites, times `debug_loop`.
+    /// Number of sprites, times `debug.draw_count`.
     pub sprites: f64,
     /// Texels that the sprites cover, counted once per sprite.
     pub fragments: f64,
@@ -37,6 +38,25 @@ pub struct PathWorkload {
     pub is_assumed: bool,
 }
 
+impl PathWorkload {
+    /// Workload of sprites without grain on a target of `size` texels at scale 1, which skips no layer. `fragments`: texels
+    /// that the sprites cover, counted once per sprite.
+    pub fn new(technique: Technique, size: UVec2, sprites: f64, fragments: f64) -> Self {
+        Self {
+            technique,
+            sprites,
+            fragments,
+            size,
+            scale: 1,
+            optical_depth: 0.0,
+            attachments: 1,
+            grain_octaves: 0,
+            lookups: 0.0,
+            is_assumed: false,
+        }
+    }
+}
+
 /// Estimates the workload of `sprites` sprites on a target. `known`: particles that stand for all, and the number of
 /// sprites that each represents.
 pub(crate) fn estimate_workload(
@@ -47,7 +67,7 @@ pub(crate) fn estimate_workload(
     settings: &Settings,
 ) -> PathWorkload {
     let texels = grid.size.as_dvec2().element_product();
-    let loops = f64::from(settings.sprite.debug_loop);
+    let loops = f64::from(settings.debug.draw_count);
     let (fragments, depth) = match known {
         None => (ASSUMED_LAYERS * texels, ASSUMED_DEPTH),
         Some((particles, each)) => {

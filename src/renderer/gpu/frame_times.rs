@@ -68,10 +68,12 @@ impl Results {
         tick: impl Fn(u32) -> u64,
     ) {
         let times = self.latest.get_or_insert_default();
-        (times.frame, times.discarded) = (frame, missed);
+        times.frame = frame;
+        times.discarded = missed;
         times.passes.clear();
         choices.clone_into(&mut times.choices);
-        let (mut first, mut last) = (u64::MAX, 0);
+        let mut first = u64::MAX;
+        let mut last = 0;
         for span in spans {
             let ticks = [tick(span.query), tick(span.query + 1)];
             let at = span.query as usize;
@@ -83,7 +85,8 @@ impl Results {
                 times.discarded += 1;
                 continue;
             }
-            (first, last) = (first.min(begin), last.max(end));
+            first = first.min(begin);
+            last = last.max(end);
             let ms = ((end - begin) as f64 * ms_per_tick) as f32;
             match times.passes.iter_mut().find(|pass| (pass.name, pass.is_host) == (span.name, span.is_host)) {
                 Some(pass) => pass.ms += ms,

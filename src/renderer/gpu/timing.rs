@@ -136,13 +136,15 @@ impl Timing {
         if let Some(read_back) = shared.read_backs.iter().find(|read_back| Arc::strong_count(read_back) == 1) {
             for queries in [0..recording.host_queries, HOST_QUERIES..HOST_QUERIES + recording.own_queries] {
                 if !queries.is_empty() {
-                    let (offset, size) = (bytes(queries.start), bytes(queries.end - queries.start));
+                    let offset = bytes(queries.start);
+                    let size = bytes(queries.end - queries.start);
                     encoder.resolve_query_set(&shared.queries, queries, &shared.resolved, offset);
                     encoder.copy_buffer_to_buffer(&shared.resolved, offset, &read_back.buffer, offset, size);
                 }
             }
             std::mem::swap(&mut *recording, &mut *lock(&read_back.recorded));
-            let (timing, read_back) = (self.clone(), read_back.clone());
+            let timing = self.clone();
+            let read_back = read_back.clone();
             let buffer = read_back.buffer.clone();
             encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |mapped| {
                 if mapped.is_ok() {
@@ -251,7 +253,8 @@ impl Recording {
     fn start(&mut self, frame: u64) {
         self.spans.clear();
         self.choices.clear();
-        let (spans, choices) = (std::mem::take(&mut self.spans), std::mem::take(&mut self.choices));
+        let spans = std::mem::take(&mut self.spans);
+        let choices = std::mem::take(&mut self.choices);
         *self = Self { frame, spans, choices, ..Self::default() };
     }
 

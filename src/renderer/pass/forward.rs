@@ -52,7 +52,7 @@ impl PipelineKey for ForwardKey {
             targets: self.host.color_targets(blend),
             constants: self.sprite.constants([
                 enum_constant!("BLEND_MODE", self.blend_mode),
-                bool_constant("BY_DEPTH", self.sprite.lights_by_depth()),
+                bool_constant("BY_DEPTH", self.sprite.receives_shadow_by_depth()),
                 ("SHADOW_BLOCKS", f64::from(self.shadow_blocks)),
                 bool_constant("DEPTH_TESTED", self.host.depth_format.is_some() && !self.shows_through),
                 enum_constant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),

@@ -33,7 +33,7 @@ pub(crate) mod transfer_lit;
 pub(crate) mod upsample_lit;
 pub(crate) mod volume_slices;
 
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 
 use super::gpu::pipeline::{PipelineStore, Shader};
 use super::layouts::Layouts;
@@ -83,7 +83,7 @@ macro_rules! texel_passes {
             }
 
             /// Compiles the pipelines of a plan, or returns the shader error.
-            pub fn check(&self, plan: &TexelPlan) -> Result<(), Error> {
+            pub fn check(&self, plan: &TexelPlan) -> Result<(), PrepareError> {
                 $(plan.$pass.map_or(Ok(()), |planned| self.$pass.check(planned))?;)+
                 Ok(())
             }

@@ -19,7 +19,7 @@ pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::Vert
 pub(crate) struct SpriteKey {
     technique: Technique,
     animation: SpriteAnimation,
-    debug_sprite: bool,
+    checkerboard: bool,
     six_way: bool,
     motion: bool,
     curve: FadeCurve,
@@ -41,14 +41,14 @@ impl SpriteKey {
         Self {
             technique: settings.technique,
             animation: settings.sprite.animation,
-            debug_sprite: settings.sprite.debug_sprite,
+            checkerboard: settings.debug.checkerboard,
             six_way: settings.is_six_way(),
             motion: settings.sprite.motion > 0.0,
             curve: settings.soft_fade.curve,
             linear_depth,
             exact_filtering,
             shadow: settings.receives_shadow(),
-            by_depth: settings.lights_by_depth(),
+            by_depth: settings.receives_shadow_by_depth(),
             fire: settings.burns(),
             tint: settings.is_tinted(),
             stretch: settings.is_stretched(),
@@ -62,7 +62,7 @@ impl SpriteKey {
         self.technique.is_flat()
     }
 
-    pub fn lights_by_depth(&self) -> bool {
+    pub fn receives_shadow_by_depth(&self) -> bool {
         self.by_depth
     }
 
@@ -80,7 +80,7 @@ impl SpriteKey {
         let shared = [
             enum_constant!("TECHNIQUE", self.technique),
             enum_constant!("SPRITE_ANIMATION", self.animation),
-            bool_constant("DEBUG_SPRITE", self.debug_sprite),
+            bool_constant("CHECKERBOARD", self.checkerboard),
             bool_constant("SIX_WAY", self.six_way),
             bool_constant("MOTION", self.motion),
             enum_constant!("FADE_CURVE", self.curve),

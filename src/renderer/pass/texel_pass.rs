@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 use haze_core::glam::UVec2;
 
 use super::groups::Groups;
@@ -163,7 +163,7 @@ impl<K: TexelKey> TexelPipelines<K> {
     }
 
     /// Compiles the pipeline of a planned pass, or returns the shader error.
-    pub fn check(&self, planned: Planned<K>) -> Result<(), Error> {
+    pub fn check(&self, planned: Planned<K>) -> Result<(), PrepareError> {
         if planned.computed {
             return self.computed.as_ref().map_or(Ok(()), |computed| computed.check(Computed(planned.key)));
         }

@@ -18,9 +18,10 @@ use crate::renderer::layouts::GroupSet;
 use crate::renderer::pipeline_variants::PipelineKey;
 use crate::renderer::targets::{PLACEHOLDER_FORMAT, TiledFormats, attachment_constants, tiled_formats};
 
-/// Texels per workgroup of the entry points `cooperative` and `split`, of `split_finely`, and of `per_invocation`, in
-/// `shaders/tile_accumulate.wgsl`.
+/// Texels per workgroup of the entry points `cooperative` and `split`, of `quads`, of `split_finely`, and of `per_invocation`,
+/// in `shaders/tile_accumulate.wgsl`.
 pub(crate) const COOPERATIVE_TILE: UVec2 = UVec2::new(8, 16);
+const QUAD_TILE: UVec2 = UVec2::new(32, 16);
 const FINE_TILE: UVec2 = UVec2::new(8, 8);
 const PER_INVOCATION_TILE: UVec2 =
     UVec2::new(tile_refine::PER_INVOCATION_TILE.x, 8 * tile_refine::PER_INVOCATION_TILE.y);
@@ -32,6 +33,8 @@ pub(crate) enum TraversalMode {
     PerInvocation,
     /// On GPUs: a workgroup reads the list together.
     Cooperative,
+    /// As `Cooperative`, twice as many texels for each invocation.
+    Quads,
     /// As `Cooperative`, four parts of the list at the same time.
     Split,
     /// As `Cooperative`, eight parts at the same time.
@@ -40,13 +43,14 @@ pub(crate) enum TraversalMode {
 
 impl TraversalMode {
     /// The traversals of GPUs.
-    pub const COOPERATIVE: [Self; 3] = [Self::Cooperative, Self::Split, Self::SplitFinely];
+    pub const COOPERATIVE: [Self; 4] = [Self::Cooperative, Self::Quads, Self::Split, Self::SplitFinely];
 
     /// Returns the texels per workgroup.
     fn tile(self) -> UVec2 {
         match self {
             Self::PerInvocation => PER_INVOCATION_TILE,
             Self::Cooperative | Self::Split => COOPERATIVE_TILE,
+            Self::Quads => QUAD_TILE,
             Self::SplitFinely => FINE_TILE,
         }
     }
@@ -93,6 +97,7 @@ impl PipelineKey for TileAccumulateKey {
             entry_point: match self.traversal {
                 TraversalMode::PerInvocation => "per_invocation",
                 TraversalMode::Cooperative => "cooperative",
+                TraversalMode::Quads => "quads",
                 TraversalMode::Split => "split",
                 TraversalMode::SplitFinely => "split_finely",
             },
@@ -101,6 +106,7 @@ impl PipelineKey for TileAccumulateKey {
                 bool_constant("HOST_DEPTH", self.host_depth),
                 bool_constant("WEIGHTED", self.weighted),
                 bool_constant("STOPS", self.stops),
+                bool_constant("QUADS", self.traversal == TraversalMode::Quads),
                 bool_constant("LOADS_SPRITE", !self.is_cooperative()),
             ])),
         }

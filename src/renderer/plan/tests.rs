@@ -87,7 +87,7 @@ fn compute_shaders_read_the_hosts_depth_in_place_at_scale_1() {
         (RenderPath::Tiled, 1, all, false),
     ] {
         let mut settings = Settings { path, ..Settings::default() };
-        settings.accumulate.scale = scale;
+        settings.accumulate.downscale = scale;
         let plan = deferred(&inputs, &settings);
         assert_eq!(plan.texels.depth_downsample.is_none(), in_place, "{path:?} {scale}");
         assert_eq!(plan.tiled.is_some_and(|keys| keys.accumulate.host_depth), in_place, "{path:?} {scale}");
@@ -147,7 +147,7 @@ fn light_target_is_planned_only_for_final_images_at_reduced_resolution_or_if_com
     assert!(DebugView::ALL.iter().all(|view| by_transfer.contains(view) != lit.contains(view)), "{by_transfer:?}");
     settings.accumulate.upsample = Upsample::Bilinear;
     assert_eq!(deferred(&inputs(), &settings).texels.depth_slopes, None);
-    settings.accumulate.scale = 1;
+    settings.accumulate.downscale = 1;
     let computed = deferred(&inputs(), &settings);
     assert!(computed.texels.light_target.is_some() && computed.texels.depth_slopes.is_none());
     assert!(computed.texels.mark_cells.is_none());

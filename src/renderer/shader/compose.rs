@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use haze_core::error::{Error, one_line};
+use haze_core::error::{PrepareError, one_line};
 
 use super::sources::{File, IMPORT_COLUMN, Sources, import, is_inside};
 
@@ -33,19 +33,19 @@ impl Composed {
 
     /// Creates an error for a line and column of the composed text, located in the file that contains it. Lines beyond
     /// the end count as the last line.
-    pub fn error_at(&self, line: usize, column: usize, reason: &str) -> Error {
+    pub fn error_at(&self, line: usize, column: usize, reason: &str) -> PrepareError {
         let index = line.clamp(1, self.places.len().max(1)) - 1;
         let (path, line) = match self.places.get(index) {
             Some(place) => (&*place.path, place.line),
             None => (&*self.path, 1),
         };
-        Error::Shader { path: path.into(), line, column, reason: one_line(reason) }
+        PrepareError::Shader { path: path.into(), line, column, reason: one_line(reason) }
     }
 }
 
 impl Sources {
     /// Composes the file of a pass.
-    pub(super) fn compose(&self, name: &str) -> Result<Composed, Error> {
+    pub(super) fn compose(&self, name: &str) -> Result<Composed, PrepareError> {
         match self.find(name) {
             Some(file) => self.compose_file(file),
             None => self.compose_text(""),
@@ -53,11 +53,11 @@ impl Sources {
     }
 
     /// Composes a text that has no file name.
-    pub(super) fn compose_text(&self, text: &str) -> Result<Composed, Error> {
+    pub(super) fn compose_text(&self, text: &str) -> Result<Composed, PrepareError> {
         self.compose_file(&File::embedded("", text.to_owned()))
     }
 
-    fn compose_file(&self, file: &File) -> Result<Composed, Error> {
+    fn compose_file(&self, file: &File) -> Result<Composed, PrepareError> {
         let composed = Composed { text: String::new(), path: file.path.to_path_buf(), places: Vec::new() };
         let mut composer = Composer { sources: self, composed, done: Vec::new(), open: Vec::new() };
         composer.append(file)?;
@@ -75,7 +75,7 @@ struct Composer<'a> {
 }
 
 impl<'a> Composer<'a> {
-    fn append(&mut self, file: &'a File) -> Result<(), Error> {
+    fn append(&mut self, file: &'a File) -> Result<(), PrepareError> {
         self.open.push(&file.name);
         for (line, text) in (1..).zip(file.text.lines()) {
             let Some(import) = import(text) else {

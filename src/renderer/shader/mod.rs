@@ -15,7 +15,7 @@ pub use sources::Sources;
 
 pub(crate) use shader_module::{checked_shader, embedded_shader};
 
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 
 /// Replaces every `#import "lib/X.wgsl"` line of `text` by that embedded file, and the imports in it, each file once.
 /// Hosts can use it to call haze's functions from their own shaders.
@@ -25,7 +25,7 @@ use haze_core::error::Error;
 pub fn compose(text: &str) -> Result<String, String> {
     match Sources::embedded().compose_text(text) {
         Ok(composed) => Ok(composed.text),
-        Err(Error::Shader { line, reason, .. }) => Err(format!("line {line}: {reason}")),
+        Err(PrepareError::Shader { line, reason, .. }) => Err(format!("line {line}: {reason}")),
         Err(other) => Err(other.to_string()),
     }
 }

@@ -19,7 +19,7 @@ const MAX_DEPTH: usize = 40;
 /// Depth of a block or an `else`, which takes 1.4 times the stack of an operator.
 const BLOCK: usize = 2;
 /// Maximum number of declarations outside functions, whose references naga and its back ends follow recursively: 1.4 times as
-/// many fit in 2 MiB without optimization. haze's own shaders have up to 353.
+/// many fit in 2 MiB without optimization. haze's own shaders have up to 360.
 const MAX_DECLARATIONS: usize = 720;
 
 /// Place of the first token that is too deep.
@@ -71,7 +71,8 @@ impl Level {
     /// Ends a statement, a condition or a list element.
     fn end(&mut self) {
         self.deepest = self.deepest.max(self.depth());
-        (self.operators, self.inner) = (0, 0);
+        self.operators = 0;
+        self.inner = 0;
     }
 }
 
@@ -104,7 +105,8 @@ fn measure(text: &str, max_depth: usize, max_declarations: usize) -> Result<Meas
             }
             ";" => {
                 level.end();
-                (level.angles, level.elses) = (0, 0);
+                level.angles = 0;
+                level.elses = 0;
             }
             // Inside a template list the expression around it goes on.
             "," if level.angles == 0 => level.end(),

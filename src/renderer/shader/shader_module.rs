@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 
 use super::naga_messages::{marked_location, to_wgsl_terms};
 use super::nesting::check_nesting;
@@ -22,13 +22,13 @@ pub(crate) fn embedded_shader(name: &'static str) -> Result<Shader, Infallible> 
 /// its text is the same.
 ///
 /// # Errors
-/// [`Error::Shader`]: the first error.
+/// [`PrepareError::Shader`]: the first error.
 pub(crate) fn checked_shader(
     device: &wgpu::Device,
     name: &'static str,
     sources: &Sources,
     known: Option<&Shader>,
-) -> Result<Shader, Error> {
+) -> Result<Shader, PrepareError> {
     let composed = sources.compose(&file_of(name))?;
     if let Some(known) = known.filter(|known| *known.text == *composed.text) {
         return Ok(known.clone());

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use haze_core::assets::bounded_read;
-use haze_core::error::{Error, builtin_path, one_line};
+use haze_core::error::{AssetError, PrepareError, builtin_path, one_line};
 
 use super::embedded::SOURCES;
 use super::naga_messages::find_unclosed_bracket;
@@ -53,12 +53,12 @@ impl Sources {
     /// Files are UTF-8, with or without a byte order mark; lines end in LF or CRLF. Limits: 1 MiB per file, 256 files.
     ///
     /// # Errors
-    /// [`Error::Io`] if the folder or a file in it cannot be read, or if no file in it has the name of an embedded one:
-    /// such a folder would change nothing and is probably the wrong one. [`Error::Shader`] for a file that is not
-    /// UTF-8, or for more than 256 files.
-    pub fn from_folder(folder: impl AsRef<Path>) -> Result<Self, Error> {
+    /// [`AssetError::Io`] if the folder or a file in it cannot be read, or if no file in it has the name of an embedded one:
+    /// such a folder would change nothing and is probably the wrong one. [`AssetError::Text`] for a file that is not UTF-8,
+    /// or for more than 256 files.
+    pub fn from_folder(folder: impl AsRef<Path>) -> Result<Self, AssetError> {
         let folder = folder.as_ref();
-        let io = |error| Error::Io { path: folder.into(), error };
+        let io = |error| AssetError::Io { path: folder.into(), error };
         let refuse = |found| {
             let passes: Vec<_> = SOURCES.iter().map(|(name, _)| *name).filter(|name| !name.contains('/')).collect();
             let reason = format!("{found}; expected {} or a file of lib/ in it", passes.join(", "));
@@ -74,7 +74,8 @@ impl Sources {
         if files.iter().all(|file| file.is_embedded) {
             return refuse("a folder without any of haze's shaders");
         }
-        let (mut next, mut missing) = (0, Vec::new());
+        let mut next = 0;
+        let mut missing = Vec::new();
         while let Some(file) = files.get(next) {
             let mut imported = Vec::new();
             for (line, name) in imports(&file.text) {
@@ -84,7 +85,9 @@ impl Sources {
                     continue;
                 }
                 if files.len() + imported.len() == MAX_FILES {
-                    return Err(file.error_at(line, IMPORT_COLUMN, format!("more than {MAX_FILES} files")));
+                    let path = file.path.to_path_buf();
+                    let reason = format!("more than {MAX_FILES} files");
+                    return Err(AssetError::Text { path, line, column: IMPORT_COLUMN, reason });
                 }
                 match File::read(folder, name)? {
                     Some(file) => imported.push(file),
@@ -105,7 +108,7 @@ impl Sources {
     }
 
     /// Returns an error for the first custom file that leaves a bracket open.
-    pub(super) fn find_unclosed_bracket(&self) -> Option<Error> {
+    pub(super) fn find_unclosed_bracket(&self) -> Option<PrepareError> {
         let own = self.files.iter().filter(|file| !file.is_embedded);
         own.filter_map(|file| Some((file, find_unclosed_bracket(&file.text)?)))
             .map(|(file, (line, column, bracket))| file.error_at(line, column, format!("`{bracket}` is never closed")))
@@ -123,10 +126,10 @@ impl File {
     }
 
     /// Reads a file of the folder; `None` if it does not exist.
-    fn read(folder: &Path, name: &str) -> Result<Option<Self>, Error> {
+    fn read(folder: &Path, name: &str) -> Result<Option<Self>, AssetError> {
         let path: Arc<Path> = folder.join(name).into();
         let bytes = match bounded_read::read(&path, "WGSL file", MAX_BYTES) {
-            Err(Error::Io { error, .. }) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(AssetError::Io { error, .. }) if error.kind() == ErrorKind::NotFound => return Ok(None),
             read => read?,
         };
         let text = match String::from_utf8(bytes) {
@@ -135,15 +138,15 @@ impl File {
                 let good = String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]).into_owned();
                 let (line, column) = end_of(&good);
                 let reason = "not a text file; expected UTF-8".to_owned();
-                return Err(Error::Shader { path: path.to_path_buf(), line, column, reason });
+                return Err(AssetError::Text { path: path.to_path_buf(), line, column, reason });
             }
         };
         Ok(Some(Self { name: name.to_owned().into(), path, text: text.into(), is_embedded: false }))
     }
 
     /// Creates an error in this file.
-    pub fn error_at(&self, line: usize, column: usize, reason: String) -> Error {
-        Error::Shader { path: self.path.to_path_buf(), line, column, reason: one_line(reason) }
+    pub fn error_at(&self, line: usize, column: usize, reason: String) -> PrepareError {
+        PrepareError::Shader { path: self.path.to_path_buf(), line, column, reason: one_line(reason) }
     }
 }
 

@@ -45,7 +45,7 @@ impl Instances {
         settings: &Settings,
         used: ParticleUse,
     ) -> Option<Sprites> {
-        let loops = settings.sprite.debug_loop;
+        let loops = settings.debug.draw_count;
         self.evaluated.clear();
         let particles = match particles {
             Particles::Buffer(particles) => {
@@ -90,7 +90,8 @@ impl Instances {
             let (sprites, _) = staging.slice(..).into_chunks::<{ size_of::<Particle>() }>();
             sprites.write_iter(order.indices().map(|index| bytemuck::cast(particles[index])));
         }
-        let (buffer, count) = (buffer.clone(), count as u32);
+        let buffer = buffer.clone();
+        let count = count as u32;
         Some(Sprites { buffer, offset: 0, count, loops, is_sorted, by_view_depth: is_sorted })
     }
 

@@ -16,12 +16,12 @@ use crate::renderer::pass::groups::Groups;
 use crate::renderer::pass::measure::Measure;
 use crate::renderer::pass::sprite_instances::Sprites;
 use crate::renderer::support::{exceeds_tiled_limits, is_readable_by_compute};
-use crate::renderer::tiled::{EmittedParticles, MeasuredParticles, SortedParticles, SplatParticles};
+use crate::renderer::tiled::{EmittedParticles, MeasureInputs, MeasuredParticles, SortedParticles, SplatParticles};
 
 /// Number of particles from which the GPU sorts for a path that draws: the CPU needs 0.2 ms to sort them.
 const MIN_GPU_SORTED: u32 = 32_768;
 
-/// Maximum number of particles of a slice that are kept for [`SystemParticles::drawn`].
+/// Maximum number of particles of a slice that are kept for [`SystemParticles::estimate_sample`].
 const SAMPLE: usize = 4096;
 
 /// Particles of one system, and the buffers that hold them.
@@ -53,18 +53,18 @@ impl SystemParticles {
         &mut self,
         view: &ViewGeometry,
         space: &ParticleSpace,
-        system: &ParticleSystem<'_>,
+        system: &ParticleSystem<'_, '_>,
         settings: &Settings,
     ) -> SystemBoxes {
         self.take_sample(system.particles);
-        let (known, _) = known_particles(system.particles, &self.sample).unwrap_or((&[], 1));
-        self.measures.measure(space, view.depth.near, known, settings);
-        let known = system.bounds.or(match system.particles {
+        let (particles, _) = cpu_particles(system.particles, &self.sample).unwrap_or((&[], 1));
+        self.measures.measure(space, view.depth.near, particles, settings);
+        let bounds = system.bounds.or(match system.particles {
             Particles::Emitter(emission) => Some(emission.bounds(SpriteExtent::from_settings(system.settings))),
             // `validate` refuses a buffer without bounds.
             Particles::Slice(_) | Particles::Buffer(_) => None,
         });
-        self.measures.boxes(known.map(|bounds| space.world_bounds(&bounds)))
+        self.measures.boxes(bounds.map(|bounds| space.world_bounds(&bounds)))
     }
 
     /// Takes a sample that outlives the frame's input.
@@ -86,12 +86,12 @@ impl SystemParticles {
 
     /// Returns the particles that the CPU knows, and the number of particles that each represents. `None` for a host's
     /// buffer.
-    pub fn known<'a>(&'a self, particles: Particles<'a>) -> Option<(&'a [Particle], u32)> {
-        known_particles(particles, &self.sample)
+    pub fn cpu_particles<'a>(&'a self, particles: Particles<'a>) -> Option<(&'a [Particle], u32)> {
+        cpu_particles(particles, &self.sample)
     }
 
     /// Returns the uploaded particles that the CPU knows, in no order; some may be invisible.
-    pub fn uploaded<'a>(&'a self, particles: Particles<'a>) -> &'a [Particle] {
+    pub fn instances<'a>(&'a self, particles: Particles<'a>) -> &'a [Particle] {
         match particles {
             Particles::Slice(particles) => particles,
             Particles::Emitter(_) => self.instances.evaluated(),
@@ -101,7 +101,7 @@ impl SystemParticles {
 
     /// Returns drawn particles, all or a sample, and the number of particles that each represents. Empty for a host's
     /// buffer.
-    pub fn drawn(&self) -> (&[Particle], u32) {
+    pub fn estimate_sample(&self) -> (&[Particle], u32) {
         match self.instances.evaluated() {
             [] => (&self.sample, self.particles_per_sample),
             evaluated => (evaluated, 1),
@@ -121,7 +121,7 @@ impl SystemParticles {
         let is_tiled = settings.path == RenderPath::Tiled;
         if let (Particles::Emitter(emission), Some(tiled), true) = (particles, &shared.pipelines.tiled, is_tiled) {
             self.instances = Instances::default();
-            let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.sprite.debug_loop)?;
+            let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.debug.draw_count)?;
             return Some((sprites, Some(ParticlePass::Emit(emit))));
         }
         let sorted_by = sorted_by(shared, &particles, is_tiled);
@@ -144,7 +144,7 @@ impl SystemParticles {
     pub fn measure_pass(
         &mut self,
         context: &FrameContext<'_>,
-        host: &ParticleSystem<'_>,
+        host: &ParticleSystem<'_, '_>,
         settings: &Settings,
         groups: &Groups,
         system: &wgpu::Buffer,
@@ -152,9 +152,14 @@ impl SystemParticles {
         let FrameContext { gpu, shared, .. } = context;
         let Particles::Buffer(particles) = host.particles else { return None };
         let tiled = shared.pipelines.tiled.as_ref().filter(|_| is_readable_by_compute(&particles))?;
-        let sprites = Sprites::of_host(&particles, 1);
-        let fade_distance = settings.soft_fade.max_distance();
-        Some(self.measured.write(gpu, tiled, (&sprites, groups, system), host.depth.is_some(), fade_distance))
+        let inputs = MeasureInputs {
+            sprites: Sprites::of_host(&particles, 1),
+            groups,
+            system,
+            keeps_depth: host.depth.is_some(),
+            fade_distance: settings.soft_fade.max_distance(),
+        };
+        Some(self.measured.write(gpu, tiled, inputs))
     }
 
     /// Prepares the pass that adds the system's sprites to the density grid of the frame. `None` without shadow, and for a
@@ -173,7 +178,7 @@ impl SystemParticles {
             _ => true,
         };
         let density = shadow.filter(|_| is_readable)?.density?;
-        Some(self.splat.write(gpu, tiled, (sprites, groups), density))
+        Some(self.splat.write(gpu, tiled, sprites, groups, density))
     }
 
     /// Releases buffers that have not been needed for 120 frames. `is_untiled`: true if that is so for the path
@@ -214,8 +219,8 @@ fn sorted_by(shared: &Shared, particles: &Particles<'_>, is_tiled: bool) -> Sort
     if is_tiled || is_worth_it { SortedBy::Gpu } else { SortedBy::Cpu }
 }
 
-/// See [`SystemParticles::known`].
-fn known_particles<'a>(particles: Particles<'a>, sample: &'a [Particle]) -> Option<(&'a [Particle], u32)> {
+/// See [`SystemParticles::cpu_particles`].
+fn cpu_particles<'a>(particles: Particles<'a>, sample: &'a [Particle]) -> Option<(&'a [Particle], u32)> {
     match particles {
         Particles::Slice(particles) => Some((particles, 1)),
         Particles::Buffer(_) => None,

@@ -180,7 +180,7 @@ impl SystemState {
     pub fn cast<'a>(&'a self, particles: Particles<'a>) -> Option<(&'a SystemUniform, &'a [Particle])> {
         let in_sight = self.prepared.as_ref().map(|prepared| &prepared.setup.uniform);
         let uniform = in_sight.or(self.hidden.as_ref().map(|hidden| &hidden.uniform))?;
-        Some((uniform, self.particles.uploaded(particles)))
+        Some((uniform, self.particles.instances(particles)))
     }
 
     /// Returns this frame's choice of the path `auto`.
@@ -234,7 +234,7 @@ impl SystemState {
         let Some(PreparedSystem { setup, technique, trim, passes, .. }) = &self.prepared else {
             return Overdraw::default();
         };
-        let (particles, each) = self.particles.drawn();
+        let (particles, each) = self.particles.estimate_sample();
         if particles.is_empty() {
             return Overdraw::default();
         }
@@ -273,7 +273,8 @@ impl SystemState {
     /// frames in a row.
     pub fn tick_absence(&mut self, is_missing: bool) -> bool {
         if is_missing {
-            (self.prepared, self.hidden) = (None, None);
+            self.prepared = None;
+            self.hidden = None;
         }
         self.frames_absent.tick(is_missing)
     }
@@ -283,7 +284,7 @@ impl SystemState {
         &mut self,
         shared: &Shared,
         view: &ViewGeometry,
-        system: &ParticleSystem<'_>,
+        system: &ParticleSystem<'_, '_>,
     ) -> (Bounds, ResolvedSettings) {
         let space = ParticleSpace::new(view, &system.world_from_particles);
         let MaterialInfo { frame_count, ramp_steps, .. } = &system.material.info;
@@ -295,7 +296,7 @@ impl SystemState {
     }
 
     /// Places the system in the view, uploads its data, and prepares targets and pipelines.
-    pub fn write(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) {
+    pub fn write(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_, '_>) {
         self.hidden = None;
         self.prepared = self.prepare(context, system);
         let is_deferred = matches!(self.passes(), Some(SystemPasses::Deferred(_)));
@@ -308,19 +309,20 @@ impl SystemState {
             self.tiles = TiledSystem::default();
         }
         let is_sorted = matches!(self.particle_pass(), Some(ParticlePass::DepthSort(..)));
-        let (is_measured, is_splatted) = (self.measure().is_some(), self.splat().is_some());
+        let is_measured = self.measure().is_some();
+        let is_splatted = self.splat().is_some();
         self.particles.release_unused(is_released, is_sorted, is_measured, is_splatted);
     }
 
-    fn prepare(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>) -> Option<PreparedSystem> {
+    fn prepare(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_, '_>) -> Option<PreparedSystem> {
         let FrameContext { gpu, shared, frame, view, .. } = context;
         let material = &system.material.info;
         let MeasuredSystem { space, settings, bounds } = self.measured.take()?;
         let smoke_shadow = context.shadow.map(|grid| grid.shadow);
         let on_system = smoke_shadow.map(|shadow| (shadow, settings.shadow_blocks()));
         light_uniforms(view, frame.lights, frame.exposure, &bounds, on_system, &mut self.light_uniforms);
-        let known = self.particles.known(system.particles);
-        let (particles, particles_per_sample) = known.unwrap_or((&[], 1));
+        let cpu_particles = self.particles.cpu_particles(system.particles);
+        let (particles, particles_per_sample) = cpu_particles.unwrap_or((&[], 1));
         let in_world = SystemInput {
             bounds: &bounds,
             depth: system.depth,
@@ -338,19 +340,19 @@ impl SystemState {
         };
         let Some(mut setup) = system_setup(view, context.host_size, &in_world) else {
             let uniform = caster_uniform(&in_world);
-            let caster = self.prepare_hidden(context, system, (&space, &settings, &uniform));
+            let caster = self.prepare_hidden(context, system, &space, &settings, &uniform);
             self.hidden = caster.map(|caster| HiddenSystem { uniform, caster });
             return None;
         };
         let trim = SpriteTrim::new(&settings, material);
         let mut settings = settings;
         let scale_choice =
-            ScaleChoice::apply(view, &mut settings, &mut setup, &trim, material, known, self.chosen_scale);
+            ScaleChoice::apply(view, &mut settings, &mut setup, &trim, material, cpu_particles, self.chosen_scale);
         self.chosen_scale = scale_choice.map(|choice| choice.scale);
         let workload = matches!(settings.path, RenderPath::Auto | RenderPath::Tiled).then(|| {
             let view_uniform = view.uniform(false);
             let projector = setup.projector(&view_uniform, &settings, &trim);
-            estimate_workload(&projector, &setup.grid(), system.particles.count(), known, &settings)
+            estimate_workload(&projector, &setup.grid(), system.particles.count(), cpu_particles, &settings)
         });
         let choice = choose(&mut self.path_chooser, shared, system, workload.as_ref());
         let settings = choice.map_or(settings, |choice| settings.with_path(choice.path));
@@ -404,8 +406,10 @@ impl SystemState {
     fn prepare_hidden(
         &mut self,
         context: &FrameContext<'_>,
-        system: &ParticleSystem<'_>,
-        (space, settings, uniform): (&ParticleSpace, &ResolvedSettings, &SystemUniform),
+        system: &ParticleSystem<'_, '_>,
+        space: &ParticleSpace,
+        settings: &ResolvedSettings,
+        uniform: &SystemUniform,
     ) -> Option<CasterPasses> {
         context.shadow?;
         context.gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
@@ -425,7 +429,7 @@ impl SystemState {
     }
 
     /// Returns the bind groups of the system.
-    fn bind(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_>, depth: &DepthBindings) -> Groups {
+    fn bind(&mut self, context: &FrameContext<'_>, system: &ParticleSystem<'_, '_>, depth: &DepthBindings) -> Groups {
         let shared = context.shared;
         let optical_depths = context.shadow.map_or(&shared.no_shadow, |grid| grid.optical_depths);
         if self.bindings.optical_depths != *optical_depths {
@@ -469,7 +473,7 @@ impl SystemBindings {
 fn choose(
     path_chooser: &mut PathChooser,
     shared: &Shared,
-    system: &ParticleSystem<'_>,
+    system: &ParticleSystem<'_, '_>,
     workload: Option<&PathWorkload>,
 ) -> Option<PathChoice> {
     let Some(workload) = workload.filter(|_| system.settings.path == RenderPath::Auto) else {

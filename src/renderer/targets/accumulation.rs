@@ -145,7 +145,8 @@ mod tests {
 
     #[test]
     fn steadily_growing_box_needs_new_textures_only_a_few_times() {
-        let (mut size, mut renewals) = (UVec2::splat(64), 0);
+        let mut size = UVec2::splat(64);
+        let mut renewals = 0;
         for side in 64..2000 {
             let needed = UVec2::new(side, 64 + side / 3);
             if needed.cmpgt(size).any() {

@@ -177,7 +177,8 @@ fn validate_rows(
     settings: &Settings,
     rows: impl Iterator<Item = (AttachmentRole, wgpu::TextureFormat)>,
 ) -> Result<(), FieldError> {
-    let (mut count, mut bytes) = (0, 0);
+    let mut count = 0;
+    let mut bytes = 0;
     for (role, format) in rows {
         count += 1;
         bytes = bytes_with(bytes, format);

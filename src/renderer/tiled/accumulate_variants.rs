@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 use haze_core::glam::UVec2;
 use haze_core::view_setup::MAX_TARGET_ATTACHMENTS;
 
@@ -60,7 +60,7 @@ impl AccumulateVariants {
     }
 
     /// Compiles the pipeline for `key`, or returns the shader error.
-    pub fn check(&self, key: TileAccumulateKey) -> Result<(), Error> {
+    pub fn check(&self, key: TileAccumulateKey) -> Result<(), PrepareError> {
         self.get(key.formats()).check(key)
     }
 

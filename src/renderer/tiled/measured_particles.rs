@@ -30,24 +30,29 @@ struct MeasureBuffers {
     inputs: Option<(ParticleRange, wgpu::BindGroup)>,
 }
 
+/// Particles to measure.
+pub(crate) struct MeasureInputs<'a> {
+    pub sprites: Sprites,
+    pub groups: &'a Groups,
+    /// Uniforms of the system, which receive the extent.
+    pub system: &'a wgpu::Buffer,
+    /// True if the host has chosen the depth of the center.
+    pub keeps_depth: bool,
+    /// Length of the fade, metres.
+    pub fade_distance: f32,
+}
+
 impl MeasuredParticles {
-    /// Prepares the buffers and the pass that measures `sprites` and writes to the uniforms `system`. `keeps_depth`:
-    /// true if the host has chosen the depth of the center. `fade_distance`: length of the fade, metres.
-    pub fn write(
-        &mut self,
-        gpu: &Gpu<'_>,
-        tiled: &TiledPipelines,
-        (sprites, groups, system): (&Sprites, &Groups, &wgpu::Buffer),
-        keeps_depth: bool,
-        fade_distance: f32,
-    ) -> Measure {
+    /// Prepares the buffers and the pass that measures.
+    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &TiledPipelines, inputs: MeasureInputs<'_>) -> Measure {
+        let MeasureInputs { sprites, groups, system, keeps_depth, fade_distance } = inputs;
         let buffers = self.buffers.get_or_insert_with(|| MeasureBuffers {
             uniform: uniform_buffer(gpu.device, "haze measure", size_of::<MeasureUniform>() as u64),
             sums: storage(gpu.device, "haze extent sums", WORKGROUP, SUMS_BYTES),
             measured: storage(gpu.device, "haze measured extent", 1, MEASURED_BYTES),
             inputs: None,
         });
-        let range = ParticleRange::new(&tiled.limits, sprites);
+        let range = ParticleRange::new(&tiled.limits, &sprites);
         let workgroups = sprites.count.div_ceil(WORKGROUP).clamp(1, WORKGROUP);
         let uniform = MeasureUniform {
             count: sprites.count,

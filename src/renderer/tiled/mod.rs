@@ -13,7 +13,7 @@ mod tiled_pipelines;
 mod tiled_system;
 
 pub(crate) use emitted_particles::EmittedParticles;
-pub(crate) use measured_particles::MeasuredParticles;
+pub(crate) use measured_particles::{MeasureInputs, MeasuredParticles};
 pub(crate) use shadow_volume::{FrameShadow, ShadowVolume, SplatParticles, volume};
 pub(crate) use sorted_particles::SortedParticles;
 pub(crate) use tile_buffers::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};

@@ -80,7 +80,7 @@ impl ShadowVolume {
         gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&shadow.march));
         for (block, held) in (0..).zip(&mut buffers.maps) {
             let volume = Some(&buffers.optical_depths);
-            held.write(gpu, &tiled.passes.shadow_visibility.inputs, (shadow, block), maps, volume);
+            held.write(gpu, &tiled.passes.shadow_visibility.inputs, shadow, block, maps, volume);
         }
     }
 
@@ -92,7 +92,9 @@ impl ShadowVolume {
 
     /// Clears the density.
     pub fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.buffers.iter().for_each(|held| encoder.clear_buffer(&held.density, 0, None));
+        if let Some(held) = &self.buffers {
+            encoder.clear_buffer(&held.density, 0, None);
+        }
     }
 
     /// Returns the pass that marches to the lights.
@@ -138,12 +140,13 @@ impl ShadowVolume {
 
 impl VolumeBuffers {
     fn new(device: &wgpu::Device, tiled: &TiledPipelines, shadow: &SmokeShadow) -> Self {
-        let (resolution, blocks) = (shadow.resolution, shadow.blocks());
+        let resolution = shadow.resolution;
+        let blocks = shadow.blocks();
         let uniform = uniform_buffer(device, "haze shadow_march", size_of::<ShadowMarchUniform>() as u64);
         let density = storage(device, "haze density", resolution.pow(3), CELL_BYTES);
         let written = wgpu::TextureUsages::STORAGE_BINDING;
-        let optical_depths = volume(device, "haze optical depths", (resolution, blocks), written);
-        let density_texture = volume(device, "haze density texture", (density_side(resolution), 1), written);
+        let optical_depths = volume(device, "haze optical depths", resolution, blocks, written);
+        let density_texture = volume(device, "haze density texture", density_side(resolution), 1, written);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("haze density"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -178,7 +181,8 @@ fn density_side(resolution: u32) -> u32 {
 pub(crate) fn volume(
     device: &wgpu::Device,
     label: &str,
-    (resolution, blocks): (u32, u32),
+    resolution: u32,
+    blocks: u32,
     usage: wgpu::TextureUsages,
 ) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
@@ -213,7 +217,8 @@ impl SplatParticles {
         &mut self,
         gpu: &Gpu<'_>,
         tiled: &TiledPipelines,
-        (sprites, groups): (&Sprites, &Groups),
+        sprites: &Sprites,
+        groups: &Groups,
         density: &wgpu::Buffer,
     ) -> DensitySplat {
         let range = ParticleRange::new(&tiled.limits, sprites);

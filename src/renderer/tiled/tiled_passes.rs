@@ -36,9 +36,13 @@ impl TiledPasses {
 
     pub fn record(&self, encoder: &mut FrameEncoder<'_>) {
         self.project.record(encoder.compute("tile_project"), &self.groups);
-        self.sort.iter().for_each(|sort| sort.record(encoder.compute("sort")));
+        if let Some(sort) = &self.sort {
+            sort.record(encoder.compute("sort"));
+        }
         self.record_bin(encoder.compute("tile_bin"));
-        self.refine.iter().for_each(|refine| refine.record(encoder.compute("tile_refine"), &self.groups));
+        if let Some(refine) = &self.refine {
+            refine.record(encoder.compute("tile_refine"), &self.groups);
+        }
         self.accumulate.record(encoder.compute("tile_accumulate"), &self.groups);
     }
 
@@ -54,7 +58,8 @@ impl TiledPasses {
             return;
         }
         encoder.copy_buffer_to_buffer(&self.counters, 0, &self.read_back, 0, 2 * WORD_BYTES);
-        let (read_back, entries) = (self.read_back.clone(), self.entries.clone());
+        let read_back = self.read_back.clone();
+        let entries = self.entries.clone();
         encoder.map_buffer_on_submit(&self.read_back, wgpu::MapMode::Read, .., move |mapped| {
             if mapped.is_ok() {
                 if let Ok(view) = read_back.get_mapped_range(..) {

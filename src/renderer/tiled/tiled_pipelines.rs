@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use haze_core::error::Error;
+use haze_core::error::PrepareError;
 
 use super::accumulate_variants::AccumulateVariants;
 use crate::renderer::gpu::pipeline::{PipelineStore, Shader};
@@ -111,7 +111,7 @@ impl TiledPipelines {
     }
 
     /// Compiles the pipelines for these keys, or returns the shader error.
-    pub fn compile(&self, keys: TiledKeys) -> Result<(), Error> {
+    pub fn compile(&self, keys: TiledKeys) -> Result<(), PrepareError> {
         self.passes.emit.check(EmitKey)?;
         self.passes.project.check(keys.project)?;
         self.compile_sort()?;
@@ -130,25 +130,25 @@ impl TiledPipelines {
     }
 
     /// Compiles the pipelines that measure a host's particles.
-    pub fn compile_measure(&self) -> Result<(), Error> {
+    pub fn compile_measure(&self) -> Result<(), PrepareError> {
         MeasureKey::ALL.into_iter().try_for_each(|key| self.passes.measure.check(key))
     }
 
     /// Compiles the pipelines of shadow.
-    pub fn compile_shadow(&self) -> Result<(), Error> {
+    pub fn compile_shadow(&self) -> Result<(), PrepareError> {
         self.passes.density_splat.check(DensitySplatKey)?;
         ShadowMarchKey::ALL.into_iter().try_for_each(|key| self.passes.shadow_march.check(key))?;
         self.passes.shadow_visibility.check(ShadowVisibilityKey)
     }
 
     /// Compiles the pipelines that sort a host's particles back to front.
-    pub fn compile_depth_sort(&self) -> Result<(), Error> {
+    pub fn compile_depth_sort(&self) -> Result<(), PrepareError> {
         self.passes.depth_sort.check(DepthSortKey::DepthKeys)?;
         self.passes.depth_sort.check(DepthSortKey::GatherParticles)?;
         self.compile_sort()
     }
 
-    fn compile_sort(&self) -> Result<(), Error> {
+    fn compile_sort(&self) -> Result<(), PrepareError> {
         sort::all_keys(self.cooperative()).try_for_each(|key| self.passes.sort.check(key))
     }
 

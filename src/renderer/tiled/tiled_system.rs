@@ -37,6 +37,9 @@ const BIN_SIDE_COOPERATIVE: u32 = 32;
 const BIN_SIDE_LARGE: u32 = 64;
 const LARGE_BIN_PARTICLES: u32 = 1 << 16;
 
+/// Fewest tiles of a target where an invocation has 2x2 texels. An H200 gains 16 to 36 % at 11,400 and 5 to 26 % at 7,200,
+/// and loses at 4,080.
+const QUAD_TILES: u32 = 11_000;
 /// Most tiles of a target whose texels are shared by four invocations, and by eight; then the same for deep smoke, whose lists
 /// are long. With four, an H200 gains at 1,800 tiles, and loses with most presets at 7,200. With eight, an H100 gains with all
 /// presets at 120 tiles, and with deep smoke at 460. Smaller GPUs, which were not measured, have enough work with fewer tiles.
@@ -179,7 +182,9 @@ fn shared_traversal(size: UVec2, workload: &PathWorkload) -> TraversalMode {
     let is_deep = workload.layers() >= MANY_LAYERS;
     let (few, fewest) = if is_deep { SPLIT_TILES_OF_MANY_LAYERS } else { SPLIT_TILES };
     let is_hidden = workload.layers() * workload.optical_depth > OPAQUE_DEPTH;
-    if tiles > few || workload.sprites < MIN_SPLIT_SPRITES || is_hidden {
+    if tiles >= QUAD_TILES {
+        TraversalMode::Quads
+    } else if tiles > few || workload.sprites < MIN_SPLIT_SPRITES || is_hidden {
         TraversalMode::Cooperative
     } else if tiles > fewest {
         TraversalMode::Split

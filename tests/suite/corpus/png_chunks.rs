@@ -85,7 +85,9 @@ fn mutate(chunks: &mut Vec<Chunk>, mutation: ChunkMutation) {
         ChunkMutation::Set(at, byte, value) => {
             let content = &mut chunks[at.index(count)].1;
             let byte = byte.index(content.len() + 1);
-            content.get_mut(byte).into_iter().for_each(|byte| *byte = value);
+            if let Some(byte) = content.get_mut(byte) {
+                *byte = value;
+            }
         }
         ChunkMutation::Remove(at) => drop(chunks.remove(at.index(count))),
         ChunkMutation::Copy(from, to) => chunks.insert(to.index(count), chunks[from.index(count)].clone()),

@@ -72,14 +72,17 @@ pub static DEFAULTS: LazyLock<Settings> = LazyLock::new(Settings::default);
 static SYSTEM: LazyLock<VisibleSystem<'static>> = LazyLock::new(|| {
     let mut scene = TestScene::new(SIZE);
     scene.lights.push(Light { kind: LightKind::Directional, direction: vec3(0.3, -1.0, -0.4), ..Light::default() });
-    scene.settings.accumulate.scale = 1;
+    scene.settings.accumulate.downscale = 1;
     let scene: &'static TestScene = Box::leak(Box::new(scene));
     let systems = Box::leak(Box::new([ParticleSystem::new(&scene.particles, &scene.settings, &WITHOUT_SIX_WAY)]));
     let frame = FrameInput { lights: &scene.lights, systems, ..FrameInput::new(scene.view, &DEPTHS) };
     let (_, mut visible) = place_systems(&frame, SIZE).unwrap().visible.swap_remove(0);
     let system = &mut visible.system;
-    (system.target_origin, system.target_size) = (Vec2::ZERO, SIZE.as_vec2());
-    (system.frame_count, system.sprite_size, system.detail_lod) = (3.0, 8.0, 0.0);
+    system.target_origin = Vec2::ZERO;
+    system.target_size = SIZE.as_vec2();
+    system.frame_count = 3.0;
+    system.sprite_size = 8.0;
+    system.detail_lod = 0.0;
     visible.lights.iter_mut().zip([2.0, 0.0, 3.0, 1.0]).for_each(|(light, slot)| light.shadow_slot = slot);
     visible
 });
@@ -88,7 +91,8 @@ static SYSTEM: LazyLock<VisibleSystem<'static>> = LazyLock::new(|| {
 pub fn uniform_bytes() -> [Vec<u8>; 3] {
     let mut lights = [LightUniform::default(); MAX_LIGHTS];
     lights[..SYSTEM.lights.len()].copy_from_slice(&SYSTEM.lights);
-    let (view, system) = (bytemuck::bytes_of(&SYSTEM.view), bytemuck::bytes_of(&SYSTEM.system));
+    let view = bytemuck::bytes_of(&SYSTEM.view);
+    let system = bytemuck::bytes_of(&SYSTEM.system);
     [view.to_vec(), system.to_vec(), bytemuck::cast_slice(&lights).to_vec()]
 }
 

@@ -27,7 +27,8 @@ fn reduced_depth(visible: &VisibleSystem<'_>) -> Image<f32> {
 
 /// Limits of depth that the red channel of the test ramp crosses.
 fn with_limits(visible: &mut VisibleSystem<'_>) {
-    (visible.system.depth_limit, visible.system.smoke_depth_limit) = (8.0, 6.0);
+    visible.system.depth_limit = 8.0;
+    visible.system.smoke_depth_limit = 6.0;
 }
 
 /// The lit target of the reference. Its light and its slopes are the test ramp.
@@ -184,7 +185,8 @@ fn lit_targets() -> Vec<Formula> {
             wgsl: "system.depth_limit = 8.0; system.smoke_depth_limit = 6.0; \
                    y4(0, mean_of_sixteen(vec2i(i32(x(0)), i32(x(1))), vec2f(x(2), x(3)), x(4)));",
             reference: |x| {
-                let (base, fraction) = (v2(x).as_ivec2(), v2(&x[2..]));
+                let base = v2(x).as_ivec2();
+                let fraction = v2(&x[2..]);
                 let mean = |target: &AccumulatedTarget<'_>| {
                     target.mean_of_sixteen(|at| COLORS.load(at), base, fraction, x[4]).to_array().to_vec()
                 };
@@ -227,7 +229,8 @@ macro_rules! sky {
 /// The system under a sky, with or without shadow.
 fn under_a_sky(has_shadow: bool, up: Vec3) -> VisibleSystem<'static> {
     let mut visible = shaded_system(&DEFAULTS, has_shadow);
-    (visible.system.sky_color, visible.system.ground_color) = (Vec3::new(0.2, 0.5, 0.9), Vec3::new(0.7, 0.4, 0.1));
+    visible.system.sky_color = Vec3::new(0.2, 0.5, 0.9);
+    visible.system.ground_color = Vec3::new(0.7, 0.4, 0.1);
     visible.system.up = up;
     visible
 }
@@ -243,7 +246,8 @@ fn diffuse() -> Vec<Formula> {
                    y3(0, diffuse_from_lights(vec3f(x(1), x(2), x(3)), x(4), vec3f(x(5), x(6), x(7)), shade));",
             reference: |x| {
                 let settings = changed(|s| s.diffuse.backlight = Backlight::ALL[x[0] as usize]);
-                let (visible, shade) = (shaded_system(&settings, x[8] > 0.5), shade(Vec3::new(0.3, 0.8, x[8])));
+                let visible = shaded_system(&settings, x[8] > 0.5);
+                let shade = shade(Vec3::new(0.3, 0.8, x[8]));
                 visible.diffuse_from_lights(v3(&x[1..]), x[4], v3(&x[5..]), &shade).to_array().to_vec()
             },
             cases: unit_vectors(
@@ -421,7 +425,8 @@ fn surfaces() -> Vec<Formula> {
                         s.lighting = Lighting::SixWay;
                     }
                     if x[9] < 0.3 {
-                        (s.accumulate.order, s.accumulate.encoding) = (BlendOrder::Weighted, NormalEncoding::Biased);
+                        s.accumulate.order = BlendOrder::Weighted;
+                        s.accumulate.encoding = NormalEncoding::Biased;
                     }
                 });
                 let heat = Vec4::new(x[2], x[4], x[6], x[8]);
@@ -478,7 +483,9 @@ fn lit_surfaces() -> Vec<Formula> {
                 visible.system.spherical_harmonics = std::array::from_fn(|i| Vec4::new(0.3, 0.2, 0.1, 0.0) * i as f32);
             };
             let six_way = SixWay { positive: Vec3::new(0.2, 0.4, 0.6), negative: Vec3::new(0.1, 0.3, 0.5) };
-            let (depth, heat, tint) = (Vec2::ZERO, Vec2::ZERO, Vec3::new(0.9, 0.8, x[4]));
+            let depth = Vec2::ZERO;
+            let heat = Vec2::ZERO;
+            let tint = Vec3::new(0.9, 0.8, x[4]);
             let surface = Surface { normal: v3(&x[1..]), six_way, shade: Shade::NONE, depth, heat, tint };
             with_target(&settings, change, |target| target.diffuse(&surface, x[4], v3(&x[5..])).to_array().to_vec())
         },

@@ -35,7 +35,8 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: "let v = normal_from_accumulation(u32(x(0)) / 2u, u32(x(0)) % 2u, vec3f(x(1), x(2), x(3)), x(4)); \
                    y(0, v.x); y(1, v.y); y(2, v.z);",
             reference: |x| {
-                let (encoding, decode) = (NormalEncoding::ALL[x[0] as usize / 2], NormalDecode::ALL[x[0] as usize % 2]);
+                let encoding = NormalEncoding::ALL[x[0] as usize / 2];
+                let decode = NormalDecode::ALL[x[0] as usize % 2];
                 normal::normal_from_accumulation(encoding, decode, v3(&x[1..]), x[4]).to_array().to_vec()
             },
             cases: {

@@ -20,8 +20,9 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| {
                 let ramp = test_ramp();
                 let against = if Backlight::ALL[x[0] as usize] == Backlight::Ramp { x[8] } else { 0.0 };
-                let vectors = (v3(&x[1..]), v3(&x[4..]));
-                diffuse_response([&ramp; 2], RampFilter::Bilinear, vectors, x[7], against).to_array().to_vec()
+                let normal = v3(&x[1..]);
+                let to_light = v3(&x[4..]);
+                diffuse_response([&ramp; 2], RampFilter::Bilinear, normal, to_light, x[7], against).to_array().to_vec()
             },
             cases: unit_vectors(
                 unit_vectors(

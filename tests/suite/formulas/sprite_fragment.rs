@@ -57,7 +57,8 @@ fn numbers(fragment: &SpriteFragment) -> Vec<f32> {
 fn settings(x: &[f32]) -> Settings {
     let mut settings = technique(x);
     settings.soft_fade.curve = FadeCurve::Linear;
-    (settings.volumetric.march_steps, settings.volumetric.noise_octaves) = (5, 2);
+    settings.volumetric.march_steps = 5;
+    settings.volumetric.noise_octaves = 2;
     settings
 }
 
@@ -128,7 +129,7 @@ fn texels() -> Vec<Formula> {
         name: "sprite_texel",
         file: "lib/sprite_fragment.wgsl",
         wgsl: with_sprite!(
-            "DEBUG_SPRITE = x(0) == 1.0; SIX_WAY = x(0) == 2.0 || x(0) == 4.0; \
+            "CHECKERBOARD = x(0) == 1.0; SIX_WAY = x(0) == 2.0 || x(0) == 4.0; \
              GRAIN_OCTAVES = select(0u, 2u, x(0) > 2.0); system.grain_bump = 0.8; system.grain_tiles = 0.5; system.grain_fineness = 0.1; \
              if SIX_WAY { system.frame_count = 1.0; } \
              let f = sprite_texel(in, vec2f(x(6), x(7)), flipbook_frames(select(0.7, 0.0, SIX_WAY), \
@@ -137,7 +138,7 @@ fn texels() -> Vec<Formula> {
         ),
         reference: |x| {
             let mut settings = Settings::default();
-            settings.sprite.debug_sprite = x[0] == 1.0;
+            settings.debug.checkerboard = x[0] == 1.0;
             if x[0] == 2.0 || x[0] == 4.0 {
                 settings.lighting = Lighting::SixWay;
             }
@@ -146,11 +147,14 @@ fn texels() -> Vec<Formula> {
             }
             let mut visible = visible_system(&settings);
             let system = &mut visible.system;
-            (system.grain_bump, system.grain_tiles, system.grain_fineness) = (0.8, 0.5, 0.1);
+            system.grain_bump = 0.8;
+            system.grain_tiles = 0.5;
+            system.grain_fineness = 0.1;
             let mut sprite = sprite(v3(&x[1..]), x[4], x[5]);
             sprite.fineness = visible.fineness_of(sprite.radius, sprite.view_depth, 1.0);
             if settings.is_six_way() {
-                (visible.system.frame_count, sprite.frames) = (1.0, flipbook_frames(0.0, 1.0));
+                visible.system.frame_count = 1.0;
+                sprite.frames = flipbook_frames(0.0, 1.0);
             }
             let fragment = visible.sprite_texel(&sprite, v2(&x[6..]), v2(&x[8..]));
             let six_way = [fragment.six_way.positive.to_array(), fragment.six_way.negative.to_array()].concat();
@@ -182,7 +186,7 @@ fn texels() -> Vec<Formula> {
             ("(f32(frames.first) + frames.blend) / system.frame_count", "f32(frames.first) / system.frame_count"),
             ("* distance / in.center_radius.w", "* in.center_radius.w"),
             ("stretched_normal(normal, in.stretch)", "normal"),
-            ("if !DEBUG_SPRITE {", "if true {"),
+            ("if !CHECKERBOARD {", "if true {"),
             ("uv, frames, motion, lod);\n    }\n    var normal", "uv, frames, -motion, lod);\n    }\n    var normal"),
         ],
     }]
@@ -254,7 +258,8 @@ fn spheres() -> Vec<Formula> {
             reference: |x| {
                 let settings = settings(&[Technique::SphericalBillboard as u32 as f32]);
                 let mut visible = visible_system(&settings);
-                (visible.system, visible.view.orthographic) = (changed(visible.system), x[9]);
+                visible.system = changed(visible.system);
+                visible.view.orthographic = x[9];
                 let fragment = visible.sphere_fragment(&sprite(v3(&x[1..]), x[4], x[5]), v2(&x[6..]), x[8]);
                 fragment.map_or(vec![0.0; 4], |fragment| numbers(&fragment))
             },

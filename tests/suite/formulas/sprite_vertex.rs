@@ -36,7 +36,9 @@ fn changed(settings: &Settings) -> VisibleSystem<'_> {
     let mut visible = visible_system(settings);
     let system = &mut visible.system;
     let stretch = if settings.technique.is_sphere() { 0.0 } else { 0.1 };
-    (system.billboard_radius, system.stretch, system.stretch_limit) = (1.3, stretch, 2.5);
+    system.billboard_radius = 1.3;
+    system.stretch = stretch;
+    system.stretch_limit = 2.5;
     if settings.technique as u32 % 2 == 1 {
         system.stretch_axis = vec3(4.0, 1.0, -2.0);
     }
@@ -218,7 +220,8 @@ fn projection() -> Vec<Formula> {
             reference: |x| {
                 let settings = technique(x);
                 let visible = changed(&settings);
-                let (projector, index) = (visible.projector(), x[9] as usize);
+                let projector = visible.projector();
+                let index = x[9] as usize;
                 let sprite = projector.project(&particle(x), 0.5).filter(|_| (x[10] as u32) < 7);
                 let Some(sprite) = sprite else { return vec![0.0; 5] };
                 if settings.technique.is_sphere() {
@@ -254,7 +257,7 @@ fn trimming() -> Vec<Formula> {
         Formula {
             name: "alpha_bounds_texel",
             file: "lib/sprite_vertex.wgsl",
-            wgsl: "DEBUG_SPRITE = x(2) > 0.7; MOTION = x(3) > 0.7; let t = alpha_bounds_texel(i32(x(0)), x(1)); \
+            wgsl: "CHECKERBOARD = x(2) > 0.7; MOTION = x(3) > 0.7; let t = alpha_bounds_texel(i32(x(0)), x(1)); \
                    y_word(0, t.x); y_word(2, t.y); y_word(4, t.z);",
             reference: |x| {
                 if x[2] > 0.7 || x[3] > 0.7 {
@@ -268,7 +271,7 @@ fn trimming() -> Vec<Formula> {
             },
             cases: random(100, &[(0.0, 2.99), (0.0, 6.0), (0.0, 1.0), (0.0, 1.0)]),
             tolerance: 0.0,
-            mutants: &[("if DEBUG_SPRITE || MOTION", "if DEBUG_SPRITE"), ("vec2i(level, frame +", "vec2i(0, frame +")],
+            mutants: &[("if CHECKERBOARD || MOTION", "if CHECKERBOARD"), ("vec2i(level, frame +", "vec2i(0, frame +")],
         },
         Formula {
             name: "trimmed_extent",

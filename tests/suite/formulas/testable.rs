@@ -6,7 +6,9 @@ pub const STORAGE_LENGTH: usize = 16;
 
 /// Returns the rewritten shader, and the statements that copy the uniforms of the fixture to the private variables.
 pub fn testable(source: &str) -> (String, String) {
-    let (mut text, mut start, mut replaced) = (String::new(), String::new(), Vec::new());
+    let mut text = String::new();
+    let mut start = String::new();
+    let mut replaced = Vec::new();
     for line in source.lines() {
         if let Some(rest) = line.strip_prefix("override ") {
             let rest = if rest.starts_with("EXACT_FILTERING") { "EXACT_FILTERING: bool = true;" } else { rest };
@@ -72,9 +74,11 @@ fn test_texture(ty: &str) -> Option<&'static str> {
 
 fn replace_word(text: &str, from: &str, to: &str) -> String {
     let is_part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
-    let (mut result, mut rest) = (String::new(), text);
+    let mut result = String::new();
+    let mut rest = text;
     while let Some(at) = rest.find(from) {
-        let (before, after) = (&rest[..at], &rest[at + from.len()..]);
+        let before = &rest[..at];
+        let after = &rest[at + from.len()..];
         let is_word = !is_part(before.chars().next_back()) && !is_part(after.chars().next());
         result.push_str(before);
         result.push_str(if is_word { to } else { from });

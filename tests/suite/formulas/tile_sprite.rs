@@ -163,7 +163,7 @@ fn texels() -> Vec<Formula> {
         },
         Formula {
             name: "texel_of_ray",
-            file: "lib/tile_sprite.wgsl",
+            file: "tile_project.wgsl",
             wgsl: "system.scale = u32(x(2)); system.target_origin = vec2f(x(3), x(4)); view.ray_offset = vec2f(0.1, -0.2); \
                    y2(0, texel_of_ray(vec2f(x(0), x(1))));",
             reference: |x| {
@@ -177,7 +177,7 @@ fn texels() -> Vec<Formula> {
         },
         Formula {
             name: "texel_of_ndc",
-            file: "lib/tile_sprite.wgsl",
+            file: "tile_project.wgsl",
             wgsl: "system.scale = u32(x(2)); system.target_origin = vec2f(x(3), x(4)); \
                    y2(0, texel_of_ndc(vec2f(x(0), x(1))));",
             reference: |x| {
@@ -254,7 +254,8 @@ fn sprites() -> Vec<Formula> {
                 let is_sphere = x[8] > 0.5;
                 let uv = if is_sphere { [0.0; 2] } else { [x[6], x[7]] };
                 let ray = if is_sphere { [0.2, 0.4, -1.0] } else { [0.0; 3] };
-                let (fade, center) = ([0.25, 3.0, 0.0, 0.0], [x[4], x[5], -5.0, 1.0]);
+                let fade = [0.25, 3.0, 0.0, 0.0];
+                let center = [x[4], x[5], -5.0, 1.0];
                 let rest = [0.6, 0.8, 0.75, 9.0, 7.0, 0.0, 1.0];
                 [&uv[..], &ray, &fade, &center, &rest].concat()
             },

@@ -66,7 +66,7 @@ fn counts() -> Vec<Formula> {
         },
         Formula {
             name: "list_fits",
-            file: "lib/tiles.wgsl",
+            file: "tile_bin.wgsl",
             wgsl: "y(0, f32(list_fits(word(0), word(2), word(4))));",
             reference: |x| flag(tiles::list_fits(word(x), word(&x[2..]), word(&x[4..]))),
             cases: {

@@ -68,7 +68,8 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
                 host.draw_particles(gpu(), &scene, particles).unwrap();
                 host.picture(gpu()).unwrap()
             };
-            let (sorted, unsorted) = (drawn(&particles, false), drawn(&particles, true));
+            let sorted = drawn(&particles, false);
+            let unsorted = drawn(&particles, true);
             assert!(unsorted != sorted, "{count}, {path:?}, {cooperative}: the order does not change the image");
             // The camera looks along z. The sort is stable at equal depths.
             let mut back_to_front = particles;
@@ -100,7 +101,8 @@ fn a_gpu_sorts_many_particles_of_the_cpu() {
         };
         for count in [9000, particles.len()] {
             // With cooperative traversal, light per pixel is computed in half floats.
-            let (by_cpu, by_gpu) = (drawn(false, &particles[..count]), drawn(true, &particles[..count]));
+            let by_cpu = drawn(false, &particles[..count]);
+            let by_gpu = drawn(true, &particles[..count]);
             let psnr = psnr(&by_gpu, &by_cpu);
             assert!(psnr >= 70.0, "{path:?}, {count} particles: {psnr:.1} dB");
         }
@@ -121,7 +123,8 @@ fn number_buffer(number: u32, usage: wgpu::BufferUsages) -> wgpu::Buffer {
 fn only_living_particles_are_drawn_measured_and_sorted() {
     let mut scene = TestScene::new(SIZE);
     scene.bounds = Some(BOUNDS);
-    let (living, room) = (scene.particles.len() as u32, scene.particles.len() as u32 + 500);
+    let living = scene.particles.len() as u32;
+    let room = scene.particles.len() as u32 + 500;
     let mut particles = scene.particles.clone();
     // Dead particles keep their last state: large, opaque, and in front.
     let dead = Particle { position: vec3(0.0, 0.0, -3.5), radius: 1.0, amount: 1.0, ..Particle::default() };
@@ -240,7 +243,8 @@ fn host_buffer_looks_like_the_same_particles_in_a_slice() {
         let slice = scene.on_gpu(gpu()).picture;
         let tight = particle_bounds(&scene.particles, SpriteExtent::from_settings(&scene.settings));
         // A generous box, as a host without knowledge of its particles gives.
-        let (center, half) = (tight.center(), 2.0 * (tight.max - tight.min));
+        let center = tight.center();
+        let half = 2.0 * (tight.max - tight.min);
         scene.bounds = Some(Bounds { min: center - half, max: center + half });
         let mut host = Host::new(gpu(), &scene).unwrap();
         let buffer = buffer(gpu(), &scene.particles, 0, READ);
@@ -270,7 +274,8 @@ fn first_frame_of_a_host_buffer_after_a_warm_up_compiles_no_pipeline() {
     }
     for path in [RenderPath::Raster, RenderPath::Tiled, RenderPath::Forward] {
         let mut scene = TestScene::new(SIZE);
-        (scene.settings.path, scene.bounds) = (path, Some(BOUNDS));
+        scene.settings.path = path;
+        scene.bounds = Some(BOUNDS);
         let mut host = Host::new(gpu(), &scene).unwrap();
         host.renderer.warm_up(&warm_up(&scene, &[scene.settings])).unwrap();
         let warm = host.renderer.context().pipeline_count();

@@ -1,7 +1,8 @@
 //! Host passes with every supported format and sample count, and the passes and resources that are rejected.
 
 use glam::Vec4;
-use haze::{Context, Error, Renderer, RendererDescriptor, wgpu};
+use haze::{Context, Renderer, RendererDescriptor, wgpu};
+use haze_core::error::Error;
 use haze_core::settings::*;
 
 use super::{SIZE, device_with_optional_features, encoder, rejected_field, slice};
@@ -14,7 +15,8 @@ use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 fn one_prepare_serves_every_debug_view() {
     for path in [RenderPath::Raster, RenderPath::Forward] {
         let mut all = TestScene::new(SIZE);
-        (all.settings.path, all.debug_views) = (path, Some(DebugView::ALL));
+        all.settings.path = path;
+        all.debug_views = Some(DebugView::ALL);
         let mut host = Host::new(gpu(), &all).unwrap();
         let mut encoder = encoder(gpu());
         host.prepare(&mut encoder, &all, slice(&all)).unwrap();
@@ -49,6 +51,7 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
         ("Depth24PlusStencil8", MIN_PSNR, HostKind { depth_format: Format::Depth24PlusStencil8, ..host() }),
         ("Depth32FloatStencil8", MIN_PSNR, HostKind { depth_format: Format::Depth32FloatStencil8, ..host() }),
         ("Rg11b10Ufloat", 50.0, HostKind { color_format: Format::Rg11b10Ufloat, ..host() }),
+        ("Rgb10a2Unorm, linear", MIN_PSNR, HostKind { color_format: Format::Rgb10a2Unorm, ..host() }),
         ("Rgba8UnormSrgb", MIN_PSNR, HostKind { color_format: Format::Rgba8UnormSrgb, ..host() }),
         ("Bgra8UnormSrgb", MIN_PSNR, HostKind { color_format: Format::Bgra8UnormSrgb, ..host() }),
         ("Rgba8Unorm, linear", MIN_PSNR, HostKind { color_format: Format::Rgba8Unorm, ..host() }),
@@ -64,7 +67,8 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
             [(RenderPath::Raster, true), (RenderPath::Forward, true), (RenderPath::Raster, false)]
         {
             let mut scene = TestScene::new(SIZE);
-            (scene.depth, scene.attach_depth) = (DepthKind::Both, attach_depth);
+            scene.depth = DepthKind::Both;
+            scene.attach_depth = attach_depth;
             scene.settings.path = path;
             scene.host = kind.clone();
             let mut host = match Host::new(device_with_optional_features(), &scene) {
@@ -78,13 +82,17 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
             };
             host.draw(device_with_optional_features(), &scene).unwrap();
             device_with_optional_features().check().unwrap_or_else(|error| panic!("{name}: {error}"));
-            let picture = host.picture(device_with_optional_features()).unwrap();
+            let mut picture = host.picture(device_with_optional_features()).unwrap();
             let mut reference = scene.on_cpu();
             if kind.color_format != Format::Rgba16Float && kind.color_format != Format::Rg11b10Ufloat {
                 reference.texels.iter_mut().for_each(|texel| *texel = texel.min(Vec4::ONE));
             }
             if kind.color_format == Format::Rg11b10Ufloat {
                 reference.texels.iter_mut().for_each(|texel| texel.w = 1.0);
+            }
+            // Two bits of alpha.
+            if kind.color_format == Format::Rgb10a2Unorm {
+                picture.texels.iter_mut().chain(&mut reference.texels).for_each(|texel| texel.w = 1.0);
             }
             let psnr = psnr(&picture, &reference);
             println!("{name}, {}, depth {attach_depth}: {psnr:.1} dB", path.name());
@@ -126,7 +134,8 @@ fn multisampled_depth_is_resolved_to_the_farthest_sample() {
     if !is_tiled_available() {
         // OpenGL cannot read multisampled depth.
         let mut scene = TestScene::new(SIZE);
-        (scene.depth, scene.host.samples) = (DepthKind::Multisampled, 4);
+        scene.depth = DepthKind::Multisampled;
+        scene.host.samples = 4;
         assert_eq!(rejected_field(Host::new(gpu(), &scene).unwrap().draw(gpu(), &scene)), "scene_depth");
         return;
     }
@@ -139,8 +148,11 @@ fn multisampled_depth_is_resolved_to_the_farthest_sample() {
     ] {
         for attach_depth in [true, false] {
             let mut scene = TestScene::new(SIZE);
-            (scene.depth, scene.attach_depth, scene.settings.path) = (DepthKind::Multisampled, attach_depth, path);
-            (scene.host.samples, scene.host.depth_format) = (4, depth_format);
+            scene.depth = DepthKind::Multisampled;
+            scene.attach_depth = attach_depth;
+            scene.settings.path = path;
+            scene.host.samples = 4;
+            scene.host.depth_format = depth_format;
             // The hardware tests every sample of an attached buffer, and would hide a quarter of the smoke.
             scene.host.has_near_sample = !attach_depth;
             if is_reversed {
@@ -311,7 +323,8 @@ fn resources_of_another_device_are_rejected() {
 fn unreadable_scene_depth_is_rejected() {
     let mut scene = TestScene::new(SIZE);
     scene.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
-    (scene.depth, scene.attach_depth) = (DepthKind::Buffer, false);
+    scene.depth = DepthKind::Buffer;
+    scene.attach_depth = false;
     let mut host = Host::new(gpu(), &scene).unwrap();
     host.draw(gpu(), &scene).unwrap();
     let texture = |layers, samples, usage| {

@@ -1,9 +1,8 @@
 //! Particles in host buffers, systems identified by keys, and the GPU resources that are kept for them.
 
 use glam::{Mat4, UVec2, Vec3, vec3};
-use haze::{
-    Bounds, Error, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, Settings, View, wgpu,
-};
+use haze::{Bounds, FrameInput, Particle, ParticleBuffer, ParticleSystem, Particles, SceneDepth, Settings, View, wgpu};
+use haze_core::error::Error;
 use haze_core::settings::*;
 use haze_demo::headless::Headless;
 
@@ -184,7 +183,8 @@ fn depth_buffer_replaced_by_the_host_is_released() {
             continue;
         }
         let mut scene = TestScene::new(SIZE);
-        (scene.settings.accumulate.depth_source, scene.settings.accumulate.scale) = (source, 1);
+        scene.settings.accumulate.depth_source = source;
+        scene.settings.accumulate.downscale = 1;
         let mut host = Host::new(&gpu, &scene).unwrap();
         host.draw(&gpu, &scene).unwrap();
         let before = allocated();

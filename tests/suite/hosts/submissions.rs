@@ -11,7 +11,8 @@ use crate::test_scene::TestScene;
 
 #[test]
 fn two_views_in_one_submission_match_two_separate_frames() {
-    let (left, mut right) = (TestScene::new(SIZE), TestScene::new(SIZE));
+    let left = TestScene::new(SIZE);
+    let mut right = TestScene::new(SIZE);
     right.view.view_from_world = Mat4::from_translation(vec3(-0.6, 0.2, 0.5));
     right.lights[0].intensity = 5.0;
     let expected = [left.on_gpu(gpu()).picture, right.on_gpu(gpu()).picture];
@@ -77,7 +78,8 @@ fn systems_can_be_drawn_one_by_one_between_objects_of_the_host() {
     let mut host = Host::new(gpu(), &scene).unwrap();
     let mut behind = scene.particles.clone();
     behind.iter_mut().for_each(|particle| particle.position += vec3(0.4, 0.2, -1.5));
-    let (material, linear) = (host.material.clone(), host.linear.clone());
+    let material = host.material.clone();
+    let linear = host.linear.clone();
     let systems = [(7, &scene.particles), (3, &behind)]
         .map(|(key, particles)| ParticleSystem::new(key, Particles::Slice(particles), &scene.settings, &material));
     let frame = FrameInput {

@@ -47,7 +47,8 @@ fn handedness_and_up_axis_do_not_change_the_image() {
         {
             let scene = || {
                 let mut scene = TestScene::new(SIZE);
-                (scene.settings.technique, scene.settings.path) = (technique, path);
+                scene.settings.technique = technique;
+                scene.settings.path = path;
                 if near_box {
                     scene.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
                 }
@@ -109,8 +110,11 @@ fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() 
         for (depth, technique) in [(DepthKind::Buffer, Technique::Soft), (DepthKind::Linear, Technique::SoftLinear)] {
             for path in [RenderPath::Raster, RenderPath::Forward] {
                 let mut scene = TestScene::new(SIZE);
-                (scene.view.clip_from_view, scene.view.view_from_world) = (clip_from_view, view_from_world);
-                (scene.depth, scene.settings.technique, scene.settings.path) = (depth, technique, path);
+                scene.view.clip_from_view = clip_from_view;
+                scene.view.view_from_world = view_from_world;
+                scene.depth = depth;
+                scene.settings.technique = technique;
+                scene.settings.path = path;
                 // Disables the near fade, which depends on the distance from the viewer.
                 scene.settings.soft_fade.near_fade_end = 0.0;
                 scene.view_direction_z = if name.ends_with("+z") { 1.0 } else { -1.0 };
@@ -128,7 +132,8 @@ fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() 
         scene.view.clip_from_view = rh::proj::directx::orthographic(-4.0, 4.0, -2.25, 2.25, near, near + 80.0);
         scene.view.view_from_world = Mat4::from_translation(vec3(0.0, 0.0, distance));
         // Linear scene depth is measured from the viewer; only an empty scene is the same from both positions.
-        (scene.depth, scene.empty_linear) = (DepthKind::Linear, true);
+        scene.depth = DepthKind::Linear;
+        scene.empty_linear = true;
         scene.attach_depth = false;
         scene.on_gpu(gpu()).picture
     };
@@ -142,20 +147,23 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
     type Change = fn(&mut TestScene);
     let changes: &[(&str, Change)] = &[
         ("half scale", |_| {}),
-        ("scale 3", |s| s.settings.accumulate.scale = 3),
-        ("full scale", |s| s.settings.accumulate.scale = 1),
+        ("scale 3", |s| s.settings.accumulate.downscale = 3),
+        ("full scale", |s| s.settings.accumulate.downscale = 1),
         ("host depth", |s| {
-            (s.settings.accumulate.scale, s.settings.accumulate.depth_source) = (1, DepthSource::Host);
+            s.settings.accumulate.downscale = 1;
+            s.settings.accumulate.depth_source = DepthSource::Host;
         }),
         ("tiled", |s| s.settings.path = RenderPath::Tiled),
-        ("tiled at full scale", |s| (s.settings.path, s.settings.accumulate.scale) = (RenderPath::Tiled, 1)),
+        ("tiled at full scale", |s| (s.settings.path, s.settings.accumulate.downscale) = (RenderPath::Tiled, 1)),
         ("tiled at full scale, a box within the view", |s| {
-            (s.settings.path, s.settings.accumulate.scale) = (RenderPath::Tiled, 1);
+            s.settings.path = RenderPath::Tiled;
+            s.settings.accumulate.downscale = 1;
             s.particles.iter_mut().for_each(|p| p.position *= vec3(0.25, 0.25, 1.0));
         }),
         ("forward", |s| s.settings.path = RenderPath::Forward),
         ("forward sphere", |s| {
-            (s.settings.path, s.settings.technique) = (RenderPath::Forward, Technique::SphericalBillboard);
+            s.settings.path = RenderPath::Forward;
+            s.settings.technique = Technique::SphericalBillboard;
         }),
         ("reduced depth", |s| s.debug_view = DebugView::ReducedDepth),
         ("specular", |s| s.debug_view = DebugView::SpecularScatter),
@@ -163,7 +171,8 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
     ];
     for (name, change) in changes {
         let mut scene = TestScene::new(SIZE);
-        (scene.depth, scene.attach_depth) = (DepthKind::Both, true);
+        scene.depth = DepthKind::Both;
+        scene.attach_depth = true;
         // Spreads the smoke beyond every edge of the view.
         scene.particles.iter_mut().for_each(|p| p.position *= vec3(1.6, 1.6, 1.0));
         change(&mut scene);
@@ -214,7 +223,9 @@ fn particles_in_a_space_of_their_own_look_like_transformed_ones() {
             continue;
         }
         let mut scene = TestScene::new(SIZE);
-        (scene.settings.technique, scene.settings.path, scene.settings.accumulate.order) = (technique, path, order);
+        scene.settings.technique = technique;
+        scene.settings.path = path;
+        scene.settings.accumulate.order = order;
         let expected = scene.on_gpu(gpu()).picture;
         let mut own_space = scene.clone();
         own_space.world_from_particles = world_from_particles;

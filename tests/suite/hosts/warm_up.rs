@@ -25,8 +25,10 @@ fn first_frame_after_a_warm_up_compiles_no_pipeline() {
     for &technique in Technique::ALL {
         for path in [RenderPath::Raster, RenderPath::Forward] {
             let mut scene = TestScene::new(SIZE);
-            (scene.depth, scene.attach_depth) = (DepthKind::Both, true);
-            (scene.settings.technique, scene.settings.path) = (technique, path);
+            scene.depth = DepthKind::Both;
+            scene.attach_depth = true;
+            scene.settings.technique = technique;
+            scene.settings.path = path;
             scene.settings.diffuse.mode = DiffuseMode::Cubemap;
             // A warm-up does not know whether sprites have one frame or several, so both cases are tested.
             if path == RenderPath::Raster {
@@ -54,7 +56,8 @@ fn warm_up_can_run_on_another_thread() {
     host.draw(gpu(), &scene).unwrap();
     let context = host.renderer.context().clone();
     scene.settings.technique = Technique::SphericalBillboard;
-    let (settings, attach_depth) = ([scene.settings], scene.attach_depth);
+    let settings = [scene.settings];
+    let attach_depth = scene.attach_depth;
     let expected = warm_up(&scene, &settings);
     std::thread::scope(|scope| {
         scope.spawn(|| {
@@ -121,7 +124,8 @@ fn measure_cpu_time_of_prepare() {
             let mut particle = few[index % few.len()];
             let random = pcg3d(glam::UVec3::new(index as u32, 0, 0));
             particle.position += Vec3::from(random.to_array().map(|word| unit(word) - 0.5));
-            (particle.radius, particle.amount) = (0.02, 0.01);
+            particle.radius = 0.02;
+            particle.amount = 0.01;
             particle
         };
         scene.particles = (0..10_000).map(spread).collect();

@@ -17,7 +17,8 @@ fn reversed(projection: Mat4) -> Mat4 {
 
 #[test]
 fn every_depth_convention_gives_the_same_image() {
-    let (fov, aspect) = (0.8, SIZE.x as f32 / SIZE.y as f32);
+    let fov = 0.8;
+    let aspect = SIZE.x as f32 / SIZE.y as f32;
     let perspective = directx::perspective(fov, aspect, 0.1, 80.0);
     let orthographic = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
     let families = [

@@ -41,7 +41,7 @@ proptest! {
 fn amount_on_the_gpu_does_not_depend_on_draw_order() {
     let mut scene = TestScene::new(SIZE);
     scene.debug_view = DebugView::Amount;
-    scene.settings.accumulate.scale = 1;
+    scene.settings.accumulate.downscale = 1;
     scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let mut host = Host::new(gpu(), &scene).unwrap();
     // Particles in a buffer are drawn in the host's order.
@@ -72,7 +72,8 @@ fn weighted_order_draws_the_same_image_from_reversed_particles() {
         };
         psnr(&draw(&scene.particles), &draw(&reversed))
     };
-    let (weighted, sorted) = (psnr_after_reversal(BlendOrder::Weighted), psnr_after_reversal(BlendOrder::Sorted));
+    let weighted = psnr_after_reversal(BlendOrder::Weighted);
+    let sorted = psnr_after_reversal(BlendOrder::Sorted);
     println!("reversed order: weighted {weighted:.1} dB, sorted {sorted:.1} dB");
     // f16 sums in another order round differently.
     assert!(weighted > MIN_PSNR && sorted < MIN_PSNR, "{weighted} {sorted}");
@@ -106,7 +107,8 @@ fn rgba8_target_loses_thin_smoke_and_rgba16float_does_not() {
         let mut scene = TestScene::new(UVec2::splat(32));
         let sprite = Particle { position: vec3(0.0, 0.0, -4.0), radius: 3.0, amount: 0.02, ..Particle::default() };
         scene.particles = vec![sprite; 400];
-        (scene.settings.accumulate.format, scene.settings.accumulate.encoding) = (format, encoding);
+        scene.settings.accumulate.format = format;
+        scene.settings.accumulate.encoding = encoding;
         scene.debug_view = DebugView::Amount;
         scene.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
     };

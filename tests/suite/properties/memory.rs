@@ -1,8 +1,10 @@
 //! Memory of the targets, and steady frames that create no GPU resources.
 
 use glam::{UVec2, Vec3, vec3};
-use haze::{Bounds, wgpu};
+use haze::{Bounds, Context, MaterialAssets, wgpu};
+use haze_core::assets::ramp::Ramp;
 use haze_core::settings::{DiffuseMode, LightingResolution, Upsample};
+use haze_demo::headless::Headless;
 
 use super::SIZE;
 use crate::gpu::gpu;
@@ -87,4 +89,23 @@ fn the_library_never_submits() {
             }
         }
     }
+}
+
+#[test]
+fn materials_share_the_images_that_they_have_in_common() {
+    let Headless { device, queue, .. } = gpu();
+    let context = Context::new(device, queue);
+    let assets = TestScene::new(SIZE).material;
+    let first = context.create_material(&assets).unwrap();
+    let of_one = context.material_memory();
+    assert_eq!(of_one, first.memory_use());
+    let diffuse_ramp = Ramp::from_linear(UVec2::new(4, 1), [Vec3::ONE; 4]);
+    let second = context.create_material(&MaterialAssets { diffuse_ramp, ..assets.clone() }).unwrap();
+    // Four texels of four half floats.
+    assert_eq!(context.material_memory(), of_one + 4 * 8);
+    assert!(second.memory_use() > of_one / 2, "its own count has the shared images too");
+    drop(first);
+    assert_eq!(context.material_memory(), second.memory_use());
+    drop(second);
+    assert_eq!(context.material_memory(), 0);
 }

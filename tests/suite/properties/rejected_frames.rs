@@ -1,7 +1,8 @@
 //! Frames that are rejected.
 
 use glam::{Mat4, Vec3};
-use haze::{Bounds, Error, ParticleBuffer, Particles, wgpu};
+use haze::{Bounds, ParticleBuffer, Particles, wgpu};
+use haze_core::error::Error;
 
 use super::SIZE;
 use crate::gpu::gpu;
@@ -34,7 +35,7 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
         }
     };
     assert_eq!(field(|s| s.settings.soft_fade.fade_scale = f32::NAN), "systems[0].settings.soft_fade.fade_scale");
-    assert_eq!(field(|s| s.settings.accumulate.scale = 17), "systems[0].settings.accumulate.scale");
+    assert_eq!(field(|s| s.settings.accumulate.downscale = 17), "systems[0].settings.accumulate.downscale");
     assert_eq!(field(|s| s.lights[1].range = -1.0), "lights[1].range");
     assert_eq!(field(|s| s.bounds = Some(Bounds { min: Vec3::ZERO, max: Vec3::INFINITY })), "systems[0].bounds");
     assert_eq!(field(|s| s.view.view_from_world = Mat4::ZERO), "view.view_from_world");

@@ -49,7 +49,7 @@ fn odd_sizes_and_every_scale_match_the_reference() {
     for size in [UVec2::ONE, UVec2::new(1, 97), UVec2::new(641, 359), UVec2::new(3, 2)] {
         for scale in 1..=16 {
             let mut scene = TestScene::new(size);
-            scene.settings.accumulate.scale = scale;
+            scene.settings.accumulate.downscale = scale;
             let drawn = scene.on_gpu(gpu());
             gpu().check().unwrap();
             assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{size} scale {scale}");
@@ -70,11 +70,12 @@ fn size_and_settings_may_change_every_frame() {
     for step in 0..24_u32 {
         let size = UVec2::new(64 + 37 * (step % 5), 48 + 29 * (step % 7));
         let next = TestScene::new(size);
-        (scene.view, scene.particles) = (next.view, next.particles);
+        scene.view = next.view;
+        scene.particles = next.particles;
         let accumulate = &mut scene.settings.accumulate;
-        accumulate.scale = 1 + step % 6;
+        accumulate.downscale = 1 + step % 6;
         accumulate.upsample = Upsample::ALL[step as usize % Upsample::ALL.len()];
-        let tested = accumulate.scale == 1 && read_only_depth_is_supported(&gpu().device);
+        let tested = accumulate.downscale == 1 && read_only_depth_is_supported(&gpu().device);
         accumulate.depth_source = if tested { DepthSource::Host } else { DepthSource::Reduced };
         scene.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
         scene.settings.path = if step % 11 == 10 { RenderPath::Forward } else { RenderPath::Auto };
@@ -94,7 +95,7 @@ fn size_and_settings_may_change_every_frame() {
 #[test]
 fn max_side_limits_the_size_of_the_target() {
     let mut scene = TestScene::new(UVec2::new(641, 359));
-    scene.settings.accumulate.scale = 1;
+    scene.settings.accumulate.downscale = 1;
     scene.settings.accumulate.max_side = 100;
     let drawn = scene.on_gpu(gpu());
     let targets = drawn.renderer.targets(0).unwrap();

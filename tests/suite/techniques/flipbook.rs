@@ -22,8 +22,8 @@ fn gpu_and_cpu_agree_on_every_sprite_setting() {
         ("still", |s| s.settings.sprite.animation = SpriteAnimation::Still),
         ("nearest", |s| s.settings.sprite.animation = SpriteAnimation::Nearest),
         ("motion", |s| s.settings.sprite.motion = 1.0),
-        ("debug sprite", |s| s.settings.sprite.debug_sprite = true),
-        ("debug loop", |s| s.settings.sprite.debug_loop = 3),
+        ("checkerboard", |s| s.settings.debug.checkerboard = true),
+        ("draw count", |s| s.settings.debug.draw_count = 3),
         ("age color", |s| (s.settings.path, s.settings.sprite.age_color) = (RenderPath::Forward, 0.8)),
     ];
     for (name, change) in changes {
@@ -92,7 +92,8 @@ fn recipe() -> SpriteRecipe {
 fn errors_between_frames(recipe: &SpriteRecipe) -> [f32; 3] {
     let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
     let decode = |picture: &_, layout| Sprite::from_image("flipbook".as_ref(), picture, layout).unwrap();
-    let (sprite, detail) = (decode(&baked.picture, recipe.layout()), decode(&baked.detail, recipe.layout()));
+    let sprite = decode(&baked.picture, recipe.layout());
+    let detail = decode(&baked.detail, recipe.layout());
     let size = recipe.size;
     // Premultiplied normal and amount, as they are accumulated.
     let counted = |texel: Vec4| (texel.xyz() * texel.w).extend(texel.w);

@@ -39,7 +39,8 @@ fn only_the_curve_always_shows_smoke_behind_a_surface() {
                 // The wall is at 6.2 m.
                 let depth = 4.9 + 0.06 * step as f32;
                 let mut scene = wall(technique, depth);
-                (scene.settings.soft_fade.curve, scene.settings.soft_fade.fade_scale) = (curve, 2.5);
+                scene.settings.soft_fade.curve = curve;
+                scene.settings.soft_fade.fade_scale = 2.5;
                 host.draw(gpu(), &scene).unwrap();
                 let amount = amount_in(&host);
                 let name = format!("{} {} at {depth:.2} m: {amount}", technique.name(), curve.name());
@@ -126,10 +127,12 @@ fn volumes_are_clipped_by_the_scene_and_the_near_plane() {
         let through = |depth: f32| {
             let mut scene = wall(technique, depth);
             scene.settings.soft_fade.fade_scale = 1000.0;
-            (scene.settings.volumetric.march_steps, scene.settings.volumetric.noise_octaves) = (8, 1);
+            scene.settings.volumetric.march_steps = 8;
+            scene.settings.volumetric.noise_octaves = 1;
             -(1.0 - amount(&scene)).ln()
         };
-        let (whole, half) = (through(5.4), through(6.2));
+        let whole = through(5.4);
+        let half = through(6.2);
         println!("{}: optical depth {whole:.3} whole, {half:.3} half", technique.name());
         // Half, within a quarter either way because the noise is uneven. Without clipping it would be the whole.
         assert!((0.25..0.75).contains(&(half / whole)), "{}: optical depth {half} of {whole}", technique.name());
@@ -167,7 +170,8 @@ fn nothing_is_drawn_beyond_the_far_plane() {
             let drawn = |depth: f32| {
                 let mut scene = one_sprite(technique, depth);
                 scene.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.1, 6.0);
-                (scene.settings.path, scene.debug_view) = (path, DebugView::Final);
+                scene.settings.path = path;
+                scene.debug_view = DebugView::Final;
                 scene.on_gpu(gpu()).picture.texels.iter().any(|&texel| texel != BACKDROP)
             };
             assert!(drawn(4.5) && !drawn(7.0), "{} {}", technique.name(), path.name());

@@ -1,8 +1,9 @@
 //! Input that is rejected with the name of the field, and degenerate input that must stay finite.
 
 use glam::{Vec3, vec3};
-use haze::{Bounds, Error, Particle};
+use haze::{Bounds, Particle};
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
 use haze_core::settings::*;
 
 use super::scene;
@@ -27,14 +28,15 @@ fn out_of_range_settings_are_errors_that_name_the_field() {
     assert_eq!(field(|s| s.settings.soft_fade.contrast_power = 0.0), "soft_fade.contrast_power");
     assert_eq!(field(|s| s.settings.soft_fade.contrast_power = 100.0), "soft_fade.contrast_power");
     assert_eq!(field(|s| s.settings.sprite.size = 1e9), "sprite.size");
-    assert_eq!(field(|s| s.settings.sprite.debug_loop = 0), "sprite.debug_loop");
+    assert_eq!(field(|s| s.settings.debug.draw_count = 0), "debug.draw_count");
     assert_eq!(field(|s| s.settings.volumetric.march_steps = 1), "volumetric.march_steps");
     assert_eq!(field(|s| s.settings.volumetric.noise_size = 0.0), "volumetric.noise_size");
     assert_eq!(field(|s| s.settings.spherical_billboard.density = f32::NAN), "spherical_billboard.density");
     assert_eq!(field(|s| s.time = f64::INFINITY), "time");
     // At scale 1 the host's depth needs a target as large as the image.
     let error = rejection(|s| {
-        (s.settings.accumulate.depth_source, s.settings.accumulate.scale) = (DepthSource::Host, 1);
+        s.settings.accumulate.depth_source = DepthSource::Host;
+        s.settings.accumulate.downscale = 1;
         s.settings.accumulate.max_side = 100;
     });
     assert!(error.starts_with("systems[0].settings.accumulate.max_side: 100"), "{error}");
@@ -65,8 +67,9 @@ fn degenerate_particles_draw_finite_images() {
         let mut scene = scene(technique);
         scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, 2.0) });
         scene.settings.soft_fade.near_fade_end = 0.0;
-        (scene.settings.spherical_billboard.density, scene.settings.volumetric.opacity) = (1000.0, 1000.0);
-        scene.settings.density.density = 1000.0;
+        scene.settings.spherical_billboard.density = 1000.0;
+        scene.settings.volumetric.opacity = 1000.0;
+        scene.settings.exponential.density = 1000.0;
         scene.particles = vec![
             Particle { position: Vec3::ZERO, ..Particle::default() },
             Particle { position: vec3(0.0, 0.0, -6.0), radius: 0.0, ..Particle::default() },

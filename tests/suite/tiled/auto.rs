@@ -1,7 +1,7 @@
 //! The path `auto`: its choice by cost, the reason that it reports, its hysteresis, and the measurement of costs.
 
 use glam::vec3;
-use haze::{Bounds, ParticleBuffer, Particles, PathCosts, PathModel, PathModelSource, PathReason};
+use haze::{Bounds, ParticleBuffer, Particles, PathCosts, PathModelSource, PathReason};
 use haze_core::settings::*;
 
 use super::{scene, storage_buffer};
@@ -18,7 +18,16 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
     scene.settings.path = RenderPath::Auto;
     let mut host = Host::new(gpu(), &scene).unwrap();
     let class = host.renderer.context().path_model();
-    let expensive = |costs: PathCosts| PathCosts { fragment: 1.0e3, ..costs };
+    let expensive = |mut costs: PathCosts| {
+        costs.fragment = 1.0e3;
+        costs
+    };
+    let with_costs = |raster: PathCosts, tiled: PathCosts| {
+        let mut model = class;
+        model.raster = raster;
+        model.tiled = tiled;
+        model
+    };
     // The first frame takes the cheaper path at once.
     let models = [
         (expensive(class.raster), class.tiled, RenderPath::Tiled),
@@ -26,7 +35,8 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
     ];
     for (raster, tiled, path) in models {
         let mut host = Host::new(gpu(), &scene).unwrap();
-        let model = PathModel { raster, tiled, source: PathModelSource::Host, ..class };
+        let mut model = with_costs(raster, tiled);
+        model.source = PathModelSource::Host;
         host.renderer.context().set_path_model(model).unwrap();
         assert_eq!(host.renderer.path_choice(0), None);
         host.draw(gpu(), &scene).unwrap();
@@ -44,12 +54,13 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
     }
     // A buffer that compute shaders cannot read is drawn by raster.
     scene.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    host.renderer.context().set_path_model(PathModel { raster: expensive(class.raster), ..class }).unwrap();
+    host.renderer.context().set_path_model(with_costs(expensive(class.raster), class.tiled)).unwrap();
     host.draw_buffer(gpu(), &scene, &scene.particles).unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert_eq!((choice.path, choice.reason), (RenderPath::Raster, PathReason::BufferNotReadable));
     let bytes: Vec<u8> = bytemuck::cast_slice(&scene.particles).to_vec();
-    let (buffer, count) = (storage_buffer(&bytes), scene.particles.len() as u32);
+    let buffer = storage_buffer(&bytes);
+    let count = scene.particles.len() as u32;
     host.draw_particles(gpu(), &scene, Particles::Buffer(ParticleBuffer::new(&buffer, count))).unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert!(choice.path == RenderPath::Tiled && choice.to_string().contains("unknown, assumed 16"), "{choice}");
@@ -57,10 +68,13 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
     scene.settings.path = RenderPath::Raster;
     host.draw(gpu(), &scene).unwrap();
     assert_eq!(host.renderer.path_choice(0), None);
-    let model = PathModel { raster: PathCosts { entry: -1.0, ..class.raster }, ..class };
+    let mut model = class;
+    model.raster.entry = -1.0;
     let message = host.renderer.context().set_path_model(model).unwrap_err().to_string();
     assert_eq!(message, "raster.entry: -1 is not valid; expected 0 or more");
-    let message = host.renderer.context().set_path_model(PathModel { cores: 0, ..class }).unwrap_err().to_string();
+    let mut model = class;
+    model.cores = 0;
+    let message = host.renderer.context().set_path_model(model).unwrap_err().to_string();
     assert_eq!(message, "cores: 0 is not valid; expected 1 or more");
     gpu().check().unwrap();
 }
@@ -75,8 +89,19 @@ fn auto_switches_only_after_a_lasting_advantage() {
     let mut host = Host::new(gpu(), &scene).unwrap();
     let model = host.renderer.context().path_model();
     let set = |host: &Host, raster: f32, tiled: f32| {
-        let costs = |fragment| PathCosts { frame: 0.0, texel: 0.0, sprite: 0.0, entry: 0.0, fragment, ..model.raster };
-        let model = PathModel { raster: costs(raster), tiled: costs(tiled), source: PathModelSource::Host, ..model };
+        let costs = |fragment| {
+            let mut costs = model.raster;
+            costs.frame = 0.0;
+            costs.texel = 0.0;
+            costs.sprite = 0.0;
+            costs.entry = 0.0;
+            costs.fragment = fragment;
+            costs
+        };
+        let mut model = model;
+        model.raster = costs(raster);
+        model.tiled = costs(tiled);
+        model.source = PathModelSource::Host;
         host.renderer.context().set_path_model(model).unwrap();
     };
     let path = |host: &Host| host.renderer.path_choice(0).unwrap().path;

@@ -50,7 +50,8 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
             assert!(drawn(RenderPath::Tiled, Particles::Emitter(&emission)) == tiled, "a second draw differs");
             let raster = drawn(RenderPath::Raster, Particles::Emitter(&emission));
             let slice = drawn(RenderPath::Tiled, Particles::Slice(&particles));
-            let (to_raster, to_slice) = (psnr(&tiled, &raster), psnr(&tiled, &slice));
+            let to_raster = psnr(&tiled, &raster);
+            let to_slice = psnr(&tiled, &slice);
             println!("{shape:?} at {time} s: {to_raster:.1} dB against raster, {to_slice:.1} dB against the slice");
             assert!(to_raster >= MIN_PSNR_TO_RASTER && to_slice >= 70.0, "raster {to_raster} dB, slice {to_slice} dB");
         }
@@ -72,7 +73,8 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
         emission.count()
     );
     let mut scene = scene(Technique::Soft);
-    (scene.settings.path, scene.settings.accumulate.scale) = (RenderPath::Tiled, 2);
+    scene.settings.path = RenderPath::Tiled;
+    scene.settings.accumulate.downscale = 2;
     // Light per texel has two further targets, whatever the number of particles.
     scene.settings.accumulate.lighting_resolution = LightingResolution::Full;
     scene.view = TestScene::new(UVec2::new(1920, 1080)).view;

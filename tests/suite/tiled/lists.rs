@@ -21,7 +21,8 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
     // first lists overflow.
     let mut scene = scene(Technique::Soft);
     let size = UVec2::new(960, 540);
-    (scene.view, scene.settings.accumulate.scale) = (TestScene::new(size).view, 1);
+    scene.view = TestScene::new(size).view;
+    scene.settings.accumulate.downscale = 1;
     let wide = |index: u32| Particle {
         position: vec3(0.0, 0.0, -6.0 - 0.001 * index as f32),
         radius: 12.0,
@@ -30,7 +31,8 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
     };
     scene.particles = (0..140).rev().map(wide).collect();
     scene.bounds = Some(Bounds { min: vec3(-12.0, -12.0, -6.2), max: vec3(12.0, 12.0, -5.9) });
-    let (buffer, count) = (storage_buffer(bytemuck::cast_slice(&scene.particles)), scene.particles.len() as u32);
+    let buffer = storage_buffer(bytemuck::cast_slice(&scene.particles));
+    let count = scene.particles.len() as u32;
     for cooperative in [true, false] {
         scene.host.exact_filtering = cooperative;
         let mut host = Host::new(gpu(), &scene).unwrap();
@@ -152,7 +154,8 @@ fn list_sizes_beyond_32_bits_do_not_wrap() {
         gpu.queue.write_buffer(&buffer, 0, bytes);
         buffer
     };
-    let (uniform, storage) = (wgpu::BufferUsages::UNIFORM, wgpu::BufferUsages::STORAGE);
+    let uniform = wgpu::BufferUsages::UNIFORM;
+    let storage = wgpu::BufferUsages::STORAGE;
     let uniform = buffer(bytemuck::bytes_of(&tiles), uniform);
     let [counts, bins, tally] = [bytemuck::cast_slice(&lengths), &[0; 32], bytemuck::cast_slice(&[9_u32, 0])]
         .map(|bytes| buffer(bytes, storage));

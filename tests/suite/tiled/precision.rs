@@ -2,12 +2,13 @@
 
 use glam::vec3;
 use haze::Particle;
+use haze_core::assets::image::Image;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
 use haze_core::settings::*;
 
 use super::{render_with, scene};
 use crate::gpu::{gpu, is_tiled_available};
-use crate::psnr::{MIN_PSNR, psnr};
+use crate::psnr::{MIN_PSNR, psnr, psnr_over};
 use crate::test_host::{Host, convert_to_rgba16float};
 
 #[test]
@@ -18,13 +19,15 @@ fn tiled_path_rounds_eight_bit_targets_only_once() {
     // Raster rounds after every layer, so the sum stalls. The path `tiled` sums in f32 and rounds once.
     let mut scene = scene(Technique::Soft);
     let accumulate = &mut scene.settings.accumulate;
-    (accumulate.format, accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+    accumulate.format = AccumulationFormat::Rgba8Unorm;
+    accumulate.encoding = NormalEncoding::Biased;
     scene.debug_view = DebugView::Amount;
     let mut exact = scene.clone();
     exact.settings.accumulate.format = AccumulationFormat::Rgba16Float;
     let exact = exact.on_cpu();
-    let [tiled, raster] =
-        [RenderPath::Tiled, RenderPath::Raster].map(|path| psnr(&render_with(&scene, path, true), &exact));
+    let black = Image::new(exact.size, scene.backdrop());
+    let [tiled, raster] = [RenderPath::Tiled, RenderPath::Raster]
+        .map(|path| psnr_over([&render_with(&scene, path, true), &exact], [&black, &black]));
     println!("8 bits: tiled {tiled:.1} dB, raster {raster:.1} dB");
     assert!(tiled >= 50.0 && tiled > raster, "tiled {tiled} dB, raster {raster} dB");
 }
@@ -38,7 +41,8 @@ fn cpu_renderer_rounds_thin_smoke_as_the_path_does() {
     scene.particles.iter_mut().for_each(|particle| particle.amount *= 0.03);
     scene.settings.boost = 12.0;
     let accumulate = &mut scene.settings.accumulate;
-    (accumulate.format, accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+    accumulate.format = AccumulationFormat::Rgba8Unorm;
+    accumulate.encoding = NormalEncoding::Biased;
     let paths = [RenderPath::Raster, RenderPath::Tiled].map(|path| {
         scene.settings.path = path;
         (path, scene.on_cpu())
@@ -71,7 +75,7 @@ fn two_hundred_faint_layers_add_up() {
     let mut scene = scene(Technique::Hard);
     let sprite = Sprite::from_image(std::path::Path::new("full"), &sheet, SpriteLayout::default()).unwrap();
     scene.material.sprite = sprite;
-    scene.settings.accumulate.scale = 1;
+    scene.settings.accumulate.downscale = 1;
     let particle = Particle { position: vec3(0.0, 0.0, -3.0), radius: 4.0, amount: 0.02, ..Particle::default() };
     scene.particles = vec![particle; LAYERS];
     // The sum in f64, front to back.
@@ -82,15 +86,18 @@ fn two_hundred_faint_layers_add_up() {
     let oracle = 1.0 - through;
     let mut decibels = |path, format, encoding| {
         scene.settings.path = path;
-        (scene.settings.accumulate.format, scene.settings.accumulate.encoding) = (format, encoding);
+        scene.settings.accumulate.format = format;
+        scene.settings.accumulate.encoding = encoding;
         let mut host = Host::new(gpu(), &scene).unwrap();
         host.draw(gpu(), &scene).unwrap();
         let targets = host.renderer.targets(0).unwrap();
         let texels = convert_to_rgba16float(gpu(), targets.accumulation[0].texture());
-        let (width, size) = (texels.width(), targets.size);
+        let width = texels.width();
+        let size = targets.size;
         let texels = gpu().read_rgba16float(&texels).unwrap();
         // The middle of the image.
-        let (mut squares, mut count) = (0.0, 0);
+        let mut squares = 0.0;
+        let mut count = 0;
         for y in size.y / 4..size.y * 3 / 4 {
             for x in size.x / 4..size.x * 3 / 4 {
                 squares += (f64::from(texels[(y * width + x) as usize].w) - oracle).powi(2);
@@ -99,7 +106,8 @@ fn two_hundred_faint_layers_add_up() {
         }
         -10.0 * (squares / f64::from(count)).max(1.0e-12).log10()
     };
-    let (half, byte) = (AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm);
+    let half = AccumulationFormat::Rgba16Float;
+    let byte = AccumulationFormat::Rgba8Unorm;
     let tiled = decibels(RenderPath::Tiled, half, NormalEncoding::Signed);
     let tiled_byte = decibels(RenderPath::Tiled, byte, NormalEncoding::Biased);
     let raster = decibels(RenderPath::Raster, half, NormalEncoding::Signed);

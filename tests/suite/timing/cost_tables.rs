@@ -53,8 +53,9 @@ fn prints_cost_of_six_way_lighting_and_ramps() {
         for &(path, passes) in raster.iter().chain(tiled) {
             let pair = [Lighting::Normals, Lighting::SixWay].map(|lighting| {
                 let mut scene = scene.clone();
-                (scene.settings.path, scene.settings.lighting) = (path, lighting);
-                scene.settings.accumulate.scale = scale;
+                scene.settings.path = path;
+                scene.settings.lighting = lighting;
+                scene.settings.accumulate.downscale = scale;
                 scene
             });
             let times = medians(gpu, &pair, passes);
@@ -81,7 +82,7 @@ fn scene_of_4096_sprites(gpu: &Headless) -> TestScene {
     let is_cpu = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     let mut scene = TestScene::new(if is_cpu { UVec2::new(1280, 720) } else { UVec2::new(1920, 1080) });
     scene.lights.push(Light { kind: LightKind::Directional, direction: Vec3::NEG_Y, ..Light::default() });
-    scene.settings.accumulate.scale = 2;
+    scene.settings.accumulate.downscale = 2;
     let some = scene.particles.clone();
     let particle = |index: u32| {
         let place = pcg3d(UVec3::new(index, 3, 9));
@@ -142,7 +143,8 @@ fn prints_cost_of_shadow() {
             .map(|resolution| {
                 let mut scene = scene.clone();
                 if resolution > 0 {
-                    (scene.settings.shadow.strength, scene.settings.shadow.resolution) = (1.0, resolution);
+                    scene.settings.shadow.strength = 1.0;
+                    scene.settings.shadow.resolution = resolution;
                 }
                 scene
             })
@@ -179,7 +181,9 @@ fn prints_cost_of_shadow() {
             }));
             let mut shaded = plain.clone();
             let shadow = &mut shaded.settings.shadow;
-            (shadow.strength, shadow.lights, shadow.by_depth) = (1.0, count, count > 3);
+            shadow.strength = 1.0;
+            shadow.lights = count;
+            shadow.by_depth = count > 3;
             let times = medians(gpu, &[plain, shaded], ALL_PASSES);
             println!("{count} lights: {:.3} ms, with shadow {:.3} ms", times[0], times[1]);
         }

@@ -42,7 +42,7 @@ fn recorded_frames() -> Vec<Vec<String>> {
     lit.settings.accumulate.lighting_resolution = LightingResolution::Target;
     let mut tiled = lit.clone();
     tiled.settings.path = RenderPath::Tiled;
-    tiled.settings.accumulate.scale = 2;
+    tiled.settings.accumulate.downscale = 2;
     let mut forward = raster.clone();
     forward.settings.path = RenderPath::Forward;
     let mut multisampled = raster.clone();

@@ -28,7 +28,7 @@ fn main() -> Result<(), String> {
         let mut asset = asset.clone();
         for system in &mut asset.systems {
             system.preset.settings.path = path;
-            system.preset.settings.accumulate.scale = scale;
+            system.preset.settings.accumulate.downscale = scale;
         }
         (name, app.world_mut().resource_mut::<Assets<SmokeAsset>>().add(asset))
     });
@@ -47,7 +47,7 @@ fn main() -> Result<(), String> {
 }
 
 /// Smoke with the sprite of the scene: soft at the scene, lit through a ramp.
-fn asset() -> Result<SmokeAsset, bevy_haze::haze::Error> {
+fn asset() -> Result<SmokeAsset, bevy_haze::haze::AssetError> {
     let mut asset = SmokeAsset::builtin("column")?;
     for system in &mut asset.systems {
         let texel = |index| {
@@ -55,7 +55,8 @@ fn asset() -> Result<SmokeAsset, bevy_haze::haze::Error> {
             [x, y, z, amount]
         };
         system.images.sprite = Sprite::with_levels(SPRITE_SIZE, 1, (0..SPRITE_SIZE * SPRITE_SIZE).map(texel).collect());
-        (system.images.detail, system.images.six_way) = (None, None);
+        system.images.detail = None;
+        system.images.six_way = None;
         let lambert = |index: u32| HazeVec3::splat((2.0 * (index as f32 + 0.5) / 256.0 - 1.0).max(0.0));
         system.images.diffuse_ramp = Ramp::from_linear(UVec2::new(256, 1), (0..256).map(lambert));
         system.preset.settings = Default::default();

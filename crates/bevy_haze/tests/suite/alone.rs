@@ -7,7 +7,6 @@ use bevy::math::{Mat4, Vec3};
 use bevy::prelude::Transform;
 use bevy::render::RenderApp;
 use bevy::render::renderer::{RenderDevice, RenderQueue};
-use bevy_haze::haze::preset::Preset;
 use bevy_haze::haze::settings::Ambient;
 use bevy_haze::haze::{
     Context, FrameInput, Light, LightKind, ParticleSystem, Particles, Renderer, RendererDescriptor, SceneDepth,
@@ -16,7 +15,7 @@ use bevy_haze::haze::{
 
 use crate::host::{
     AMBIENT, BACKGROUND, BOXES, CAMERA, EXPOSURE, Host, LAMP, RADIUS, RANGE, SECONDS, SIZE, SPOT, SPOT_ANGLES, SUN,
-    TARGET,
+    TARGET, plume,
 };
 use crate::picture::Picture;
 
@@ -88,17 +87,17 @@ pub fn draw(host: &Host, frames: u32) -> (Picture, Vec<Duration>) {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
     let color = texture(&device, wgpu::TextureFormat::Rgba16Float, usage | wgpu::TextureUsages::COPY_SRC);
     let depth = texture(&device, wgpu::TextureFormat::Depth32Float, usage | wgpu::TextureUsages::TEXTURE_BINDING);
-    let (color_view, depth_view) = (color.create_view(&Default::default()), depth.create_view(&Default::default()));
+    let color_view = color.create_view(&Default::default());
+    let depth_view = depth.create_view(&Default::default());
 
     let context = Context::new(&device, queue);
     let mut renderer = Renderer::new(&context, &RendererDescriptor::default()).unwrap();
-    let preset = Preset::load("column").unwrap();
-    let images = preset.load_materials("column".as_ref()).unwrap();
-    let material = context.create_material(&images[0]).unwrap();
+    let smoke = &plume().systems[0];
+    let material = context.create_material(&smoke.images).unwrap();
     let ambient = glam::Vec3::splat(AMBIENT * EXPOSURE.exposure());
     let ambient = Ambient { intensity: 1.0, sky_color: ambient, ground_color: ambient };
-    let settings = Settings { ambient, ..preset.systems[0].settings };
-    let snapshot = preset.systems[0].emitter_snapshot(SECONDS);
+    let settings = Settings { ambient, ..smoke.preset.settings };
+    let snapshot = smoke.preset.emitter_snapshot(SECONDS);
     let size = glam::UVec2::new(SIZE.x, SIZE.y);
     let frame = FrameInput {
         lights: &lights(),

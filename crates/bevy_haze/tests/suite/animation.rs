@@ -14,7 +14,7 @@ const COLUMN: &str = include_str!("../../assets/column.smoke.json");
 const TRACKS: &str = r#"[
     {"setting": "lights[0].intensity", "keys": [{"time": 0, "value": 0}]},
     {"setting": "systems[0].settings.boost", "keys": [{"time": 5, "value": 0.4}, {"time": 15, "value": 3}]},
-    {"setting": "systems[0].settings.accumulate.scale", "keys": [{"time": 0, "value": 1}, {"time": 10, "value": 3}]},
+    {"setting": "systems[0].settings.accumulate.downscale", "keys": [{"time": 0, "value": 1}, {"time": 10, "value": 3}]},
     {"setting": "systems[0].emitter.wind", "keys": [{"time": 5, "value": [-0.4, 0, 0]}, {"time": 15, "value": [0.4, 0, 0]}]},
     {"setting": "systems[0].settings.diffuse.intensity", "flicker": {"amount": 0.8, "rate": 3}}
 ]"#;

@@ -64,11 +64,12 @@ fn matte_smoke() -> SmokeAsset {
     };
     system.images.sprite = Sprite::with_levels(size, 1, (0..size * size).map(texel).collect());
     let lambert = |index: u32| glam::Vec3::splat((2.0 * (index as f32 + 0.5) / 256.0 - 1.0).max(0.0));
-    (system.images.detail, system.images.six_way) = (None, None);
+    system.images.detail = None;
+    system.images.six_way = None;
     system.images.diffuse_ramp = Ramp::from_linear(glam::UVec2::new(256, 1), (0..256).map(lambert));
     let settings = &mut system.preset.settings;
     *settings = Default::default();
-    settings.accumulate.scale = 1;
+    settings.accumulate.downscale = 1;
     settings.soft_scatter.intensity = 0.0;
     asset
 }
@@ -104,9 +105,12 @@ fn assert_alike(picture: &Picture, tolerance: f32) {
 fn red_above_blue_below() -> Image {
     let size = 16_u32;
     let texel = |index: u32| {
-        let (face, u, v) = (index / (size * size), index % size, index / size % size);
+        let face = index / (size * size);
+        let u = index % size;
+        let v = index / size % size;
         let at = |position: u32| 2.0 * (position as f32 + 0.5) / size as f32 - 1.0;
-        let (u, v) = (at(u), at(v));
+        let u = at(u);
+        let v = at(v);
         let up = match face {
             2 => 1.0,
             3 => -1.0,
@@ -142,7 +146,8 @@ fn smoke_under_an_environment_map_is_as_bright_as_a_white_sphere() {
     let light = environment(&mut host, red_above_blue_below());
     host.app.world_mut().entity_mut(camera).insert(light.clone());
     let picture = host.picture();
-    let ([red, _, blue], [low_red, _, low_blue]) = (color(&picture, 0, 0.7), color(&picture, 0, -0.7));
+    let [red, _, blue] = color(&picture, 0, 0.7);
+    let [low_red, _, low_blue] = color(&picture, 0, -0.7);
     assert!(red > 4.0 * blue && low_blue > 4.0 * low_red, "{red} {blue}, {low_red} {low_blue}");
     // Normals are in bytes, and interpolated. Measured: 0.7 %.
     assert_alike(&picture, 0.02);

@@ -20,6 +20,7 @@ use bevy::render::{RenderApp, RenderPlugin};
 use bevy::time::TimeUpdateStrategy;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
+use bevy_haze::haze::preset::Preset;
 use bevy_haze::{Smoke, SmokeAsset, SmokeClock, SmokePlugin};
 
 use crate::picture::Picture;
@@ -38,6 +39,16 @@ pub const BOXES: [(Vec3, Vec3, [f32; 3]); 2] = [
     (Vec3::new(0.9, 0.6, 0.7), Vec3::new(0.9, 1.2, 0.9), [0.12, 0.22, 0.14]),
 ];
 pub const BACKGROUND: [f32; 3] = [0.02, 0.03, 0.05];
+
+/// Smoke of the tests: a plume that built-in presets do not change.
+pub fn plume() -> SmokeAsset {
+    let preset = Preset::parse("plume.json".as_ref(), include_str!("plume.json")).unwrap();
+    let mut asset = SmokeAsset::builtin("column").unwrap();
+    asset.systems[0].images = preset.load_materials("plume.json".as_ref()).unwrap().remove(0);
+    asset.systems[0].preset = preset.systems.into_iter().next().unwrap();
+    asset.animation.clear();
+    asset
+}
 
 /// App that draws into [`Host::target`].
 pub struct Host {
@@ -114,7 +125,9 @@ impl Host {
         world.spawn((lamp, Transform::from_translation(position)));
         let (position, color, intensity) = SPOT;
         let [inner_angle, outer_angle] = SPOT_ANGLES;
-        let (color, range, radius) = (linear(color), RANGE, RADIUS);
+        let color = linear(color);
+        let range = RANGE;
+        let radius = RADIUS;
         let spot = SpotLight { color, intensity, range, radius, inner_angle, outer_angle, ..default() };
         world.spawn((spot, Transform::from_translation(position).looking_at(TARGET, Vec3::Y)));
         let (position, illuminance) = SUN;
@@ -123,10 +136,10 @@ impl Host {
         world.insert_resource(GlobalAmbientLight { brightness: AMBIENT, ..default() });
     }
 
-    /// Column of smoke at the origin, held at [`SECONDS`]. It does not shade meshes: the boxes shine by themselves.
+    /// Plume at the origin, held at [`SECONDS`]. It does not shade meshes: the boxes shine by themselves.
     pub fn smoke(&mut self) -> Entity {
         let world = self.app.world_mut();
-        let asset = world.resource_mut::<Assets<SmokeAsset>>().add(SmokeAsset::builtin("column").unwrap());
+        let asset = world.resource_mut::<Assets<SmokeAsset>>().add(plume());
         world.spawn((Smoke::from(asset), SmokeClock::paused_at(SECONDS), NotShadowCaster)).id()
     }
 

@@ -13,7 +13,8 @@ fn smoke_in_bevy_is_smoke_by_haze_alone() {
     let empty = host.picture();
     let mask = bevy.mask_of_difference(&empty);
     let all = vec![true; mask.len()];
-    let (inside, everywhere) = (bevy.psnr(&alone, &mask), bevy.psnr(&alone, &all));
+    let inside = bevy.psnr(&alone, &mask);
+    let everywhere = bevy.psnr(&alone, &all);
     println!("{inside:.1} dB in smoke, {everywhere:.1} dB everywhere");
     // Both draw with the same shaders and nearly the same numbers: 94 dB with lavapipe.
     assert!(mask.iter().filter(|inside| **inside).count() > mask.len() / 20);

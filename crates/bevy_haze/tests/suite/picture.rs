@@ -30,7 +30,8 @@ impl Picture {
         let size = Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 };
         let bytes =
             self.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b, 1.0].map(|v| (shown(v) * 255.0).round() as u8));
-        let (bytes, format) = (bytes.collect(), TextureFormat::Rgba8UnormSrgb);
+        let bytes = bytes.collect();
+        let format = TextureFormat::Rgba8UnormSrgb;
         let image = Image::new(size, TextureDimension::D2, bytes, format, RenderAssetUsages::default());
         image.try_into_dynamic().unwrap().save(file).unwrap();
     }
@@ -44,7 +45,8 @@ impl Picture {
     /// Peak signal-to-noise ratio of the displayed pictures, decibels, over the pixels of a mask. Infinite if equal.
     pub fn psnr(&self, other: &Self, mask: &[bool]) -> f64 {
         let pairs = self.pixels.iter().zip(&other.pixels).zip(mask).filter(|(_, inside)| **inside);
-        let (mut sum, mut count) = (0.0, 0);
+        let mut sum = 0.0;
+        let mut count = 0;
         for ((a, b), _) in pairs {
             sum += (0..3).map(|c| f64::from(shown(a[c]) - shown(b[c])).powi(2)).sum::<f64>();
             count += 3;
@@ -56,7 +58,9 @@ impl Picture {
     /// Mean position of the pixels of a mask.
     pub fn center(&self, mask: &[bool]) -> [f32; 2] {
         let inside = mask.iter().enumerate().filter(|(_, inside)| **inside).map(|(index, _)| index as u32);
-        let (mut x, mut y, mut count) = (0.0, 0.0, 0.0);
+        let mut x = 0.0;
+        let mut y = 0.0;
+        let mut count = 0.0;
         for index in inside {
             x += (index % self.width) as f32;
             y += (index / self.width) as f32;

@@ -120,14 +120,14 @@ fn images_beside_a_preset_are_read_by_the_asset_server() {
 #[test]
 fn files_that_are_no_presets_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let particles = changed("\"name\": \"smoke\",", "\"name\": \"smoke\", \"cache\": {\"path\": \"a.ply\"},");
+    let particles = changed("\"name\": \"smoke\",", "\"name\": \"smoke\", \"particle_files\": {\"path\": \"a.ply\"},");
     let no_sprite = changed("\"sprite\": \"billow\"", "\"sprite\": \"absent.png\"");
     let unknown = changed("\"sprite\": \"billow\"", "\"sprite\": \"billoww\"");
     let outside = changed("\"diffuse_soft\"", "\"../red.png\"");
     let mut host = host(folder.path());
     for (name, text, expected) in [
         ("cut.smoke.json", &PRESET[..200], "cut.smoke.json:"),
-        ("particles.smoke.json", &particles, "systems[0].cache.path"),
+        ("particles.smoke.json", &particles, "systems[0].particle_files.path"),
         ("sprite.smoke.json", &no_sprite, "material.sprite"),
         ("unknown.smoke.json", &unknown, "billoww"),
         ("outside.smoke.json", &outside, "material.diffuse_ramp"),

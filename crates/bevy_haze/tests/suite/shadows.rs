@@ -11,7 +11,9 @@ use crate::picture::{Picture, count};
 /// Light from the left over the top of a wall: the lower part of the smoke is in its shadow.
 fn light(host: &mut Host, kind: usize) -> Entity {
     let at = Transform::from_xyz(-6.0, 2.2, 0.0).looking_at(Vec3::new(0.0, 1.6, 0.0), Vec3::Y);
-    let (intensity, range, shadow_maps_enabled) = (400_000.0, 40.0, true);
+    let intensity = 400_000.0;
+    let range = 40.0;
+    let shadow_maps_enabled = true;
     let world = host.app.world_mut();
     match kind {
         0 => world.spawn((PointLight { intensity, range, shadow_maps_enabled, ..default() }, at)).id(),
@@ -63,7 +65,8 @@ fn a_wall_shades_smoke_under_every_kind_of_light() {
         host.app.world_mut().entity_mut(wall).remove::<NotShadowCaster>();
         let shaded = host.picture();
         let mask = lit.mask_of_difference(&empty);
-        let ([upper_lit, lower_lit], [upper, lower]) = (halves(&lit, &mask), halves(&shaded, &mask));
+        let [upper_lit, lower_lit] = halves(&lit, &mask);
+        let [upper, lower] = halves(&shaded, &mask);
         println!("{name}: above the wall's shadow {upper_lit} {upper}, in it {lower_lit} {lower}");
         assert!(upper > 0.9 * upper_lit && lower < 0.6 * lower_lit, "{name}");
         host.app.world_mut().despawn(lamp);

@@ -137,16 +137,20 @@ fn selected_stops_are_removed_copied_and_scaled() {
     let from = stops(&[(0.0, 0, SMOOTH), (0.2, 1, SMOOTH), (0.4, 2, SMOOTH), (1.0, 3, SMOOTH)]);
     let mut selection = Selection::one(1);
     selection.toggle(3);
-    let (mut list, mut of) = (from.clone(), selection.clone());
+    let mut list = from.clone();
+    let mut of = selection.clone();
     remove(&mut list, &mut of);
     assert_eq!((grays(&list), selected(&of)), (vec![0, 2], vec![1]));
-    let (mut list, mut of) = (from.clone(), Selection::between(0, 3));
+    let mut list = from.clone();
+    let mut of = Selection::between(0, 3);
     remove(&mut list, &mut of);
     assert_eq!((grays(&list), selected(&of)), (vec![3], vec![0]), "one stays: the lead");
-    let (mut list, mut of) = (from.clone(), selection.clone());
+    let mut list = from.clone();
+    let mut of = selection.clone();
     copy(&mut list, &mut of);
     assert_eq!((grays(&list), selected(&of), of.lead()), (vec![0, 1, 1, 2, 3, 3], vec![2, 5], 5));
-    let (mut list, mut of) = (from, selection);
+    let mut list = from;
+    let mut of = selection;
     scale(&mut list, &mut of, 2.5);
     assert_eq!((grays(&list), places(&list)), (vec![0, 2, 1, 3], vec![0.0, 0.4, 0.5, 1.0]));
     assert_eq!(selected(&of), [2, 3]);
@@ -157,7 +161,8 @@ fn operations_on_a_part_leave_the_other_stops_unchanged() {
     let from = stops(&[(0.0, 0, SMOOTH), (0.2, 1, SMOOTH), (0.3, 2, SMOOTH), (0.6, 3, SMOOTH), (1.0, 4, SMOOTH)]);
     let part = Selection::between(1, 3);
     let check = |change: &dyn Fn(&mut Vec<RampStop>, &mut Selection), expected: &[(f32, u8)], which: &[usize]| {
-        let (mut list, mut of) = (from.clone(), part.clone());
+        let mut list = from.clone();
+        let mut of = part.clone();
         change(&mut list, &mut of);
         assert_eq!(grays(&list), expected.iter().map(|(_, gray)| *gray).collect::<Vec<_>>());
         for (at, (expected, _)) in places(&list).into_iter().zip(expected) {
@@ -201,7 +206,8 @@ proptest! {
             let rows = vec![RampRow { stops: stops.to_vec(), ..RampRow::default() }];
             RampRecipe { rows, ..RampRecipe::default() }.gradient().unwrap()
         };
-        let (before, after) = (gradient(&row), gradient(&flipped));
+        let before = gradient(&row);
+        let after = gradient(&flipped);
         // Samples between stop positions: at a hard edge the two sides differ.
         for step in 0..60 {
             let u = (step as f32 + 0.5) / 60.0;
@@ -224,7 +230,8 @@ proptest! {
             let rows = vec![RampRow { stops: stops.to_vec(), ..RampRow::default() }];
             RampRecipe { rows, ..RampRecipe::default() }.gradient().unwrap()
         };
-        let (before, after) = (gradient(&row), gradient(&mirrored));
+        let before = gradient(&row);
+        let after = gradient(&mirrored);
         for step in 0..60 {
             let u = (step as f32 + 0.5) / 60.0;
             let wanted = before.sample(u, 0.0);

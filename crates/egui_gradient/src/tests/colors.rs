@@ -87,7 +87,8 @@ fn the_eyedropper_picks_a_color_and_blocks_other_widgets() {
 fn a_stroke_picks_the_gradient_along_its_path() {
     let mut harness = host(&[(0.0, 0), (0.5, 250), (1.0, 40)]);
     begin(&mut harness);
-    let (from, width) = (on_strip(&harness, 0.99), strip(&harness).width());
+    let from = on_strip(&harness, 0.99);
+    let width = strip(&harness).width();
     // The stroke runs over the strip from right to left, so the result is the reversed gradient.
     let wanted = {
         let row = harness.state().row.clone();
@@ -103,7 +104,8 @@ fn a_stroke_picks_the_gradient_along_its_path() {
     let code = |light: f32| haze_core::formula::color::srgb_from_linear(light) * 255.0;
     for step in 5..=95 {
         let at = step as f32 / 100.0;
-        let (taken, wanted) = (code(taken.sample(at, 0.0).x), code(wanted.sample(0.99 - 0.98 * at, 0.0).x));
+        let taken = code(taken.sample(at, 0.0).x);
+        let wanted = code(wanted.sample(0.99 - 0.98 * at, 0.0).x);
         // Tolerance: 10 for the fit, and the change of color over half a part of the stroke.
         assert!((taken - wanted).abs() < 20.0, "{at}: {taken} {wanted}");
     }

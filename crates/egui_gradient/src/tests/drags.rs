@@ -35,7 +35,8 @@ fn positions_snap_to_the_chosen_number_of_parts() {
 #[test]
 fn with_shift_a_stop_snaps_to_another_stop() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (0.6, 20), (1.0, 30)]);
-    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    let from = handle(&harness, 1).center();
+    let width = strip(&harness).width();
     drag(&mut harness, from, 0.29 * width, Modifiers::SHIFT);
     assert_eq!(
         (harness.state().row.stops[1].at, grays(&harness)),
@@ -84,7 +85,8 @@ fn escape_cancels_a_drag_without_an_undo_step() {
 #[test]
 fn a_drag_with_alt_moves_a_copy() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
-    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    let from = handle(&harness, 1).center();
+    let width = strip(&harness).width();
     drag(&mut harness, from, 0.2 * width, Modifiers::ALT);
     assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.3, 0.5, 1.0], vec![0, 10, 10, 30]));
     assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["copy a stop"], 2));
@@ -93,7 +95,8 @@ fn a_drag_with_alt_moves_a_copy() {
 #[test]
 fn alt_during_a_drag_slows_it_to_a_tenth_and_the_readout_shows_the_position() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
-    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    let from = handle(&harness, 1).center();
+    let width = strip(&harness).width();
     hold(&mut harness, from, 0.2 * width);
     assert!(harness.query_by_label("0.5000  #0a0a0a").is_some());
     let fine = from + Vec2::new(0.3 * width, 0.0);
@@ -117,7 +120,8 @@ fn alt_during_a_drag_slows_it_to_a_tenth_and_the_readout_shows_the_position() {
 fn a_drag_ends_if_the_host_replaces_the_stops() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
     let before = harness.state().row.clone();
-    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    let from = handle(&harness, 1).center();
+    let width = strip(&harness).width();
     hold(&mut harness, from, 0.2 * width);
     harness.state_mut().row = before.clone();
     harness.hover_at(from + Vec2::new(0.3 * width, 0.0));
@@ -148,7 +152,8 @@ fn drag_through(
 fn a_stop_dragged_off_the_strip_is_removed_and_comes_back_with_the_pointer() {
     let mut harness = host(&[(0.0, 0), (0.5, 20), (1.0, 30)]);
     let from = handle(&harness, 1).center();
-    let (near, off) = (from + Vec2::new(30.0, 4.0), from + Vec2::new(30.0, 70.0));
+    let near = from + Vec2::new(30.0, 4.0);
+    let off = from + Vec2::new(30.0, 70.0);
     let counts = [3, 2, 3, 2];
     drag_through(&mut harness, from, &[near, off, near, off], |harness, index| {
         assert_eq!(harness.state().row.stops.len(), counts[index], "{index}");
@@ -158,7 +163,8 @@ fn a_stop_dragged_off_the_strip_is_removed_and_comes_back_with_the_pointer() {
     assert_eq!((grays(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop"]));
     // Brought back before the release, it is moved.
     let from = handle(&harness, 1).center();
-    let (off, near) = (from + Vec2::new(-40.0, -90.0), from - Vec2::new(40.0, 0.0));
+    let off = from + Vec2::new(-40.0, -90.0);
+    let near = from - Vec2::new(40.0, 0.0);
     drag_through(&mut harness, from, &[off, near], |_, _| {});
     assert_eq!((grays(&harness), steps(&harness)), (vec![0, 30], vec!["remove a stop", "move a stop"]));
     // Escape restores it, and the last stop cannot be removed.

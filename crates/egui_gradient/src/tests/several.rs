@@ -41,7 +41,8 @@ fn clicks_select_ranges_and_toggle_stops() {
 #[test]
 fn a_band_selects_the_stops_under_it() {
     let mut harness = host(&FIVE);
-    let (strip, width) = (strip(&harness), strip(&harness).width());
+    let strip = strip(&harness);
+    let width = strip.width();
     let from = pos2(strip.left() + 0.1 * width, strip.bottom() + 3.0);
     drag(&mut harness, from, 0.4 * width, NONE);
     assert_eq!((selected(&harness), steps(&harness).len()), (vec![1, 2], 0));
@@ -55,7 +56,8 @@ fn selected_stops_are_dragged_together_in_one_step() {
     let mut harness = host(&FIVE);
     click_handle(&mut harness, 1, NONE);
     click_handle(&mut harness, 2, SHIFT);
-    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    let from = handle(&harness, 1).center();
+    let width = strip(&harness).width();
     drag(&mut harness, from, 0.4 * width, NONE);
     assert_eq!((places(&harness), grays(&harness)), (vec![0.0, 0.6, 0.7, 0.8, 1.0], vec![0, 10, 30, 20, 40]));
     assert_eq!((selected(&harness), steps(&harness)), (vec![1, 3], vec!["move stops"]));

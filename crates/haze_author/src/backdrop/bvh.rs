@@ -2,6 +2,8 @@
 //!
 //! Nodes lie in depth-first order. A node that a ray misses is left by its `skip`, so that a traversal needs no stack.
 
+use std::ops::RangeInclusive;
+
 use glam::Vec3;
 
 /// Most triangles of a leaf.
@@ -33,6 +35,15 @@ pub struct Bvh {
     pub nodes: Vec<BvhNode>,
     /// Indices of the triangles in the order of the leaves.
     pub triangles: Vec<u32>,
+}
+
+/// Ray of points `origin + distance · direction`.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Point at distance 0.
+    pub origin: Vec3,
+    /// Unit of distances; its length may be other than 1.
+    pub direction: Vec3,
 }
 
 /// Triangle as a ray is tested against it.
@@ -111,20 +122,24 @@ impl Bvh {
         Self { nodes, triangles: order }
     }
 
-    /// Returns the nearest triangle at a distance from `near` to `far`, in lengths of `direction`. `triangle` gives the
-    /// corners of one, and `is_solid` whether a hit counts.
+    /// Returns the nearest triangle whose distance is in a range. `triangle` gives the corners of one, and `is_solid`
+    /// whether a hit counts.
     pub fn nearest(
         &self,
-        (origin, direction): (Vec3, Vec3),
-        (near, far): (f32, f32),
+        ray: Ray,
+        distances: RangeInclusive<f32>,
         triangle: impl Fn(u32) -> RayTriangle,
         is_solid: impl Fn(&RayHit) -> bool,
     ) -> Option<RayHit> {
-        let (mut nearest, mut far) = (None, far);
+        let Ray { origin, direction } = ray;
+        let near = *distances.start();
+        let mut far = *distances.end();
+        let mut nearest = None;
         self.traverse(origin, direction, |index, reach| {
             let found = index.and_then(|index| intersect(&triangle(index), index, origin, direction));
             if let Some(hit) = found.filter(|hit| (near..=far).contains(&hit.distance) && is_solid(hit)) {
-                (far, nearest) = (hit.distance, Some(hit));
+                far = hit.distance;
+                nearest = Some(hit);
             }
             index.is_some() || reach.0 <= far && reach.1 >= near
         });
@@ -134,11 +149,12 @@ impl Bvh {
     /// True if a triangle lies at a distance from 0 to `far`.
     pub fn is_blocked(
         &self,
-        (origin, direction): (Vec3, Vec3),
+        ray: Ray,
         far: f32,
         triangle: impl Fn(u32) -> RayTriangle,
         is_solid: impl Fn(&RayHit) -> bool,
     ) -> bool {
+        let Ray { origin, direction } = ray;
         let mut is_blocked = false;
         self.traverse(origin, direction, |index, reach| {
             let found = index.and_then(|index| intersect(&triangle(index), index, origin, direction));
@@ -155,13 +171,15 @@ impl Bvh {
         let inverse = Vec3::select(direction.abs().cmplt(tiny), tiny, direction).recip();
         let mut at = 0;
         while let Some(node) = self.nodes.get(at) {
-            let (a, b) = ((node.min - origin) * inverse, (node.max - origin) * inverse);
+            let a = (node.min - origin) * inverse;
+            let b = (node.max - origin) * inverse;
             let reach = (a.min(b).max_element(), a.max(b).min_element());
             if reach.0 > reach.1 || !visit(None, reach) {
                 at = node.skip as usize;
                 continue;
             }
-            let (first, count) = (node.leaf as usize / 8, node.leaf as usize % 8);
+            let first = node.leaf as usize / 8;
+            let count = node.leaf as usize % 8;
             let leaf = self.triangles[first..first + count].iter();
             let _ = leaf.copied().take_while(|&index| visit(Some(index), reach)).count();
             at += 1;
@@ -194,7 +212,8 @@ fn split(order: &mut [u32], extents: &[Extent]) -> usize {
     let mut bins = [(Extent::EMPTY, 0_usize); BINS];
     for &index in order.iter() {
         let (extent, count) = &mut bins[bin(index)];
-        (*extent, *count) = (extent.with(extents[index as usize]), *count + 1);
+        *extent = extent.with(extents[index as usize]);
+        *count += 1;
     }
     let cost = |bins: &[(Extent, usize)]| {
         let (extent, count) =
@@ -202,7 +221,8 @@ fn split(order: &mut [u32], extents: &[Extent]) -> usize {
         (extent.area() * count as f32, count)
     };
     let costs = (1..BINS).filter_map(|at| {
-        let ((left, count), (right, others)) = (cost(&bins[..at]), cost(&bins[at..]));
+        let (left, count) = cost(&bins[..at]);
+        let (right, others) = cost(&bins[at..]);
         (count > 0 && others > 0).then_some((left + right, at))
     });
     match costs.min_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -260,23 +280,28 @@ mod tests {
             let [a, b, c] = corners[index as usize];
             RayTriangle { corner: a, edges: [b - a, c - a] }
         };
-        let (mut hits, mut blocked) = (0, 0);
+        let mut hits = 0;
+        let mut blocked = 0;
         for ray in 0..2000 {
-            let (origin, direction) = (6.0 * random(ray, 20), random(ray, 21));
+            let origin = 6.0 * random(ray, 20);
+            let direction = random(ray, 21);
             let all = (0..corners.len() as u32)
                 .filter_map(|index| intersect(&triangle(index), index, origin, direction))
                 .filter(|hit| (0.5..=40.0).contains(&hit.distance))
                 .min_by(|a, b| a.distance.total_cmp(&b.distance));
-            let found = bvh.nearest((origin, direction), (0.5, 40.0), triangle, |_| true);
+            let found = bvh.nearest(Ray { origin, direction }, 0.5..=40.0, triangle, |_| true);
             assert_eq!(found.map(|hit| hit.distance), all.map(|hit| hit.distance));
             let far = 3.0;
-            let is_blocked = bvh.is_blocked((origin, direction), far, triangle, |_| true);
-            let near = bvh.nearest((origin, direction), (0.0, far), triangle, |_| true);
+            let is_blocked = bvh.is_blocked(Ray { origin, direction }, far, triangle, |_| true);
+            let near = bvh.nearest(Ray { origin, direction }, 0.0..=far, triangle, |_| true);
             assert_eq!(is_blocked, near.is_some());
             hits += usize::from(found.is_some());
             blocked += usize::from(is_blocked);
         }
         assert!(hits > 300 && blocked > 50, "{hits} {blocked}");
-        assert_eq!(Bvh::new(&[]).nearest((Vec3::ZERO, Vec3::X), (0.0, 9.0), triangle, |_| true), None);
+        assert_eq!(
+            Bvh::new(&[]).nearest(Ray { origin: Vec3::ZERO, direction: Vec3::X }, 0.0..=9.0, triangle, |_| true),
+            None
+        );
     }
 }

@@ -64,7 +64,8 @@ impl ColorTexture {
     pub fn sample(&self, uv: Vec2, level: f32) -> Vec4 {
         let last = self.levels.len().saturating_sub(1) as f32;
         let level = level.clamp(0.0, last);
-        let (first, mix) = (level.floor() as usize, level.fract());
+        let first = level.floor() as usize;
+        let mix = level.fract();
         let fine = self.filtered(first, uv);
         if mix > 0.0 { fine.lerp(self.filtered(first + 1, uv), mix) } else { fine }
     }
@@ -72,7 +73,8 @@ impl ColorTexture {
     fn filtered(&self, level: usize, uv: Vec2) -> Vec4 {
         let Some(image) = self.levels.get(level) else { return Vec4::ONE };
         let place = uv * image.size.as_vec2() - 0.5;
-        let (at, mix) = (place.floor().as_ivec2(), place - place.floor());
+        let at = place.floor().as_ivec2();
+        let mix = place - place.floor();
         let texel = |x, y| {
             let wrapped = |place: i32, axis: usize| wrap(place, image.size[axis] as i32, self.wrap[axis]);
             linear(image.load(IVec2::new(wrapped(at.x.saturating_add(x), 0), wrapped(at.y.saturating_add(y), 1))))

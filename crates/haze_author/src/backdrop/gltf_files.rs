@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use base64::engine::general_purpose::STANDARD;
 use base64::{DecodeError, Engine as _};
 use haze_core::assets::bounded_read;
-use haze_core::error::{Error, one_line};
+use haze_core::error::{AssetError, one_line};
 
 use super::file_limits::MAX_SCENE_FILE_BYTES;
 
@@ -51,7 +51,7 @@ pub fn companion_files(path: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-pub fn read(path: &Path) -> Result<Vec<u8>, Error> {
+pub fn read(path: &Path) -> Result<Vec<u8>, AssetError> {
     bounded_read::read(path, "glTF file", MAX_SCENE_FILE_BYTES)
 }
 

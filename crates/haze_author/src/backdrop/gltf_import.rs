@@ -11,7 +11,7 @@ use glam::{Affine3A, Mat4, Quat, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles as _};
 use gltf::material::AlphaMode;
 use gltf::mesh::Mode;
 use haze_core::assets::image::{Image, catch_decoder_panic};
-use haze_core::error::{Error, one_line};
+use haze_core::error::{AssetError, one_line};
 use haze_core::frame::MAX_LIGHTS;
 use image::{ImageDecoder as _, ImageReader, Limits};
 
@@ -48,14 +48,14 @@ const MIN_ROLL: f32 = 0.03;
 /// Loads a scene.
 ///
 /// # Errors
-/// [`Error::Io`] if a file cannot be read; [`Error::Image`] with the file and the reason.
-pub fn load_scene(path: &Path) -> Result<SceneMesh, Error> {
+/// [`AssetError::Io`] if a file cannot be read; [`AssetError::Image`] with the file and the reason.
+pub fn load_scene(path: &Path) -> Result<SceneMesh, AssetError> {
     let bytes = gltf_files::read(path)?;
     let mut files = GltfFiles::new(path);
     let damaged = "damaged; expected a glTF 2.0 file";
     // The reader of accessors panics for some damaged files.
     let read = catch_decoder_panic(|| Import::read(&bytes, &mut files)).unwrap_or_else(|| Err(damaged.into()));
-    let mut mesh = read.map_err(|reason| Error::Image { path: path.into(), reason })?;
+    let mut mesh = read.map_err(|reason| AssetError::Image { path: path.into(), reason })?;
     let corners: Vec<_> =
         mesh.vertices.as_chunks::<3>().0.iter().map(|[a, b, c]| [a.position, b.position, c.position]).collect();
     mesh.bvh = Bvh::new(&corners);
@@ -86,7 +86,8 @@ impl Import {
                 gltf::buffer::Source::Uri(uri) => files.bytes(uri, "buffer", buffer.index())?,
             };
             if data.len() < buffer.length() {
-                let (has, says) = (data.len(), buffer.length());
+                let has = data.len();
+                let says = buffer.length();
                 return Err(format!("buffer {} has {has} of {says} bytes; expected a whole file", buffer.index()));
             }
             buffers.push(data);
@@ -428,7 +429,8 @@ fn decode(bytes: &[u8]) -> Result<Image<[u8; 4]>, String> {
         return Err("neither PNG nor JPEG; expected one of the two".into());
     }
     let mut limits = Limits::default();
-    (limits.max_image_width, limits.max_image_height) = (Some(MAX_TEXTURE_SIDE), Some(MAX_TEXTURE_SIDE));
+    limits.max_image_width = Some(MAX_TEXTURE_SIDE);
+    limits.max_image_height = Some(MAX_TEXTURE_SIDE);
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(refuse)?;
     let (width, height) = decoder.dimensions();

@@ -2,7 +2,7 @@
 
 use gltf::binary;
 use gltf::json::validation;
-use haze_core::error::{Error, one_line};
+use haze_core::error::{AssetError, one_line};
 
 /// Expected file.
 pub const WHOLE: &str = "a whole glTF 2.0 file";
@@ -35,9 +35,9 @@ pub fn gltf_problem(error: &gltf::Error) -> String {
 }
 
 /// Reason why text is no JSON, with its place.
-pub fn json_problem(error: &Error) -> String {
+pub fn json_problem(error: &AssetError) -> String {
     match error {
-        Error::Json { line, column, reason, .. } => {
+        AssetError::Text { line, column, reason, .. } => {
             format!("line {line}, column {column}: {}", field_problem(reason.clone()))
         }
         other => other.to_string(),

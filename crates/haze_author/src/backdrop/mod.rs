@@ -36,15 +36,15 @@ mod tests;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 #[cfg(not(target_arch = "wasm32"))]
 use haze_core::error::{FieldError, display_path};
 use haze_core::settings::BackdropKind;
-#[cfg(not(target_arch = "wasm32"))]
-use haze_preset::backdrop_file_path;
 use haze_preset::{AssetFolders, Camera, Environment, Preset};
+#[cfg(not(target_arch = "wasm32"))]
+use haze_preset::{backdrop_endings, backdrop_file_path};
 
-pub use bvh::{Bvh, BvhNode, RayHit, RayTriangle};
+pub use bvh::{Bvh, BvhNode, Ray, RayHit, RayTriangle};
 pub use color_texture::{ColorTexture, Wrap};
 pub use file_limits::MAX_BACKDROP_FILE_BYTES;
 #[cfg(not(target_arch = "wasm32"))]
@@ -81,18 +81,19 @@ impl Backdrop {
     /// errors.
     ///
     /// # Errors
-    /// [`Error::JsonField`] for a name that is not valid, else that of the file in [`Error::Asset`], with its field.
+    /// [`AssetError::JsonField`] for a name that is not valid, else that of the file in [`AssetError::Named`], with its field.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn load(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Self, Error> {
+    pub fn load(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Self, AssetError> {
         let mut backdrop = Self::default();
         for (kind, field, name) in backdrop_names(&preset.environment) {
             if !name.is_empty() {
                 let named_by = || format!("{}: {field}", display_path(path));
-                let of_file = |error| Error::Asset { named_by: named_by(), error: Box::new(error) };
+                let of_file = |error| AssetError::Named { named_by: named_by(), error: Box::new(error) };
                 let Some(file) = backdrop_file_path(name, kind) else {
-                    let expected = format!("a .{} file inside the preset's folder", kind.endings().join(" or ."));
+                    let expected =
+                        format!("a .{} file inside the preset's folder", backdrop_endings(kind).join(" or ."));
                     let error = FieldError::new(field, format!("{name:?}"), expected);
-                    return Err(Error::JsonField { path: path.into(), error });
+                    return Err(AssetError::JsonField { path: path.into(), error });
                 };
                 folders.find(file).and_then(|file| backdrop.load_file(kind, &file)).map_err(of_file)?;
             }
@@ -105,7 +106,7 @@ impl Backdrop {
     /// # Errors
     /// None.
     #[cfg(target_arch = "wasm32")]
-    pub fn load(_: &Preset, _: &Path, _: &AssetFolders) -> Result<Self, Error> {
+    pub fn load(_: &Preset, _: &Path, _: &AssetFolders) -> Result<Self, AssetError> {
         Ok(Self::default())
     }
 
@@ -114,7 +115,7 @@ impl Backdrop {
     /// # Errors
     /// None.
     #[cfg(target_arch = "wasm32")]
-    pub fn load_file(&mut self, _: BackdropKind, _: &Path) -> Result<(), Error> {
+    pub fn load_file(&mut self, _: BackdropKind, _: &Path) -> Result<(), AssetError> {
         Ok(())
     }
 
@@ -123,7 +124,7 @@ impl Backdrop {
     /// # Errors
     /// As [`load_scene`] and [`load_sky`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn load_file(&mut self, kind: BackdropKind, file: &Path) -> Result<(), Error> {
+    pub fn load_file(&mut self, kind: BackdropKind, file: &Path) -> Result<(), AssetError> {
         match kind {
             BackdropKind::Scene => self.scene = Some(Arc::new(load_scene(file)?)),
             BackdropKind::Sky => self.sky = Some(Arc::new(load_sky(file)?)),

@@ -1,6 +1,6 @@
 //! Triangles of a scene file with their materials, its camera and its lights.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::PathBuf;
 
 use glam::{UVec2, Vec2, Vec3};
@@ -8,7 +8,7 @@ use haze_core::assets::image::Image;
 use haze_core::frame::{Light, MAX_LIGHTS};
 use haze_preset::Camera;
 
-use super::bvh::{Bvh, RayHit, RayTriangle};
+use super::bvh::{Bvh, Ray, RayHit, RayTriangle};
 use super::color_texture::ColorTexture;
 
 /// Corner of a triangle, as a vertex buffer holds it: three `vec4f` and a float.
@@ -158,13 +158,13 @@ impl SceneMesh {
         self.materials.get(self.parts.get(part)?.0)
     }
 
-    /// Nearest surface at a distance from `near` to `far`, in lengths of `direction`. All in units of the file.
-    pub fn nearest(&self, ray: (Vec3, Vec3), range: (f32, f32)) -> Option<RayHit> {
-        self.bvh.nearest(ray, range, |triangle| self.ray_triangle(triangle), |hit| self.is_solid(hit))
+    /// Nearest surface whose distance is in a range. All in units of the file.
+    pub fn nearest(&self, ray: Ray, distances: RangeInclusive<f32>) -> Option<RayHit> {
+        self.bvh.nearest(ray, distances, |triangle| self.ray_triangle(triangle), |hit| self.is_solid(hit))
     }
 
-    /// True if a surface lies at a distance from 0 to `far`, in lengths of `direction`. All in units of the file.
-    pub fn is_blocked(&self, ray: (Vec3, Vec3), far: f32) -> bool {
+    /// True if a surface lies at a distance from 0 to `far`. All in units of the file.
+    pub fn is_blocked(&self, ray: Ray, far: f32) -> bool {
         self.bvh.is_blocked(ray, far, |triangle| self.ray_triangle(triangle), |hit| self.is_in_mask(hit))
     }
 

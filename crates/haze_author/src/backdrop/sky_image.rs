@@ -38,7 +38,8 @@ impl SkyImage {
         let mut texels = Image::new(size, [f16::ONE; 4]);
         for (index, (texel, radiance)) in (0..).zip(texels.texels.iter_mut().zip(radiance)) {
             if radiance.is_nan() {
-                let (x, y) = (index % size.x, index / size.x);
+                let x = index % size.x;
+                let y = index / size.x;
                 return Err(format!("texel {x}, {y} is not a number; expected linear light, 0 or more"));
             }
             let [red, green, blue] = radiance.clamp(Vec3::ZERO, Vec3::splat(f16::MAX.to_f32())).to_array();
@@ -56,7 +57,8 @@ impl SkyImage {
     /// Radiance of a direction, filtered between texels.
     pub fn sample(&self, direction: Vec3) -> Vec3 {
         let place = uv(direction) * self.texels.size.as_vec2() - 0.5;
-        let (at, mix) = (place.floor().as_ivec2(), place - place.floor());
+        let at = place.floor().as_ivec2();
+        let mix = place - place.floor();
         let width = self.texels.size.x as i32;
         let texel = |x: i32, y: i32| color(self.texels.load(IVec2::new((at.x + x).rem_euclid(width), at.y + y)));
         let row = |y| texel(0, y).lerp(texel(1, y), mix.x);
@@ -88,7 +90,8 @@ pub fn uv(direction: Vec3) -> Vec2 {
 
 /// Direction of a place in the panorama.
 pub(super) fn direction(uv: Vec2) -> Vec3 {
-    let ((sin, cos), (down, up)) = ((2.0 * PI * (uv.x - 0.5)).sin_cos(), (PI * uv.y).sin_cos());
+    let (sin, cos) = (2.0 * PI * (uv.x - 0.5)).sin_cos();
+    let (down, up) = (PI * uv.y).sin_cos();
     Vec3::new(sin * down, up, -cos * down)
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::{DMat3, DVec3, UVec2, Vec3};
 use haze_core::assets::bounded_read;
 use haze_core::assets::image::catch_decoder_panic;
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 use image::codecs::hdr::{HdrDecoder, HdrMetadata};
 use image::codecs::openexr::OpenExrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageResult};
@@ -30,10 +30,10 @@ const MAX_HDR_HEADER: usize = 1 << 16;
 /// Loads a panorama. Its colors become linear Rec.709.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Image`] with the reason.
-pub fn load_sky(path: &Path) -> Result<SkyImage, Error> {
+/// [`AssetError::Io`] if the file cannot be read; [`AssetError::Image`] with the reason.
+pub fn load_sky(path: &Path) -> Result<SkyImage, AssetError> {
     let bytes = bounded_read::read(path, "panorama", MAX_BACKDROP_FILE_BYTES)?;
-    let refuse = |reason| Error::Image { path: path.into(), reason };
+    let refuse = |reason| AssetError::Image { path: path.into(), reason };
     let decoded = catch_decoder_panic(|| decode(&bytes));
     let damaged = || Err("damaged; expected a whole image".into());
     let Decoded { image, conversion } = decoded.unwrap_or_else(damaged).map_err(refuse)?;

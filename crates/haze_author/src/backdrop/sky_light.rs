@@ -30,7 +30,8 @@ impl SkyLight {
     /// Light of an even sky above and an even ground below, as surfaces that face them show it.
     pub fn of_hemispheres(sky: Vec3, ground: Vec3) -> Self {
         let mut light = Self::default();
-        (light.coefficients[0], light.coefficients[1]) = (0.5 * (sky + ground), 0.5 * (sky - ground));
+        light.coefficients[0] = 0.5 * (sky + ground);
+        light.coefficients[1] = 0.5 * (sky - ground);
         light
     }
 
@@ -97,7 +98,8 @@ mod tests {
 
     #[test]
     fn hemispheres_come_back() {
-        let (sky, ground) = (Vec3::new(0.2, 0.4, 0.9), Vec3::new(0.3, 0.2, 0.1));
+        let sky = Vec3::new(0.2, 0.4, 0.9);
+        let ground = Vec3::new(0.3, 0.2, 0.1);
         let light = SkyLight::of_hemispheres(sky, ground);
         let [up, down] = light.hemispheres();
         assert!(up.abs_diff_eq(sky, 1e-6) && down.abs_diff_eq(ground, 1e-6));

@@ -28,7 +28,8 @@ struct Glb {
 impl Glb {
     fn view(&mut self, bytes: &[u8]) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let (offset, length) = (self.bytes.len(), bytes.len());
+        let offset = self.bytes.len();
+        let length = bytes.len();
         self.views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length}}}"#));
         self.bytes.extend_from_slice(bytes);
         self.views.len() - 1
@@ -121,6 +122,10 @@ impl Glb {
     }
 }
 
+fn ray(origin: Vec3, direction: Vec3) -> Ray {
+    Ray { origin, direction }
+}
+
 fn glb(json: &[u8], binary: &[u8]) -> Vec<u8> {
     let mut file = b"glTF".to_vec();
     let word = |value: usize| (value as u32).to_le_bytes();
@@ -153,8 +158,8 @@ fn sphere() -> (Vec<(Vec3, Vec3, Vec2)>, Vec<u16>) {
     let corners = (0..=ROWS).flat_map(|row| {
         (0..=2 * ROWS).map(move |column| {
             let uv = Vec2::new(f32::from(column) / f32::from(2 * ROWS), f32::from(row) / f32::from(ROWS));
-            let ((down, up), (sin, cos)) =
-                ((uv.y * std::f32::consts::PI).sin_cos(), (uv.x * std::f32::consts::TAU).sin_cos());
+            let (down, up) = (uv.y * std::f32::consts::PI).sin_cos();
+            let (sin, cos) = (uv.x * std::f32::consts::TAU).sin_cos();
             let normal = Vec3::new(down * cos, up, down * sin);
             (normal, normal, uv)
         })
@@ -301,15 +306,15 @@ fn triangles_camera_and_lights_of_the_example_come_back() {
     assert!(sun.direction.y < -0.6 && sun.direction.x > 0.3 && sun.direction.z < -0.3, "{sun:?}");
     assert_eq!(lamp.position, Vec3::new(-4.5, 3.2, 2.0));
     // Down on the large crate, through a gap of the fence, and at a picket.
-    let down = |x, z| scene.nearest((Vec3::new(x, 9.0, z), Vec3::NEG_Y), (0.0, 20.0)).map(|hit| 9.0 - hit.distance);
+    let down = |x, z| scene.nearest(ray(Vec3::new(x, 9.0, z), Vec3::NEG_Y), 0.0..=20.0).map(|hit| 9.0 - hit.distance);
     assert!((down(-1.7, 0.7).unwrap() - 1.0).abs() < 1e-4 && down(0.0, 3.0).unwrap().abs() < 1e-4);
-    let forward = |x| scene.nearest((Vec3::new(x, 0.5, 4.0), Vec3::NEG_Z), (0.0, 2.9)).is_some();
+    let forward = |x| scene.nearest(ray(Vec3::new(x, 0.5, 4.0), Vec3::NEG_Z), 0.0..=2.9).is_some();
     let solid = (0..40).filter(|step| forward(0.6 + 0.055 * *step as f32)).count();
     assert!((15..32).contains(&solid), "{solid} of 40 rays meet a picket");
-    let blocked = |x| scene.is_blocked((Vec3::new(x, 0.5, 4.0), Vec3::NEG_Z), 2.9);
+    let blocked = |x| scene.is_blocked(ray(Vec3::new(x, 0.5, 4.0), Vec3::NEG_Z), 2.9);
     let masked = (0..40).filter(|step| blocked(0.6 + 0.055 * *step as f32)).count();
     assert!(masked.abs_diff(solid) < 3, "the mask of shadows: {masked}, of the surface: {solid}");
-    let hit = scene.nearest((Vec3::new(1.75, 0.6, 4.0), Vec3::NEG_Z), (2.9, 9.0)).unwrap();
+    let hit = scene.nearest(ray(Vec3::new(1.75, 0.6, 4.0), Vec3::NEG_Z), 2.9..=9.0).unwrap();
     let point = scene.surface_point(&hit, Vec3::NEG_Z);
     assert!(point.normal.z > 0.99 && point.color.abs_diff_eq(Vec3::new(0.5, 0.16, 0.09), 1e-5), "{point:?}");
 }
@@ -457,7 +462,8 @@ fn a_preset_names_its_backdrop_in_its_folder() {
     std::fs::write(folder.path().join("court.glb"), court()).unwrap();
     let load = |scene: &str, sky: &str| {
         let mut preset = Preset::default();
-        (preset.environment.scene_file, preset.environment.sky_file) = (scene.into(), sky.into());
+        preset.environment.scene_file = scene.into();
+        preset.environment.sky_file = sky.into();
         Backdrop::load(&preset, Path::new("my.json"), &AssetFolders::new(folder.path()))
             .map_err(|error| error.to_string())
     };

@@ -14,9 +14,6 @@ use super::file_frame::FileFrame;
 use super::parse_error::ParseError;
 use super::particle_frame::ParticleFrame;
 
-/// A line, numbered from 1.
-type Line<'a> = (usize, &'a str);
-
 /// The line of column names.
 struct Header {
     line: usize,
@@ -39,7 +36,8 @@ pub fn read(content: &[u8], max_particles: usize) -> Result<FileFrame, ParseErro
         if particles.len() == max_particles {
             return Err(ParseError::too_many_particles(line, max_particles));
         }
-        let (mut values, mut count) = (RowValues::default(), 0);
+        let mut values = RowValues::default();
+        let mut count = 0;
         for (start, cell) in Cells::new(text, separator) {
             let at = |reason| ParseError::after_text(line, &text[..start], reason);
             let cell = cell.map_err(|reason| at(reason.into()))?;
@@ -77,17 +75,18 @@ impl Header {
             }
         };
         if let Some(names) = first.filter(|(_, line)| !has_number(line)) {
-            return Self::parse(names);
+            return Self::parse(names.0, names.1);
         }
-        let last_names = comments.into_iter().rev().find_map(|comment| Self::parse(comment).ok());
+        let last_names = comments.into_iter().rev().find_map(|(line, text)| Self::parse(line, text).ok());
         match (last_names, first) {
             (Some(header), _) => Ok(header),
-            (None, Some(numbers)) => Self::parse(numbers),
+            (None, Some((line, text))) => Self::parse(line, text),
             (None, None) => Err(ParseError::WholeFile(format!("no line of column names; expected {EXPECTED_NAMES}"))),
         }
     }
 
-    fn parse((line, text): Line<'_>) -> Result<Self, ParseError> {
+    /// `line`: its number from 1.
+    fn parse(line: usize, text: &str) -> Result<Self, ParseError> {
         let names = text.trim_start_matches(['#', '/', ' ']);
         let before = text.len() - names.len();
         let separator = separator(names);

@@ -98,7 +98,8 @@ mod tests {
     fn missing_columns_come_from_the_settings_and_stay_with_the_id() {
         let frames = frames(&["id,x,y,z\n7,0,0,0\n8,0,0,0", "id,x,y,z\n8,0,0,0\n7,0,0,0"]);
         let source = ParticleFiles { default_radius: 0.5, fps: 1.0, flipbook_rate: 0.0, ..ParticleFiles::default() };
-        let (first, second) = (at(&source, &frames, 0.0), at(&source, &frames, 1.0));
+        let first = at(&source, &frames, 0.0);
+        let second = at(&source, &frames, 1.0);
         assert_eq!(first, second);
         assert_eq!((first[0].radius, first[0].amount), (0.5, 0.3));
         let apart = [first[0].rotation - first[1].rotation, first[0].frame - first[1].frame];

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 
 /// A parse error and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,10 +41,10 @@ impl ParseError {
     }
 
     /// Converts to the error of the file at `path`.
-    pub fn into_error(self, path: &Path) -> Error {
+    pub fn into_error(self, path: &Path) -> AssetError {
         match self {
-            Self::At { line, column, reason } => Error::Json { path: path.into(), line, column, reason },
-            Self::WholeFile(reason) => Error::Image { path: path.into(), reason },
+            Self::At { line, column, reason } => AssetError::Text { path: path.into(), line, column, reason },
+            Self::WholeFile(reason) => AssetError::Image { path: path.into(), reason },
         }
     }
 }

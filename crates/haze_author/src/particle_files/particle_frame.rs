@@ -95,7 +95,8 @@ impl ParticleFrame {
         let Some(next) = next else {
             return self.particles.iter().for_each(|particle| each(particle, 1.0));
         };
-        let (mut ours, mut theirs) = (self.particles.iter().peekable(), next.particles.iter().peekable());
+        let mut ours = self.particles.iter().peekable();
+        let mut theirs = next.particles.iter().peekable();
         loop {
             match (ours.peek(), theirs.peek()) {
                 (Some(one), Some(other)) if one.id == other.id => {

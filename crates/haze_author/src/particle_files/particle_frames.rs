@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use haze_core::assets::bounded_read;
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 
 use super::file_frame::{ColumnUse, FileFrame, Scales, UnknownScale};
 use super::parse_error::ParseError;
@@ -47,9 +47,9 @@ impl ParticleFrames {
     /// Loads one file, or a sequence if the file name contains `#` in place of the frame number's digits.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Json`] with line and column for CSV, ASCII PLY and PLY headers; [`Error::Image`] for
+    /// [`AssetError::Io`]; [`AssetError::Text`] with line and column for CSV, ASCII PLY and PLY headers; [`AssetError::Image`] for
     /// everything else, with vertex and byte offset for binary PLY.
-    pub fn load(path: &Path, limits: Limits) -> Result<Self, Error> {
+    pub fn load(path: &Path, limits: Limits) -> Result<Self, AssetError> {
         let mut files = Vec::new();
         let mut frames = Vec::new();
         let mut bytes = 0;
@@ -60,14 +60,14 @@ impl ParticleFrames {
             if bytes > limits.bytes {
                 let [found, limit] = [bytes, limits.bytes].map(|bytes| bytes.div_ceil(1 << 20));
                 let reason = format!("{found} MiB of particles up to this frame; expected at most {limit} MiB");
-                return Err(Error::Image { path: file, reason });
+                return Err(AssetError::Image { path: file, reason });
             }
             files.push((number, file));
             frames.push(frame);
         }
         let scales = Scales::of_frames(&frames).map_err(|UnknownScale { frame, reason }| {
             let file = files.get(frame).map(|(_, file)| file.clone());
-            Error::Image { path: file.unwrap_or_else(|| path.into()), reason }
+            AssetError::Image { path: file.unwrap_or_else(|| path.into()), reason }
         })?;
         let mut columns: Vec<(PathBuf, ColumnUse)> = Vec::new();
         for ((_, file), frame) in files.iter().zip(&frames) {

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use haze_core::emitter::MAX_PARTICLES;
-use haze_core::error::{Error, FieldError, one_line};
+use haze_core::error::{AssetError, FieldError, one_line};
 use haze_core::frame::{EmitterPaths, EmitterSnapshot, Particle};
 use haze_preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};
 
@@ -19,21 +19,22 @@ pub const MAX_PARTICLE_FILE_BYTES: u64 = 1 << 30;
 /// named in errors.
 ///
 /// # Errors
-/// As [`ParticleFrames::load`], wrapped in [`Error::Asset`] with the preset and the system, also for more than
-/// [`MAX_PARTICLE_FILE_BYTES`]; [`Error::JsonField`] for an invalid path, and for more than [`MAX_PARTICLES`] in all
+/// As [`ParticleFrames::load`], wrapped in [`AssetError::Named`] with the preset and the system, also for more than
+/// [`MAX_PARTICLE_FILE_BYTES`]; [`AssetError::JsonField`] for an invalid path, and for more than [`MAX_PARTICLES`] in all
 /// systems.
 pub fn load_particle_files(
     preset: &Preset,
     path: &Path,
     folders: &AssetFolders,
-) -> Result<Vec<Option<ParticleFrames>>, Error> {
+) -> Result<Vec<Option<ParticleFrames>>, AssetError> {
     load_each(preset, path, folders).into_iter().collect()
 }
 
 /// Loads the particle files of every system. Returns all errors; and notes on the columns: the attributes that they are
 /// read as, those that are not read, and those that the settings of their system do not use.
-pub fn check_particle_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
-    let (mut errors, mut notes) = (Vec::new(), Vec::new());
+pub fn check_particle_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<AssetError>, Vec<String>) {
+    let mut errors = Vec::new();
+    let mut notes = Vec::new();
     for (index, loaded) in load_each(preset, path, folders).into_iter().enumerate() {
         match loaded {
             Ok(Some(frames)) => notes.extend(column_notes(preset, index, &frames).into_iter().map(|note| note.text)),
@@ -58,7 +59,9 @@ struct ColumnNote {
 }
 
 fn column_notes(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<ColumnNote> {
-    let Some(system) = preset.systems.get(index).filter(|system| system.cache.is_used()) else { return Vec::new() };
+    let Some(system) = preset.systems.get(index).filter(|system| system.particle_files.is_used()) else {
+        return Vec::new();
+    };
     let settings = &system.settings;
     let is_animated = |setting: &str| {
         let path = format!("systems[{index}].settings.{setting}");
@@ -70,7 +73,7 @@ fn column_notes(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<C
     for (file, columns) in frames.columns() {
         let name = file.file_name().map(OsStr::to_string_lossy).unwrap_or_default();
         let mut add = |note: &str, is_unused| {
-            let text = format!("systems[{index}].cache.path: {}: {note}", one_line(&name));
+            let text = format!("systems[{index}].particle_files.path: {}: {note}", one_line(&name));
             notes.push(ColumnNote { text, is_unused });
         };
         add(&columns.read, false);
@@ -86,17 +89,18 @@ fn column_notes(preset: &Preset, index: usize, frames: &ParticleFrames) -> Vec<C
 }
 
 /// Loads the particle files of every system, each file once.
-fn load_each(preset: &Preset, path: &Path, folders: &AssetFolders) -> Vec<Result<Option<ParticleFrames>, Error>> {
+fn load_each(preset: &Preset, path: &Path, folders: &AssetFolders) -> Vec<Result<Option<ParticleFrames>, AssetError>> {
     let mut known = HashMap::new();
-    let (mut bytes, mut particles) = (0, 0.0);
+    let mut bytes = 0;
+    let mut particles = 0.0;
     let mut loaded = Vec::new();
     for (index, system) in preset.systems.iter().enumerate() {
-        if !system.cache.is_used() {
+        if !system.particle_files.is_used() {
             particles += system.emitter.max_alive();
             loaded.push(Ok(None));
             continue;
         }
-        let name = &system.cache.path;
+        let name = &system.particle_files.path;
         let frames = match known.get(name) {
             Some(frames) => Ok(ParticleFrames::clone(frames)),
             None => load(name, folders, MAX_PARTICLE_FILE_BYTES - bytes).inspect(|frames| {
@@ -111,7 +115,7 @@ fn load_each(preset: &Preset, path: &Path, folders: &AssetFolders) -> Vec<Result
             }
             let name = one_line(name);
             let problem = format!("with {name:?}, {particles:.0} particles of all systems are alive at once");
-            Err(FieldError::from_problem("cache.path", problem, format!("at most {MAX_PARTICLES}")).into())
+            Err(FieldError::from_problem("particle_files.path", problem, format!("at most {MAX_PARTICLES}")).into())
         });
         loaded.push(counted.map(Some).map_err(|error| with_system_context(path, index, error)));
     }
@@ -132,11 +136,11 @@ pub fn particles_along(
     paths: &mut EmitterPaths,
     particles: &mut Vec<Particle>,
 ) {
-    match files.filter(|_| system.cache.is_used()) {
+    match files.filter(|_| system.particle_files.is_used()) {
         Some(files) => {
-            let is_frozen = system.settings.sprite.freeze_animation;
-            let flipbook_rate = if is_frozen { 0.0 } else { system.cache.flipbook_rate };
-            files.evaluate(&ParticleFiles { flipbook_rate, ..system.cache.clone() }, time, particles);
+            let is_frozen = system.settings.debug.freeze_animation;
+            let flipbook_rate = if is_frozen { 0.0 } else { system.particle_files.flipbook_rate };
+            files.evaluate(&ParticleFiles { flipbook_rate, ..system.particle_files.clone() }, time, particles);
         }
         None => system.emitter_snapshot(time).evaluate_along(paths, particles),
     }
@@ -144,17 +148,17 @@ pub fn particles_along(
 
 /// Unevaluated particles of the emitter; `None` if they come from `files`.
 pub fn emission(system: &PresetSystem, files: Option<&ParticleFrames>, time: f64) -> Option<EmitterSnapshot> {
-    (!system.cache.is_used() || files.is_none()).then(|| system.emitter_snapshot(time))
+    (!system.particle_files.is_used() || files.is_none()).then(|| system.emitter_snapshot(time))
 }
 
-fn load(name: &str, folders: &AssetFolders, bytes: u64) -> Result<ParticleFrames, Error> {
+fn load(name: &str, folders: &AssetFolders, bytes: u64) -> Result<ParticleFrames, AssetError> {
     let Some(file) = particle_file_path(name) else {
         let expected = "a CSV or PLY file inside the preset's folder; one run of # in its name for a frame's digits";
-        return Err(FieldError::new("cache.path", format!("{name:?}"), expected).into());
+        return Err(FieldError::new("particle_files.path", format!("{name:?}"), expected).into());
     };
     let limits = Limits { particles: MAX_PARTICLES as usize, bytes };
     let frames = folders.find(file).and_then(|file| ParticleFrames::load(&file, limits));
-    frames.map_err(|error| Error::Asset { named_by: "cache.path".into(), error: Box::new(error) })
+    frames.map_err(|error| AssetError::Named { named_by: "particle_files.path".into(), error: Box::new(error) })
 }
 
 #[cfg(test)]
@@ -172,7 +176,7 @@ mod tests {
             let mut preset = Preset::default();
             for path in paths {
                 let mut system = PresetSystem::default();
-                system.cache.path = (*path).into();
+                system.particle_files.path = (*path).into();
                 preset.systems.push(system);
             }
             preset
@@ -190,17 +194,22 @@ mod tests {
             .collect();
         let [missing, broken, outside] = &said[..] else { panic!("{said:?}") };
         assert!(
-            missing.starts_with("my.json: systems[1].cache.path: ") && missing.contains("No such file in "),
+            missing.starts_with("my.json: systems[1].particle_files.path: ") && missing.contains("No such file in "),
             "{missing}"
         );
         assert!(missing.ends_with("; the nearest name is \"smoke_01.csv\""), "{missing}");
-        assert!(broken.starts_with("my.json: systems[3].cache.path: "), "{broken}");
+        assert!(broken.starts_with("my.json: systems[3].particle_files.path: "), "{broken}");
         assert!(broken.ends_with("smoke_02.csv:2:5: z: \"-\" is not valid; expected a number"), "{broken}");
-        assert!(outside.starts_with("my.json: systems[4].cache.path: \"../good.csv\" is not valid; "), "{outside}");
+        assert!(
+            outside.starts_with("my.json: systems[4].particle_files.path: \"../good.csv\" is not valid; "),
+            "{outside}"
+        );
         // Particles that an emitter may make count too, except for systems that use files.
         let mut crowded = preset(&["", "good.csv"]);
         for system in &mut crowded.systems {
-            (system.emitter.rate, system.emitter.lifetime, system.emitter.lifetime_spread) = (10_000.0, 104.8576, 0.0);
+            system.emitter.rate = 10_000.0;
+            system.emitter.lifetime = 104.8576;
+            system.emitter.lifetime_spread = 0.0;
         }
         crowded.validate().unwrap();
         let said = load_particle_files(&crowded, Path::new("my.json"), &folders).unwrap_err().to_string();
@@ -222,14 +231,14 @@ mod tests {
         let head = format!("ply\nformat ascii 1.0\nelement vertex 1\n{position}{rgb}end_header\n");
         write("a.ply", &format!("{head}0 0 0 0 9 9 9 255"));
         let mut preset = Preset { systems: vec![PresetSystem::default(); 2], ..Preset::default() };
-        preset.systems[0].cache.path = "s_#.csv".into();
-        preset.systems[1].cache.path = "a.ply".into();
+        preset.systems[0].particle_files.path = "s_#.csv".into();
+        preset.systems[1].particle_files.path = "a.ply".into();
         let check =
             |preset: &Preset| check_particle_files(preset, Path::new("my.json"), &AssetFolders::new(folder.path()));
         let (errors, notes) = check(&preset);
         assert!(errors.is_empty(), "{errors:?}");
-        let first = "systems[0].cache.path: s_1.csv: ";
-        let second = "systems[1].cache.path: a.ply: ";
+        let first = "systems[0].particle_files.path: s_1.csv: ";
+        let second = "systems[1].particle_files.path: a.ply: ";
         let codes = "color from red, green, blue as sRGB codes";
         let kelvin = "heat from temperature in kelvin: 800 is 0, 2000 is 1";
         assert_eq!(
@@ -243,7 +252,7 @@ mod tests {
                 format!("{first}nx, column 12: not read; expected names that docs/particles.md lists"),
                 format!("{first}red, green, blue: no effect; expected a sprite.tint above 0"),
                 format!("{first}temperature: no effect; expected a fire.intensity above 0"),
-                "systems[0].cache.path: s_3.csv: position from x, y, z; radius from r".into(),
+                "systems[0].particle_files.path: s_3.csv: position from x, y, z; radius from r".into(),
                 format!("{second}position from x, y, z; {codes}"),
                 format!(
                     "{second}alpha is not read: it is full in every particle, as programs write it beside colors; \

@@ -20,7 +20,8 @@ fn interpolate(first: &str, second: &str, share: f32) -> Vec<(i64, f32, f32)> {
 
 #[test]
 fn particles_in_both_frames_are_interpolated_and_others_fade() {
-    let (first, second) = ("id,x,y,z\n5,1,0,0\n2,0,0,0\n3,4,0,0", "id,x,y,z\n3,8,0,0\n9,7,0,0\n5,2,0,0\n");
+    let first = "id,x,y,z\n5,1,0,0\n2,0,0,0\n3,4,0,0";
+    let second = "id,x,y,z\n3,8,0,0\n9,7,0,0\n5,2,0,0\n";
     assert_eq!(interpolate(first, second, 0.25), [(2, 0.0, 0.75), (3, 5.0, 1.0), (5, 1.25, 1.0), (9, 7.0, 0.25)]);
     assert_eq!(interpolate(first, second, 0.0), [(2, 0.0, 1.0), (3, 4.0, 1.0), (5, 1.0, 1.0)]);
     // If one frame has no ids, the result is the earlier frame.

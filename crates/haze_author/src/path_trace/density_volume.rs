@@ -38,7 +38,8 @@ impl DensityVolume {
         bytes.extend(self.size.to_array().into_iter().flat_map(u32::to_le_bytes));
         bytes.extend(1_i32.to_le_bytes());
         bytes.extend([0.0_f32, 0.0, 0.0, 1.0, 1.0, 1.0].into_iter().flat_map(f32::to_le_bytes));
-        let (width, slice) = (self.size.x as usize, (self.size.x * self.size.y) as usize);
+        let width = self.size.x as usize;
+        let slice = (self.size.x * self.size.y) as usize;
         for slice in self.densities.chunks(slice).rev() {
             for row in slice.chunks(width).rev() {
                 bytes.extend(row.iter().flat_map(|density| density.to_le_bytes()));
@@ -65,10 +66,14 @@ pub(super) fn trilinear_corners(size: UVec3, p: Vec3) -> Corners {
     let low = at.as_uvec3();
     let f = at - low.as_vec3();
     let step = (low + 1).min(size - 1) - low;
-    let (row, slice) = (size.x as usize, (size.x * size.y) as usize);
+    let row = size.x as usize;
+    let slice = (size.x * size.y) as usize;
     let first = low.z as usize * slice + low.y as usize * row + low.x as usize;
-    let (x, y, z) = (step.x as usize, step.y as usize * row, step.z as usize * slice);
-    let (back, across) = (1.0 - f.z, [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y]);
+    let x = step.x as usize;
+    let y = step.y as usize * row;
+    let z = step.z as usize * slice;
+    let back = 1.0 - f.z;
+    let across = [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y];
     let [a, b, c, d] = across;
     Corners {
         voxels: [0, x, y, x + y, z, x + z, y + z, x + y + z].map(|offset| first + offset),

@@ -76,7 +76,7 @@ impl PathTrace {
                     let at = UVec2::new(index % self.size, first + index / self.size);
                     let pixel = Pixel { at, size: self.size, seed: self.seed };
                     let (lights, coverage) = sums.split_at_mut(count);
-                    coverage[0].x += tracer.add_path(&pixel, (sample, self.samples), &mut scratch, lights);
+                    coverage[0].x += tracer.add_path(&pixel, sample, self.samples, &mut scratch, lights);
                 }
             });
         }

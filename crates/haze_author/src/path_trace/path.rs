@@ -52,9 +52,9 @@ impl<'a> Tracer<'a> {
     }
 
     /// Traces one path from a random position in a pixel and adds its light to `sums`, one entry per light. The first
-    /// vertex is sampled inside the smoke, and the light is weighted by the coverage there, which is returned. `(index,
-    /// count)` is the stratum for the depth of the first vertex.
-    pub fn add_path(&self, pixel: &Pixel, (index, count): (u32, u32), scratch: &mut Scratch, sums: &mut [Vec3]) -> f32 {
+    /// vertex is sampled inside the smoke, and the light is weighted by the coverage there, which is returned. Its depth is
+    /// in the stratum `index` of `count`.
+    pub fn add_path(&self, pixel: &Pixel, index: u32, count: u32, scratch: &mut Scratch, sums: &mut [Vec3]) -> f32 {
         let Scratch { column, towards } = scratch;
         let key = UVec3::new(pixel.at.x, pixel.at.y, pixel.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index));
         let mut random = Random::new(key);

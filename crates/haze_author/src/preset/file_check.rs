@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 use haze_preset::{AssetFolders, ImageCache, ImageSource, MaterialSources, Preset, with_system_context};
 
 use super::role_check::role_warnings;
@@ -12,14 +12,15 @@ use crate::particle_files::check_particle_files;
 /// Loads all files that a preset names. Returns all errors, and notes, each with its field: images that do not seem to fit
 /// their role, the attributes that columns of particles are read as, and parts of a scene file that are not shown. Files
 /// are searched for in `folders`; `path`, the preset's file, is only named in errors.
-pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
+pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<AssetError>, Vec<String>) {
     let mut pictures = ImageCache::new(ImageSource::Folders(folders.clone()));
-    let (mut errors, mut warnings) = (Vec::new(), Vec::new());
+    let mut errors = Vec::new();
+    let mut warnings = Vec::new();
     for (index, system) in preset.systems.iter().enumerate() {
         let found = match system.material.load_with_cache(&mut pictures) {
             Ok(material) => {
                 let fits = material.info().validate(index, &system.settings);
-                errors.extend(fits.err().map(|error| Error::JsonField { path: path.into(), error }));
+                errors.extend(fits.err().map(|error| AssetError::JsonField { path: path.into(), error }));
                 role_warnings(&system.material, &material)
             }
             Err(of_material) => {
@@ -75,7 +76,10 @@ mod tests {
         RgbImage::from_pixel(16, 16, Rgb([0; 3])).save(folder.path().join("flat.png")).unwrap();
         let mut preset = Preset { systems: vec![PresetSystem::default(); 4], ..Preset::default() };
         let mut name = |index: usize, change: fn(&mut PresetSystem)| change(&mut preset.systems[index]);
-        name(0, |system| (system.material.sprite, system.material.columns) = ("gone.png".into(), 3));
+        name(0, |system| {
+            system.material.sprite = "gone.png".into();
+            system.material.columns = 3;
+        });
         name(0, |system| system.material.diffuse_ramp = "down.png".into());
         name(1, |system| system.material.noise = "flat.png".into());
         name(1, |system| system.material.motif = "none".into());
@@ -83,7 +87,7 @@ mod tests {
         name(2, |system| system.material.coverage_ramp = "down.png".into());
         name(2, |system| system.settings.technique = Technique::DepthSpriteSoft);
         name(2, |system| system.material.sprite = "clear.png".into());
-        name(3, |system| system.cache.path = "gone.csv".into());
+        name(3, |system| system.particle_files.path = "gone.csv".into());
         name(3, |system| system.settings.soft_fade.near_fade_end = 0.05);
         image::RgbaImage::new(16, 16).save(folder.path().join("clear.png")).unwrap();
         let (errors, warnings) = check_files(&preset, Path::new("my.json"), &AssetFolders::new(folder.path()));
@@ -93,7 +97,7 @@ mod tests {
             "my.json: systems[1].material.motif: \"none\" is not valid",
             "my.json: systems[1].material.noise: ",
             "my.json: systems[2].settings.technique: ",
-            "my.json: systems[3].cache.path: ",
+            "my.json: systems[3].particle_files.path: ",
         ]) {
             assert!(said.starts_with(begins), "{begins}: {errors:?}");
         }

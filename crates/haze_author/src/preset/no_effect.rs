@@ -156,11 +156,11 @@ mod tests {
             let name = preset.set_field(path, "3").unwrap();
             no_effect_reason_of_set(preset, path, &name, UVec2::new(640, 360))
         };
-        assert_eq!(reason(&mut preset, "accumulate.scale"), None);
-        assert_eq!(reason(&mut preset, "systems[0].settings.accumulate.scale"), None);
+        assert_eq!(reason(&mut preset, "accumulate.downscale"), None);
+        assert_eq!(reason(&mut preset, "systems[0].settings.accumulate.downscale"), None);
         let only_fixed = Some("only with scale_mode fixed");
-        assert_eq!(reason(&mut preset, "systems[1].settings.accumulate.scale"), only_fixed);
+        assert_eq!(reason(&mut preset, "systems[1].settings.accumulate.downscale"), only_fixed);
         preset.systems[0].settings.accumulate.scale_mode = ScaleMode::Auto;
-        assert_eq!(reason(&mut preset, "accumulate.scale"), only_fixed);
+        assert_eq!(reason(&mut preset, "accumulate.downscale"), only_fixed);
     }
 }

@@ -125,7 +125,8 @@ fn shows_normals(ramp: &Ramp) -> bool {
     let (sum, blue) = texels().fold((Vec2::ZERO, 0.0), |(sum, blue), light| (sum + light.xy(), blue + light.z));
     let mean = sum / blue;
     // Red and green as shares of blue, so that half-transparent texels give the same. Blue is the weight.
-    let (mut squares, mut product) = (Vec2::ZERO, 0.0);
+    let mut squares = Vec2::ZERO;
+    let mut product = 0.0;
     for light in texels() {
         let apart = light.xy() / light.z - mean;
         squares += apart * apart * light.z;

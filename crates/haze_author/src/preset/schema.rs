@@ -92,7 +92,8 @@ impl FieldVisitor for RangeWriter<'_> {
 
     fn curve(&mut self, name: &'static str, _: &mut Curve, range: RangeInclusive<f32>) {
         if let Some(property) = self.property(name) {
-            (property["minItems"], property["maxItems"]) = (json!(1), json!(MAX_CURVE_POINTS));
+            property["minItems"] = json!(1);
+            property["maxItems"] = json!(MAX_CURVE_POINTS);
             let x = json!({ "type": "number", "minimum": 0, "maximum": 1 });
             let value = json!({ "type": "number", "minimum": range.start(), "maximum": range.end() });
             property["items"]["prefixItems"] = json!([x, value]);
@@ -117,7 +118,7 @@ mod tests {
         let schema: Value = serde_json::from_str(&schema()).unwrap();
         let property = |path: &str| schema.pointer(&format!("/$defs/{path}")).unwrap_or_else(|| panic!("{path}"));
         assert_eq!(property("SoftFade/properties/fade_scale")["minimum"], 0.001);
-        assert_eq!(property("Accumulate/properties/scale")["maximum"], 16);
+        assert_eq!(property("Accumulate/properties/downscale")["maximum"], 16);
         assert_eq!(property("Light/properties/color/items")["maximum"], 100.0);
         assert_eq!(property("Light/properties/outer_angle")["minimum"], 0.0);
         assert_eq!(property("Flicker/properties/rate")["maximum"], 60.0);

@@ -9,7 +9,7 @@ use haze_core::frame::Light;
 use haze_core::settings::{
     BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, MAX_CURVE_POINTS, field_values,
 };
-use haze_preset::{Ease, Flicker, MAX_KEYFRAMES, Preset, PresetSystem, builtin};
+use haze_preset::{Ease, Flicker, MAX_KEYFRAMES, Preset, PresetSystem, backdrop_endings, builtin};
 
 use super::no_effect::effect_conditions;
 use super::schema::preset_with_widest_ranges;
@@ -86,7 +86,8 @@ impl Page {
             let description = description(self, title);
             self.sections.push(Section { title: title.to_owned(), description, rows });
         }
-        let (title, mut flicker) = ("animation.flicker", Flicker::default());
+        let title = "animation.flicker";
+        let mut flicker = Flicker::default();
         let defaults = field_values(&flicker).into_iter().map(|(name, value)| (format!("{title}.{name}"), value));
         self.defaults.extend(defaults);
         self.path = vec!["animation", "flicker"];
@@ -188,7 +189,7 @@ impl FieldVisitor for SectionWriter<'_> {
     }
 
     fn backdrop(&mut self, name: &'static str, _: &mut String, kind: BackdropKind) {
-        self.row(name, format!("the path of a [.{} file](scene.md)", kind.endings().join(" or .")));
+        self.row(name, format!("the path of a [.{} file](scene.md)", backdrop_endings(kind).join(" or .")));
     }
 
     fn seed(&mut self, name: &'static str, _: &mut u32) {

@@ -135,6 +135,9 @@ mod tests {
         assert_eq!(tooltips.field("systems.settings.boots"), None);
         assert_eq!(tooltips.choice("lights.kind", "laser"), None);
         let stages = Tooltips::of::<haze_core::settings::DebugView>();
-        assert_eq!(stages.choice("", "amount"), Some("Accumulated amount, as gray."));
+        assert_eq!(
+            stages.choice("", "amount"),
+            Some("Accumulated amount of all systems, as white smoke: gray over black.")
+        );
     }
 }

@@ -148,7 +148,9 @@ fn linear_from_oklab(lab: Vec3) -> Vec3 {
     let l = lab.x + 0.396_337_78 * lab.y + 0.215_803_76 * lab.z;
     let m = lab.x - 0.105_561_346 * lab.y - 0.063_854_17 * lab.z;
     let s = lab.x - 0.089_484_18 * lab.y - 1.291_485_5 * lab.z;
-    let (l, m, s) = (l * l * l, m * m * m, s * s * s);
+    let l = l * l * l;
+    let m = m * m * m;
+    let s = s * s * s;
     Vec3::new(
         4.076_741_7 * l - 3.307_711_6 * m + 0.230_969_94 * s,
         -1.268_438 * l + 2.609_757_4 * m - 0.341_319_4 * s,
@@ -158,7 +160,8 @@ fn linear_from_oklab(lab: Vec3) -> Vec3 {
 
 /// Converts to hue in turns, saturation and value.
 fn hsv_from_rgb(c: Vec3) -> Vec3 {
-    let (value, least) = (c.max_element(), c.min_element());
+    let value = c.max_element();
+    let least = c.min_element();
     let range = value - least;
     let saturation = if value > 0.0 { range / value } else { 0.0 };
     let sixth = match () {

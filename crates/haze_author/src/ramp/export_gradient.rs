@@ -48,7 +48,8 @@ fn straight_stops(recipe: &RampRecipe) -> Result<Vec<RampStop>, FieldError> {
     edges.dedup();
     let mut stops = Vec::new();
     for ends in edges.windows(2) {
-        let (from, to) = (ends[0], ends[1]);
+        let from = ends[0];
+        let to = ends[1];
         // The end of a piece belongs to the next one if an edge is there.
         let before = |at: f32| code(at.min(to.next_down()));
         add_straight_stops(&mut stops, from, to, MAX_ERROR, &before);

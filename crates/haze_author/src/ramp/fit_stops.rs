@@ -57,7 +57,8 @@ pub fn fit_image(picture: &DynamicImage, max_error: Option<f32>) -> Result<RampF
     let code = |channel: u16| f32::from(channel) / 257.0;
     let mut rows: Vec<Vec<Vec3>> =
         pixels.rows().rev().map(|row| row.map(|pixel| Vec3::from(pixel.0.map(code))).collect()).collect();
-    let (width, height) = (pixels.width().max(2), pixels.height());
+    let width = pixels.width().max(2);
+    let height = pixels.height();
     for row in &mut rows {
         row.resize(width as usize, row.first().copied().unwrap_or_default());
     }
@@ -193,7 +194,8 @@ fn fit_rows(texels: &[Vec<Vec3>], blend: Blend, curve: Curve, max_error: f32) ->
         max_error,
         |a, b| max_difference(&texels[a], &texels[b]),
         |keys, range| {
-            let (rows, last) = (PreparedRows::new(blend, &rows_of(keys)), (texels.len() - 1) as f32);
+            let rows = PreparedRows::new(blend, &rows_of(keys));
+            let last = (texels.len() - 1) as f32;
             range
                 .map(|index| {
                     texel_errors(&rows, index as f32 / last, &texels[index], 0..texels[index].len())
@@ -323,7 +325,8 @@ fn prune(
         // Removing a key changes the curve up to two keys away; evaluating it there needs one more key on each side.
         let near = at.saturating_sub(3)..keys.len().min(at + 4);
         let others: Vec<_> = keys[near.clone()].iter().filter(|key| **key != keys[at]).copied().collect();
-        let (from, to) = (keys[at.saturating_sub(2)].index, keys[(at + 2).min(keys.len() - 1)].index);
+        let from = keys[at.saturating_sub(2)].index;
+        let to = keys[(at + 2).min(keys.len() - 1)].index;
         if errors(&others, from.max(range.start)..(to + 1).min(range.end)).iter().all(|&error| error <= max_error) {
             keys.remove(at);
         } else {

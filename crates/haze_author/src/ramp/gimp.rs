@@ -78,7 +78,8 @@ fn segments(text: &str) -> Result<Vec<Segment>, GradientParseError> {
             let reason = format!("blending {blending}, colors {colors}; expected 0 to 5 and 0 to 2, whole numbers");
             return Err(error(at, &reason));
         }
-        let (from, to) = (Vec4::new(r0, g0, b0, a0), Vec4::new(r1, g1, b1, a1));
+        let from = Vec4::new(r0, g0, b0, a0);
+        let to = Vec4::new(r1, g1, b1, a1);
         segments.push(Segment { left, middle, right, from, to, blending: blending as u32, colors: colors as u32 });
     }
     if segments.len() < count {
@@ -112,7 +113,8 @@ impl Segment {
         if self.colors == 0 {
             return composite_over_black(mixed);
         }
-        let (from, to) = (Blend::HsvNear.of_code(self.from.truncate()), Blend::HsvNear.of_code(self.to.truncate()));
+        let from = Blend::HsvNear.of_code(self.from.truncate());
+        let to = Blend::HsvNear.of_code(self.to.truncate());
         // Equal hues are a full turn apart in either direction.
         let is_equal = (to.x - from.x - (to.x - from.x).round()).abs() < HUE_TOLERANCE;
         let increase = if is_equal { 0.0 } else { (to.x - from.x).rem_euclid(1.0) };

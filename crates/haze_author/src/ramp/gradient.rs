@@ -168,7 +168,8 @@ fn unwrap_hues(points: &mut [ControlPoint], far: bool) {
     let mut last = points.iter().find(has_hue).map_or(Vec3::ZERO, |point| point.value);
     for ControlPoint { value, .. } in points {
         if value.z <= 0.0 {
-            (value.x, value.y) = (last.x, last.y);
+            value.x = last.x;
+            value.y = last.y;
         } else if value.y <= 0.0 {
             value.x = last.x;
         } else {
@@ -201,7 +202,8 @@ fn value_at(points: &[ControlPoint], x: f32) -> Vec3 {
             from.value * (1.0 - eased) + to.value * eased
         }
         Curve::Monotone => {
-            let (t2, t3) = (t * t, t * t * t);
+            let t2 = t * t;
+            let t3 = t * t * t;
             from.value * (2.0 * t3 - 3.0 * t2 + 1.0)
                 + to.value * (3.0 * t2 - 2.0 * t3)
                 + tangent(points, next - 1) * (h * (t3 - 2.0 * t2 + t))
@@ -214,7 +216,8 @@ fn value_at(points: &[ControlPoint], x: f32) -> Vec3 {
 /// piecewise cubic interpolation", 1980)
 fn tangent(points: &[ControlPoint], at: usize) -> Vec3 {
     let secant = |from: usize, to: usize| {
-        let (from, to) = (points.get(from)?, points.get(to)?);
+        let from = points.get(from)?;
+        let to = points.get(to)?;
         let is_edge = from.curve == Curve::Constant || to.at <= from.at;
         // Limits the slope: no image can show a steeper one, and products of slopes must not overflow.
         (!is_edge).then(|| (to.value - from.value) / (to.at - from.at).max(1.0e-6))

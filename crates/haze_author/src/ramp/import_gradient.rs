@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec4;
 use haze_core::assets::bounded_read;
 use haze_core::assets::image::read_color_png;
-use haze_core::error::{Error, FieldError, display_path, one_line};
+use haze_core::error::{AssetError, FieldError, display_path, one_line};
 
 use super::blend_space::srgb_from_linear;
 use super::fit_stops::{DEFAULT_MAX_ERROR, RampFit, fit_image, validate_max_error};
@@ -42,9 +42,13 @@ pub struct ImportedGradient {
 /// SVG or Photoshop. Transparent colors are darkened by their alpha, in linear light.
 ///
 /// # Errors
-/// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
-/// [`Error::Field`] for a `max_error` out of range, an unknown extension, or a `name` for a file of one gradient.
-pub fn import_gradient(path: &Path, max_error: Option<f32>, name: Option<&str>) -> Result<ImportedGradient, Error> {
+/// [`AssetError::Io`] and [`AssetError::Image`] for files that cannot be read, [`AssetError::Text`] for a malformed line,
+/// [`AssetError::Field`] for a `max_error` out of range, an unknown extension, or a `name` for a file of one gradient.
+pub fn import_gradient(
+    path: &Path,
+    max_error: Option<f32>,
+    name: Option<&str>,
+) -> Result<ImportedGradient, AssetError> {
     validate_max_error(max_error)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if let Some(name) = name.filter(|_| !ENDINGS_OF_SEVERAL.contains(&ending.as_str())) {
@@ -52,7 +56,7 @@ pub fn import_gradient(path: &Path, max_error: Option<f32>, name: Option<&str>) 
         return Err(FieldError::new("gradient", format!("{name:?}"), expected).into());
     }
     if ending == "png" {
-        let refuse = |error: FieldError| Error::Image { path: path.into(), reason: error.to_string() };
+        let refuse = |error: FieldError| AssetError::Image { path: path.into(), reason: error.to_string() };
         let fit = fit_image(&read_color_png(path)?, max_error).map_err(refuse)?;
         return Ok(ImportedGradient { fit, note: None });
     }
@@ -61,7 +65,7 @@ pub fn import_gradient(path: &Path, max_error: Option<f32>, name: Option<&str>) 
         let expected = format!("a name that ends in .png or .{}", GRADIENT_ENDINGS.join(", ."));
         return Err(FieldError::new("file", path.display(), expected).into());
     }
-    let refuse = |GradientParseError { line, reason }: GradientParseError| Error::Json {
+    let refuse = |GradientParseError { line, reason }: GradientParseError| AssetError::Text {
         path: path.into(),
         line,
         column: 1,
@@ -69,7 +73,7 @@ pub fn import_gradient(path: &Path, max_error: Option<f32>, name: Option<&str>) 
     };
     if ending == "grd" {
         let bytes = bounded_read::read(path, "gradient", MAX_LIBRARY_BYTES)?;
-        let refuse = |reason| Error::Image { path: path.into(), reason };
+        let refuse = |reason| AssetError::Image { path: path.into(), reason };
         let NotedGradient { gradient, note } = grd::read(&bytes, name).map_err(refuse)?;
         let fit = gradient.fit(max_error);
         fit.recipe.validate()?;
@@ -172,7 +176,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
-        let shown = |error: Error| error.to_string().replace(&format!("{}/", folder.path().display()), "");
+        let shown = |error: AssetError| error.to_string().replace(&format!("{}/", folder.path().display()), "");
         import_gradient(&path, None, None).map(|imported| imported.fit.recipe).map_err(shown)
     }
 

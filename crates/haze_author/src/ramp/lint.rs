@@ -73,7 +73,8 @@ pub fn lint_ramp(picture: &DynamicImage, role: Option<RampRole>) -> Vec<Finding>
         let lightest = along_columns.first().map_or(0, |line| brightest(line));
         let most = along_rows.iter().map(|line| brightest(line)).max().unwrap_or_default();
         if findings.is_empty() && lightest < most / 2 {
-            let (lightest, most) = (lightest / 257, most / 257);
+            let lightest = lightest / 257;
+            let most = most / 257;
             findings.push(Finding {
                 name: "round",
                 description: format!(
@@ -102,7 +103,9 @@ fn fraction_along(index: usize, count: usize) -> f32 {
 fn find_banding(line: &[[u16; 3]]) -> Option<f32> {
     (0..3).find_map(|channel| {
         let codes: Vec<i32> = line.iter().map(|texel| i32::from(texel[channel] / 257)).collect();
-        let (mut length, mut steps, mut last) = (1, 0, 0);
+        let mut length = 1;
+        let mut steps = 0;
+        let mut last = 0;
         for (index, pair) in codes.windows(2).enumerate() {
             let step = pair[1] - pair[0];
             if step == 0 {
@@ -111,7 +114,8 @@ fn find_banding(line: &[[u16; 3]]) -> Option<f32> {
             }
             let goes_on = length >= 6 && step.abs() <= 2 && (steps == 0 || step.signum() == last);
             steps = if goes_on { steps + 1 } else { 0 };
-            (length, last) = (1, step.signum());
+            length = 1;
+            last = step.signum();
             if steps == 4 {
                 return Some(fraction_along(index, codes.len()));
             }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{UVec2, Vec2, Vec3};
 use haze_core::assets::image::Image;
 use haze_core::assets::json;
-use haze_core::error::{Error, FieldError};
+use haze_core::error::{AssetError, FieldError};
 use haze_core::formula::diffuse_bake::motif_normal;
 use haze_core::formula::saturate;
 use haze_core::settings::{FieldVisitor, Fields, validate};
@@ -72,8 +72,8 @@ impl MotifRecipe {
     /// Loads a `*.motif.json`.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
-    pub fn load(path: &Path) -> Result<Self, Error> {
+    /// [`AssetError::Io`], [`AssetError::Text`] or [`AssetError::JsonField`].
+    pub fn load(path: &Path) -> Result<Self, AssetError> {
         json::load(path, RECIPE_VERSION, Self::validate)
     }
 

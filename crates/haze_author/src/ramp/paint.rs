@@ -51,7 +51,8 @@ fn weight(distance: f32) -> f32 {
 
 /// Color of a row without the others.
 fn color_of(recipe: &RampRecipe, row: &RampRow, at: f32) -> Result<HexColor, FieldError> {
-    let (place, times) = (String::new(), Vec::new());
+    let place = String::new();
+    let times = Vec::new();
     let alone = RampRecipe { place, times, rows: vec![row.clone()], ..recipe.clone() };
     Ok(HexColor::from_srgb(alone.gradient()?.sample(at, row.at).map(srgb_from_linear)))
 }
@@ -72,12 +73,14 @@ mod tests {
         let sample = |recipe: &RampRecipe, at: f32| recipe.gradient().unwrap().sample(at, 0.0);
         for (at, factor) in [(0.5, 2.0), (0.7, 1.5), (0.3, 0.25)] {
             let painted = recipe.painted(Vec2::new(at, 0.0), Vec3::splat(factor)).unwrap();
-            let (before, after) = (sample(&recipe, at).x, sample(&painted, at).x);
+            let before = sample(&recipe, at).x;
+            let after = sample(&painted, at).x;
             let expected = (before + LIFT) * factor - LIFT;
             // Colors of stops have 8 bits.
             assert!((after - expected).abs() < 0.01 * expected + 0.002, "{at}: {after}, expected {expected}");
             assert_eq!(painted.rows[0].stops.len(), if (at - 0.5).abs() > NEAR { 4 } else { 3 });
-            let (end, painted_end) = (sample(&recipe, 1.0).x, sample(&painted, 1.0).x);
+            let end = sample(&recipe, 1.0).x;
+            let painted_end = sample(&painted, 1.0).x;
             assert!((painted_end - end).abs() < 0.03 * end, "{at}: {painted_end}, expected {end}");
         }
         let same = recipe.painted(Vec2::new(0.5, 0.0), Vec3::ONE).unwrap();

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{UVec2, Vec2, Vec3};
 use haze_core::assets::image::{Image, MAX_BYTES, MAX_SIDE};
 use haze_core::assets::json;
-use haze_core::error::{Error, FieldError};
+use haze_core::error::{AssetError, FieldError};
 use haze_core::settings::{FieldVisitor, Fields, validate};
 use image::{DynamicImage, ImageBuffer};
 
@@ -98,18 +98,18 @@ impl RampRecipe {
     /// Loads a `*.ramp.json` of at most 16 MiB.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
-    pub fn load(path: &Path) -> Result<Self, Error> {
+    /// [`AssetError::Io`], [`AssetError::Text`] or [`AssetError::JsonField`].
+    pub fn load(path: &Path) -> Result<Self, AssetError> {
         Self::parse(path, &json::read(path, MAX_RECIPE)?)
     }
 
     /// Parses the text of a recipe. `path` is used only in errors.
     ///
     /// # Errors
-    /// [`Error::Json`] or [`Error::JsonField`].
-    pub fn parse(path: &Path, text: &str) -> Result<Self, Error> {
+    /// [`AssetError::Text`] or [`AssetError::JsonField`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, AssetError> {
         let recipe: Self = json::parse_versioned(path, text, RECIPE_VERSION)?;
-        recipe.validate().map_err(|error| Error::JsonField { path: path.into(), error })?;
+        recipe.validate().map_err(|error| AssetError::JsonField { path: path.into(), error })?;
         Ok(recipe)
     }
 
@@ -231,7 +231,8 @@ fn dithered(picture: &Image<[u16; 3]>) -> DynamicImage {
     let dither = |(index, texel): (u32, &[u16; 3])| {
         // R2 sequence: multiples of the inverse plastic number and of its square, in units of 2^-32. Thresholds are
         // evenly distributed along any line. (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018)
-        let (x, y) = (index % picture.size.x, index / picture.size.x);
+        let x = index % picture.size.x;
+        let y = index / picture.size.x;
         let threshold = x.wrapping_mul(3_242_174_889).wrapping_add(y.wrapping_mul(2_447_445_414)) >> 16;
         // Colors that are exact in 8 bits stay unchanged.
         texel.map(|channel| ((u32::from(channel) * 255 + threshold.min(65534)) / 65535) as u8)

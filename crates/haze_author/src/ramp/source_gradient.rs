@@ -97,7 +97,8 @@ impl SourceGradient {
     fn straight_stops(&self, max_error: f32) -> Vec<RampStop> {
         let mut stops = Vec::new();
         for next in 1..self.points.len() {
-            let (from, to) = (self.points[next - 1].at, self.points[next].at);
+            let from = self.points[next - 1].at;
+            let to = self.points[next].at;
             if from < to {
                 add_straight_stops(&mut stops, from, to, max_error, &|at| self.code_before(next, at));
             }
@@ -124,7 +125,8 @@ impl SourceGradient {
         let near = [next.saturating_sub(2), next - 1, next, (next + 1).min(last)].map(|index| self.points[index]);
         let [_, p1, p2, _] = near;
         let t = ((at - p1.at) / (p2.at - p1.at).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-        let (t2, t3) = (t * t, t * t * t);
+        let t2 = t * t;
+        let t3 = t * t * t;
         let weights = match self.interpolation {
             Interpolation::Constant => Vec4::new(0.0, 1.0, 0.0, 0.0),
             Interpolation::Linear => Vec4::new(0.0, 1.0 - t, t, 0.0),

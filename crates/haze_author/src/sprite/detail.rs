@@ -22,15 +22,16 @@ pub(crate) fn detail_size(sprite_size: u32) -> u32 {
     (sprite_size >> LEVEL).max(1)
 }
 
-/// Computes one frame of the detail map. `offset` has the size of the sprite.
-pub fn bake_detail_frame(sprite: &Sprite, frame: u32, offset: &Image<f32>) -> Image<Rgba<u8>> {
+/// Computes one frame of the detail map. `offset` has the size of the sprite, `motion` is in its sides, y down, as
+/// [`optical_flow`] returns it.
+pub fn bake_detail_frame(sprite: &Sprite, frame: u32, offset: &Image<f32>, motion: &Image<Vec2>) -> Image<Rgba<u8>> {
     let size = detail_size(sprite.size());
-    let motion = optical_flow(sprite, frame);
     let mut picture = Image::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
     let scale = sprite.size() / size;
     picture.for_each(|at, texel| {
         // Mean offset of the covered texels, weighted by amount.
-        let (mut sum, mut weight) = (0.0, 0.0);
+        let mut sum = 0.0;
+        let mut weight = 0.0;
         for index in 0..scale * scale {
             let fine = at * scale + UVec2::new(index % scale, index / scale);
             let amount = sprite.texel(0, frame, fine.x, fine.y).w;
@@ -50,13 +51,15 @@ pub fn bake_detail_frame(sprite: &Sprite, frame: u32, offset: &Image<f32>) -> Im
 
 /// Computes each texel's motion from `frame` to the next, in sides of the sprite, y down. Optical flow by least squares
 /// in a window, from coarse to fine. (Lucas and Kanade, "An iterative image registration technique", 1981; pyramid
-/// after Bouguet, 2001)
-pub fn optical_flow(sprite: &Sprite, frame: u32) -> Image<Vec2> {
+/// after Bouguet, 2001) `start`, of the size of the detail map, is a motion that is known already: it is only refined.
+pub fn optical_flow(sprite: &Sprite, frame: u32, start: Option<&Image<Vec2>>) -> Image<Vec2> {
     let next = (frame + 1) % sprite.frame_count();
-    let coarsest = (LEVEL + 2).min(sprite.level_count() - 1);
-    let mut flow = Image::new(UVec2::ONE, Vec2::ZERO);
+    let levels = if start.is_some() { 0 } else { 2 };
+    let coarsest = (LEVEL + levels).min(sprite.level_count() - 1);
+    let mut flow = start.cloned().unwrap_or(Image::new(UVec2::ONE, Vec2::ZERO));
     for level in (LEVEL.min(coarsest)..=coarsest).rev() {
-        let (from, to) = (features(sprite, frame, level), features(sprite, next, level));
+        let from = features(sprite, frame, level);
+        let to = features(sprite, next, level);
         // Starts from the coarser level's flow, converted to texels of this level.
         let size = from.size.x as f32;
         let mut finer = Image::new(from.size, Vec2::ZERO);
@@ -108,9 +111,11 @@ fn refine(from: &Image<Vec3>, to: &Image<Vec3>, flow: &Image<Vec2>) -> Image<Vec
     let mut refined = Image::new(from.size, Vec2::ZERO);
     refined.for_each(|at, motion| {
         let at = at.as_ivec2();
-        let (mut matrix, mut right) = (Mat2::from_diagonal(Vec2::splat(STIFFNESS)), Vec2::ZERO);
+        let mut matrix = Mat2::from_diagonal(Vec2::splat(STIFFNESS));
+        let mut right = Vec2::ZERO;
         // Mean motion of the window, for smoothing.
-        let (mut mean, mut total) = (Vec2::ZERO, 0.0);
+        let mut mean = Vec2::ZERO;
+        let mut total = 0.0;
         for &(offset, weight) in &window {
             let (of_texel, right_of_texel) = local.load(at + offset);
             matrix += of_texel * weight;
@@ -154,7 +159,7 @@ mod tests {
         });
         let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };
         let sprite = Sprite::from_image(std::path::Path::new("ball"), &sheet, layout).unwrap();
-        let found = optical_flow(&sprite, 0).load(IVec2::new(7, 8)) * 64.0;
+        let found = optical_flow(&sprite, 0, None).load(IVec2::new(7, 8)) * 64.0;
         assert!(found.distance(Vec2::new(3.0, -2.0)) < 0.4, "{found}");
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{UVec2, Vec3, Vec4};
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 use haze_core::formula::saturate;
 use haze_core::formula::six_way::SixWay;
 use haze_core::settings::choice;
@@ -70,8 +70,8 @@ pub struct ImportedSprite {
 /// Arranges frames of equal size on a sheet that is as square as possible. Returns the sheet and its columns and rows.
 ///
 /// # Errors
-/// [`Error::Image`] if a frame differs in size from the first.
-pub fn arrange_sheet(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2), Error> {
+/// [`AssetError::Image`] if a frame differs in size from the first.
+pub fn arrange_sheet(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2), AssetError> {
     let Some((_, first)) = frames.first() else { return Ok((RgbaImage::new(0, 0), UVec2::ZERO)) };
     let (width, height) = first.dimensions();
     let count = frames.len() as u32;
@@ -83,7 +83,7 @@ pub fn arrange_sheet(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2)
         if frame.dimensions() != (width, height) {
             let reason =
                 format!("{}x{} pixels; expected {width}x{height} as the first frame", frame.width(), frame.height());
-            return Err(Error::Image { path: path.to_path_buf(), reason });
+            return Err(AssetError::Image { path: path.to_path_buf(), reason });
         }
         let at = UVec2::new(index % columns * width, index / columns * height);
         imageops::replace(&mut sheet, frame, at.x.into(), at.y.into());
@@ -96,7 +96,7 @@ pub fn arrange_sheet(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2)
 /// hemisphere.
 ///
 /// # Errors
-/// [`Error::Image`] if the sheets do not fit the layout or each other.
+/// [`AssetError::Image`] if the sheets do not fit the layout or each other.
 pub fn import_sprite(
     path: &Path,
     sheets: &[RgbaImage],
@@ -104,8 +104,8 @@ pub fn import_sprite(
     layout: SpriteLayout,
     y_down: Option<bool>,
     strength: f32,
-) -> Result<ImportedSprite, Error> {
-    let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
+) -> Result<ImportedSprite, AssetError> {
+    let refuse = |reason: String| Err(AssetError::Image { path: path.into(), reason });
     let [first, rest @ ..] = sheets else { return refuse("no picture; expected one".into()) };
     let second = rest.first();
     if rest.len() != usize::from(source.needs_two_images()) {
@@ -120,12 +120,14 @@ pub fn import_sprite(
     if matches!(source, ImportSource::Alpha) && !has_alpha {
         picture.pixels_mut().for_each(|texel| texel.0[3] = texel.0[0]);
     }
-    let (columns, rows) = (layout.columns.max(1), layout.rows.max(1));
+    let columns = layout.columns.max(1);
+    let rows = layout.rows.max(1);
     let size = UVec2::new(picture.width() / columns, picture.height() / rows);
     let border = clear_borders(&mut picture, layout);
     // Returns an error if the layout does not fit.
     let sprite = Sprite::from_image(path, &picture, SpriteLayout { y_down: false, ..layout })?;
-    let (mut found, mut not_normals) = (None, None);
+    let mut found = None;
+    let mut not_normals = None;
     match source {
         ImportSource::Normals => {
             not_normals = describe_non_normals(&sprite);
@@ -254,7 +256,9 @@ mod tests {
             let [r, g, b] = axes.map(light);
             balls(move |normal, amount| [r(normal), g(normal), b(normal), amount])
         };
-        let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
+        let x = Vec3::X;
+        let y = Vec3::Y;
+        let z = Vec3::Z;
         assert!(off(&[sheet([x, -x, y]), sheet([-y, -z, z])], ImportSource::SixWayRltBbf, None, 1.0) < 0.02);
         assert!(off(&[sheet([x, y, -z]), sheet([-x, -y, z])], ImportSource::SixWayUnity, None, 1.0) < 0.02);
     }

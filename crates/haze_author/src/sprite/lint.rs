@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 use image::RgbaImage;
 
 use super::y_direction::{MIN_CONFIDENCE, normal, y_direction};
@@ -30,7 +30,7 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 ///
 /// # Errors
 /// As [`Sprite::from_image`] if the layout does not fit.
-pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Vec<Finding>, Error> {
+pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Vec<Finding>, AssetError> {
     let mut findings = Vec::new();
     let mut find = |name, description: String| findings.push(Finding { name, description, is_warning: false });
     // A border that is not clear is a finding, not an error: it is cleared so that the other checks can run.
@@ -60,7 +60,8 @@ pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Re
         off as f32 / lengths.len().max(1) as f32
     };
     // Normals that are wrong only at small amounts are premultiplied or painted over gray.
-    let (faint, solid) = (lengths(MIN_AMOUNT, 0.6), lengths(0.9, 2.0));
+    let faint = lengths(MIN_AMOUNT, 0.6);
+    let solid = lengths(0.9, 2.0);
     let fades = premultiplied(&sprite);
     if let Some(towards) = fades {
         find(
@@ -95,7 +96,8 @@ pub fn lint_sprite(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Re
 /// Clears the borders of all frames. Returns the frame with the largest alpha on its border, and that alpha; `None` if
 /// all were clear.
 pub(super) fn clear_borders(picture: &mut RgbaImage, layout: SpriteLayout) -> Option<(u32, u8)> {
-    let (columns, rows) = (layout.columns.max(1), layout.rows.max(1));
+    let columns = layout.columns.max(1);
+    let rows = layout.rows.max(1);
     let size = UVec2::new(picture.width() / columns, picture.height() / rows).max(UVec2::ONE);
     let mut most: Option<(u32, u8)> = None;
     for (x, y, texel) in picture.enumerate_pixels_mut() {
@@ -113,7 +115,8 @@ pub(super) fn clear_borders(picture: &mut RgbaImage, layout: SpriteLayout) -> Op
 fn texels(sprite: &Sprite) -> impl Iterator<Item = Vec4> + '_ {
     let size = sprite.size();
     (0..sprite.frame_count() * size * size).map(move |index| {
-        let (frame, at) = (index / (size * size), index % (size * size));
+        let frame = index / (size * size);
+        let at = index % (size * size);
         sprite.texel(0, frame, at % size, at / size)
     })
 }
@@ -128,7 +131,11 @@ pub fn is_clear(sprite: &Sprite) -> bool {
 
 /// Returns a description of the sprite's contents if they are not normals.
 pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
-    let (mut count, mut sum, mut gray, mut away, mut unlike) = (0.0_f32, Vec3::ZERO, 0.0, 0.0, 0.0);
+    let mut count = 0.0_f32;
+    let mut sum = Vec3::ZERO;
+    let mut gray = 0.0;
+    let mut away = 0.0;
+    let mut unlike = 0.0;
     for texel in texels(sprite).filter(|texel| texel.w >= 0.5) {
         count += 1.0;
         sum += normal(texel);
@@ -155,7 +162,10 @@ pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
 /// Returns the color that normals fade to at small amounts: black if they were multiplied by alpha, gray if they were
 /// painted over gray. `None` for straight alpha.
 fn premultiplied(sprite: &Sprite) -> Option<&'static str> {
-    let (mut count, mut straight, mut black, mut gray) = (0.0_f32, 0.0, 0.0, 0.0);
+    let mut count = 0.0_f32;
+    let mut straight = 0.0;
+    let mut black = 0.0;
+    let mut gray = 0.0;
     for texel in texels(sprite).filter(|texel| (MIN_AMOUNT..0.7).contains(&texel.w)) {
         let off = |normal: Vec3| (normal.length() - 1.0).abs();
         count += 1.0;

@@ -18,15 +18,20 @@ pub const MIN_CONFIDENCE: f32 = 0.3;
 /// Detects the direction of green by two cues: normals lean outwards at the silhouette, and a gradient field of heights
 /// has no curl, which holds only if green has the right sign. `None` if the sprite gives no cue.
 pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
-    let (mut agrees, mut all) = (0.0_f32, 0.0_f32);
-    let (mut along, mut total) = (0.0_f32, 0.0_f32);
+    let mut agrees = 0.0_f32;
+    let mut all = 0.0_f32;
+    let mut along = 0.0_f32;
+    let mut total = 0.0_f32;
     let size = sprite.size();
     for frame in 0..sprite.frame_count() {
         for y in 1..size.saturating_sub(1) {
             for x in 1..size.saturating_sub(1) {
                 let at = |x: u32, y: u32| sprite.texel(0, frame, x, y);
-                let (texel, right, left) = (at(x, y), at(x + 1, y), at(x - 1, y));
-                let (above, below) = (at(x, y - 1), at(x, y + 1));
+                let texel = at(x, y);
+                let right = at(x + 1, y);
+                let left = at(x - 1, y);
+                let above = at(x, y - 1);
+                let below = at(x, y + 1);
                 // The amount decreases outwards.
                 let fall = Vec2::new(left.w - right.w, below.w - above.w);
                 let lean = normal(texel).y * fall.y * texel.w;
@@ -35,14 +40,16 @@ pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
                 // Zero curl: the change of dz/dx along y equals the change of dz/dy along x.
                 let slope = |texel: Vec4| normal(texel).truncate() / normal(texel).z.max(0.25);
                 let weight = texel.w.min(right.w).min(left.w).min(above.w).min(below.w);
-                let (of_x, of_y) = (slope(above).x - slope(below).x, slope(right).y - slope(left).y);
+                let of_x = slope(above).x - slope(below).x;
+                let of_y = slope(right).y - slope(left).y;
                 along += of_x * of_y * weight;
                 total += (of_x * of_y).abs() * weight;
             }
         }
     }
     let share = |sum: f32, all: f32| if all > 1.0e-6 { sum / all } else { 0.0 };
-    let (edges, curls) = (share(agrees, all), share(along, total));
+    let edges = share(agrees, all);
+    let curls = share(along, total);
     let sum = (edges + curls).clamp(-1.0, 1.0);
     (all > 1.0e-6).then_some(YDirection { is_down: sum < 0.0, confidence: sum.abs() })
 }

@@ -116,7 +116,8 @@ impl Chart<'_> {
     }
 
     fn axes(&self, svg: &mut String, x: &Scale, y: &Scale) {
-        let (right, bottom) = (SIZE.0 - RIGHT, SIZE.1 - BOTTOM);
+        let right = SIZE.0 - RIGHT;
+        let bottom = SIZE.1 - BOTTOM;
         // Writing to a string cannot fail.
         for tick in y.ticks() {
             let at = y.place(tick);

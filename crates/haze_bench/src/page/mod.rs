@@ -82,7 +82,8 @@ fn cost_by_overdraw(report: &Report) -> String {
     let alphas = report.rows.iter().filter(|row| row.is_of(Suite::Overdraw)).filter_map(|row| row.alpha);
     let usual = alphas.min_by(|a, b| (a - 0.1).abs().total_cmp(&(b - 0.1).abs()));
     let name = |row: &Row| {
-        let (path, alpha) = (row.path.as_ref()?, row.alpha.filter(|_| is_large(row))?);
+        let path = row.path.as_ref()?;
+        let alpha = row.alpha.filter(|_| is_large(row))?;
         match row.mode.as_deref().filter(|_| path == RenderPath::Tiled.name()) {
             Some(mode) if mode == Traversal::UntilOpaque.name() => {
                 Some(format!("{path}, {mode} layers, alpha {alpha}"))
@@ -171,7 +172,8 @@ fn bars_by_pass(title: &str, rows: &[&Row]) -> String {
         let sum = |names: &[&str]| names.iter().filter_map(|name| row.passes.get(*name)).sum::<f64>();
         let parts = names.iter().map(|name| (*name, sum(&[name]))).chain([("others", sum(&others))]);
         let part = |(index, (name, ms)): (usize, (&str, f64))| {
-            let (width, title) = (100.0 * ms / most, format!("{name}: {} ms", number(ms)));
+            let width = 100.0 * ms / most;
+            let title = format!("{name}: {} ms", number(ms));
             format!("<i class=\"c{index}\" style=\"width:{width:.2}%\" title=\"{title}\"></i>")
         };
         let parts: String = parts.enumerate().filter(|(_, (_, ms))| *ms > 0.0).map(part).collect();

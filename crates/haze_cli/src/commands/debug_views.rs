@@ -1,7 +1,7 @@
 //! `haze debug-views`: renders every stage of the shading on one sheet, as OTEE's slide "Shade tree" does.
 
 use clap::Args;
-use haze::Error;
+use haze_core::error::Error;
 use pollster::block_on;
 
 use haze_export::debug_view_sheet::{COLUMNS, stages};

@@ -1,7 +1,8 @@
 //! `haze info`: prints what this machine renders with.
 
 use glam::UVec2;
-use haze::{Context, Error, PathChoice, PathReason, PathWorkload};
+use haze::{Context, PathChoice, PathReason, PathWorkload};
+use haze_core::error::Error;
 use haze_core::settings::{RenderPath, Technique};
 use haze_demo::headless::Headless;
 
@@ -32,18 +33,12 @@ fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
         return Ok(vec![PathChoice { path: RenderPath::Raster, reason: PathReason::TiledUnsupported }]);
     }
     let size = UVec2::new(1280, 720);
-    let load = |layers: f64| PathWorkload {
-        technique: Technique::Soft,
-        sprites: 16.0 * layers,
-        fragments: layers * size.as_dvec2().element_product(),
-        size,
+    let load = |layers: f64| {
+        let fragments = layers * size.as_dvec2().element_product();
+        let mut load = PathWorkload::new(Technique::Soft, size, 16.0 * layers, fragments);
         // -ln(1 - amount) of sprites of amount 0.3, averaged over a texture that is one third full.
-        optical_depth: 0.12,
-        scale: 1,
-        attachments: 1,
-        grain_octaves: 0,
-        lookups: 0.0,
-        is_assumed: false,
+        load.optical_depth = 0.12;
+        load
     };
     Ok([4.0, 16.0, 64.0, 256.0].map(|layers| PathChoice::new(&model, &load(layers))).into())
 }

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use clap::Args;
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_core::error::Error;
 use haze_core::settings::DebugView;
 use haze_demo::shot::Shot;
 use pollster::block_on;
@@ -119,13 +120,15 @@ fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     let outputs: Vec<_> = frames.range.clone().map(|frame| ("--output", names.of(frame))).collect();
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, arguments.kind())? };
     let backend = arguments.shot.run.backend()?;
-    let (effort, progress) = (arguments.shot.effort(), ExportProgress::terminal());
+    let effort = arguments.shot.effort();
+    let progress = ExportProgress::terminal();
     if arguments.kind() == "exr" {
         block_on(exr_export::write_sequence(&backend, &shot, frames, &names, &progress))?;
     } else {
         block_on(image_export::write_sequence(&backend, &shot, frames, &names, effort, &progress))?;
     }
-    let (first, last) = (names.of(*frames.range.start()), names.of(*frames.range.end()));
+    let first = names.of(*frames.range.start());
+    let last = names.of(*frames.range.end());
     print_line!("{} to {}: {} on {}", first.display(), last.display(), shot.preset.name, backend.description())
 }
 
@@ -133,7 +136,8 @@ fn flipbook(arguments: &Arguments, frames: &Frames, cells: UVec2) -> Result<(), 
     let shot = Shot { debug_view: arguments.view, ..arguments.shot.load(&[])? };
     image_export::check_flipbook(shot.size, frames, cells)?;
     let backend = arguments.shot.run.backend()?;
-    let (path, progress) = (&arguments.shot.output, ExportProgress::terminal());
+    let path = &arguments.shot.output;
+    let progress = ExportProgress::terminal();
     let sheet = block_on(image_export::render_flipbook(&backend, &shot, frames, cells, path, &progress))?;
     arguments.shot.write(sheet, &shot, &backend)
 }

@@ -2,8 +2,8 @@
 
 use clap::Args;
 use glam::UVec2;
-use haze::Error;
 use haze_author::preset::no_effect_reason_of_set;
+use haze_core::error::Error;
 use pollster::block_on;
 
 use haze_export::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
@@ -15,7 +15,7 @@ use haze_export::output::print_error;
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// Field, named by its path or the end of it, and its values: `accumulate.scale=1,2,4`. Values of three numbers are
+    /// Field, named by its path or the end of it, and its values: `accumulate.downscale=1,2,4`. Values of three numbers are
     /// separated by semicolons: `lights[0].color=1,0,0;0,1,0`.
     #[arg(long, value_name = "FIELD=A,B,C", value_parser = parse_variation)]
     vary: (String, Vec<String>),
@@ -37,9 +37,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let columns = column_count(values.len());
     let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
     let mut name = String::new();
-    let (mut cells, mut reasons) = (Vec::new(), Vec::new());
+    let mut cells = Vec::new();
+    let mut reasons = Vec::new();
     for value in values {
-        let VariedShot { mut shot, name: varied } = arguments.shot.varied_shot("--vary", (field, value))?;
+        let VariedShot { mut shot, name: varied } = arguments.shot.varied_shot("--vary", field, value)?;
         arguments.shot.check_outputs(&shot, &[("--output", arguments.shot.output.clone(), "png")])?;
         reasons.push(no_effect_reason_of_set(&shot.preset, field, &varied, size));
         name = varied;

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_bench::frame_timer::{Cost, FrameTimer, measure_interleaved, median_of};
+use haze_core::error::Error;
 use haze_core::formula::soft_fade::soft_fade;
 use haze_core::settings::{FadeCurve, Technique};
 use haze_demo::shot::Shot;
@@ -153,7 +154,7 @@ fn fade_curves() -> RgbImage {
     };
     let curves: Vec<_> = FadeCurve::ALL.iter().zip(COLORS).map(curve).collect();
     let axis = "distance in front of the scene, in 1 / fade_scale   (contrast_power 2 for contrast, 1 for exponential)";
-    plot(UVec2::new(800, 360), (-1.5, 1.5), axis, &curves)
+    plot(UVec2::new(800, 360), -1.5, 1.5, axis, &curves)
 }
 
 fn cost_label(cost: &Cost, hard: &Cost) -> String {

@@ -41,6 +41,8 @@ mod special_targets;
 mod sprites;
 #[path = "cli/streams.rs"]
 mod streams;
+#[path = "cli/systems.rs"]
+mod systems;
 #[path = "cli/watch.rs"]
 mod watch;
 

@@ -143,7 +143,8 @@ fn files_that_are_not_json_are_refused_with_their_kind() {
     let utf16 = |bytes_of: fn(u16) -> [u8; 2]| {
         "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(bytes_of).collect()
     };
-    let (little, big): (Vec<u8>, Vec<u8>) = (utf16(u16::to_le_bytes), utf16(u16::to_be_bytes));
+    let little: Vec<u8> = utf16(u16::to_le_bytes);
+    let big: Vec<u8> = utf16(u16::to_be_bytes);
     for bytes in [little, big] {
         assert_eq!(said(&bytes), "haze: a.json:1:1: text in UTF-16; expected JSON as UTF-8 text");
     }

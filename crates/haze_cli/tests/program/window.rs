@@ -85,7 +85,8 @@ fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
     // On a busy machine the first two losses can be more than ten seconds apart.
     const FRAMES: &str = "3,6,9,12,15,18";
     let _lock = window_lock();
-    let (display, folder) = (Display::start(), folder());
+    let display = Display::start();
+    let folder = folder();
     let command = |arguments: &[&str]| {
         haze(folder.path(), &display.name, &[("HAZE_TEST_LOSE_DEVICE", FRAMES)], &[&["tweak"], arguments].concat())
     };
@@ -105,7 +106,8 @@ fn without_a_display_the_first_command_renders_an_image() {
     // Neither run replaces a file.
     for file in ["column.png", "column_2.png"] {
         let output = haze(folder.path(), "", &[], &[]).output().unwrap();
-        let (text, reason) = (String::from_utf8_lossy(&output.stdout), stderr(&output));
+        let text = String::from_utf8_lossy(&output.stdout);
+        let reason = stderr(&output);
         assert!(output.status.success() && text.starts_with(&format!("{file}: Dense column on ")), "{text}{reason}");
         assert!(reason.lines().count() == 1 && reason.contains("to open") && reason.contains("DISPLAY"), "{reason}");
         assert_eq!((column(file).width(), column(file).height()), (1280, 720));
@@ -116,7 +118,8 @@ fn without_a_display_the_first_command_renders_an_image() {
 #[test]
 fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
     let _lock = window_lock();
-    let (display, folder) = (Display::start(), folder());
+    let display = Display::start();
+    let folder = folder();
     let text = line(haze(folder.path(), "", &[], &["tweak"]), 2);
     assert!(text.contains("DISPLAY") && text.contains("`haze render`"), "{text}");
     let text = line(haze(folder.path(), ":987", &[], &["tweak"]), 2);
@@ -158,8 +161,10 @@ fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
 #[test]
 fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
     let _lock = window_lock();
-    let (display, folder) = (Display::start(), folder());
-    let (first, second) = (folder.path().join("state/recovery-1.json"), folder.path().join("state/recovery-2.json"));
+    let display = Display::start();
+    let folder = folder();
+    let first = folder.path().join("state/recovery-1.json");
+    let second = folder.path().join("state/recovery-2.json");
     let start = || haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
     let mut client = display.connect();
     let mut child = start();
@@ -223,7 +228,8 @@ fn wait_for_rest(child: &Child, quiet: Duration) {
 #[test]
 fn a_window_of_any_size_runs_idles_and_closes() {
     let _lock = window_lock();
-    let (display, folder) = (Display::start(), folder());
+    let display = Display::start();
+    let folder = folder();
     let mut child = haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
     let mut client = display.connect();
     let window = client.window();

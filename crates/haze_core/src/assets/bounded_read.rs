@@ -5,15 +5,15 @@ use std::io::{self, ErrorKind, Read as _};
 use std::path::Path;
 
 use crate::assets::file_type::{self, nonblocking};
-use crate::error::{Error, io_problem, one_line};
+use crate::error::{AssetError, io_problem, one_line};
 
 /// Reads a file of at most `max_bytes` bytes. Pipes, devices and folders are refused. `kind` names the expected file
 /// type in errors.
 ///
 /// # Errors
-/// [`Error::Io`], which names what was found and what is expected.
-pub fn read(path: &Path, kind: &str, max_bytes: u64) -> Result<Vec<u8>, Error> {
-    let io = |error| Error::Io { path: path.into(), error };
+/// [`AssetError::Io`], which names what was found and what is expected.
+pub fn read(path: &Path, kind: &str, max_bytes: u64) -> Result<Vec<u8>, AssetError> {
+    let io = |error| AssetError::Io { path: path.into(), error };
     let refuse = |found: String| {
         let reason = format!("{found}; expected a {kind} of at most {max_bytes} bytes ({} MiB)", max_bytes >> 20);
         io(io::Error::new(ErrorKind::InvalidData, reason))

@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::error::Error;
+use crate::error::AssetError;
 
 static FILES: Mutex<Files> = Mutex::new(Files { files: BTreeMap::new(), changed: BTreeSet::new(), writes: 0 });
 
@@ -30,9 +30,9 @@ fn lock() -> MutexGuard<'static, Files> {
 /// Reads a file of at most `max_bytes` bytes. `kind` names the expected file type in errors.
 ///
 /// # Errors
-/// [`Error::Io`], which names what was found and what is expected.
-pub fn read(path: &Path, kind: &str, max_bytes: u64) -> Result<Vec<u8>, Error> {
-    let io = |error| Error::Io { path: path.into(), error };
+/// [`AssetError::Io`], which names what was found and what is expected.
+pub fn read(path: &Path, kind: &str, max_bytes: u64) -> Result<Vec<u8>, AssetError> {
+    let io = |error| AssetError::Io { path: path.into(), error };
     let files = lock();
     let (_, bytes) = files.files.get(&key(path)).ok_or_else(|| io(ErrorKind::NotFound.into()))?;
     if bytes.len() as u64 > max_bytes {
@@ -47,7 +47,7 @@ pub fn read(path: &Path, kind: &str, max_bytes: u64) -> Result<Vec<u8>, Error> {
 ///
 /// # Errors
 /// None; files on a disk have some.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), AssetError> {
     let mut files = lock();
     files.writes += 1;
     let write = files.writes;
@@ -60,7 +60,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 ///
 /// # Errors
 /// As [`write_file`].
-pub fn write_state_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+pub fn write_state_file(path: &Path, bytes: &[u8]) -> Result<(), AssetError> {
     write_file(path, bytes)
 }
 

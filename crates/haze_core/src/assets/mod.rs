@@ -6,6 +6,7 @@ pub mod bounded_read;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod file_type;
 pub mod image;
+mod image_number;
 pub mod json;
 pub mod material_assets;
 pub mod measured;

@@ -65,7 +65,8 @@ pub fn largest_step(ramp: &impl Texture2d) -> f32 {
     for row in 0..ROWS {
         for turned in [false, true] {
             let at = |position| {
-                let (along, across) = (place(position, POSITIONS), place(row, ROWS));
+                let along = place(position, POSITIONS);
+                let across = place(row, ROWS);
                 color(if turned { vec2(across, along) } else { vec2(along, across) })
             };
             let colors: [Vec3; POSITIONS as usize] = std::array::from_fn(|position| at(position as u32));

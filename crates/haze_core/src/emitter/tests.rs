@@ -33,7 +33,8 @@ fn extreme_seeds_give_smoke_too() {
 #[test]
 fn motion_is_continuous() {
     let emitter = Emitter { lifetime_spread: 0.0, ..Emitter::default() };
-    let (before, after) = (at(&emitter, 12.0), at(&emitter, 12.001));
+    let before = at(&emitter, 12.0);
+    let after = at(&emitter, 12.001);
     let mut matched = 0;
     for a in &before {
         // A millisecond moves a particle by millimetres; its neighbours are further away.
@@ -52,7 +53,8 @@ fn smoke_rises_along_up() {
     let along_z = Emitter { up: Vec3::Z * 3.0, velocity: turned(upwards.velocity), velocity_spread: 0.0, ..upwards };
     let upwards = Emitter { velocity_spread: 0.0, ..upwards };
     let height = |particles: &[Particle], up: Vec3| particles.iter().map(|p| p.position.dot(up)).sum::<f32>();
-    let (y, z) = (height(&at(&upwards, 9.0), Vec3::Y), height(&at(&along_z, 9.0), Vec3::Z));
+    let y = height(&at(&upwards, 9.0), Vec3::Y);
+    let z = height(&at(&along_z, 9.0), Vec3::Z);
     assert!((y - z).abs() < 1e-3 * y, "{y} {z}");
     assert!(Emitter { up: Vec3::ZERO, ..upwards }.validate(String::new).is_err());
 }
@@ -76,7 +78,8 @@ fn smoke_ends_after_emission_has_ended() {
 #[test]
 fn drag_integrals_are_continuous_where_the_series_takes_over() {
     for t in [0.1, 1.0, 10.0] {
-        let (series, closed) = (drag_integrals(0.499_999 / t, t), drag_integrals(0.500_001 / t, t));
+        let series = drag_integrals(0.499_999 / t, t);
+        let closed = drag_integrals(0.500_001 / t, t);
         assert!((series.x - closed.x).abs() < 2e-6 * t && (series.y - closed.y).abs() < 2e-6 * t * t);
     }
 }
@@ -141,7 +144,8 @@ fn motion_is_as_even_after_hours_as_at_first() {
     let hours_in = 10_000.0;
     for frame in 0..30 {
         let time = hours_in + f64::from(frame) / 60.0;
-        let (before, now) = (at(&emitter, time), at(&emitter, time + 1.0 / 60.0));
+        let before = at(&emitter, time);
+        let now = at(&emitter, time + 1.0 / 60.0);
         let find = |a: &Particle| now.iter().find(|b| b.frame.to_bits() == a.frame.to_bits());
         let moved = before.iter().find_map(|a| Some(find(a)?.position - a.position)).unwrap();
         assert!((moved.y - rise).abs() < 0.01 * rise, "{moved} in frame {frame}");
@@ -157,7 +161,8 @@ fn velocity_is_the_change_of_position() {
         let turbulence = emitter.turbulence.min(0.5 * emitter.turbulence_scale);
         let emitter = Emitter { turbulence, frame_rate: 0.0, ..emitter };
         let step = 1.0e-2_f32;
-        let (before, now) = (at(&emitter, 0.9), at(&emitter, 0.9 + f64::from(step)));
+        let before = at(&emitter, 0.9);
+        let now = at(&emitter, 0.9 + f64::from(step));
         // A still flipbook frame is another in each particle.
         let pairs =
             before.iter().filter_map(|a| Some((a, now.iter().find(|b| b.frame.to_bits() == a.frame.to_bits())?)));
@@ -371,12 +376,13 @@ fn particles_bounce_off_the_floor_and_come_to_rest() {
 #[test]
 fn box_of_an_emission_contains_its_particles() {
     let mut stretched = Settings::default();
-    (stretched.sprite.stretch, stretched.sprite.stretch_limit) = (0.2, 20.0);
+    stretched.sprite.stretch = 0.2;
+    stretched.sprite.stretch_limit = 20.0;
     for extent in [Settings::default(), stretched].map(|settings| SpriteExtent::from_settings(&settings)) {
         for emitter in emitters() {
             for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
-                let (measured, promised) =
-                    (particle_bounds(&at(&emitter, time), extent), emitter.snapshot(time).bounds(extent));
+                let measured = particle_bounds(&at(&emitter, time), extent);
+                let promised = emitter.snapshot(time).bounds(extent);
                 if at(&emitter, time).is_empty() {
                     continue;
                 }
@@ -395,7 +401,9 @@ fn sample_represents_all_particles_and_stays_the_same() {
         emitter.snapshot(time).sample(&mut particles);
         particles
     };
-    let (all, now, soon) = (at(&emitter, 9.0), few(9.0), few(9.0004));
+    let all = at(&emitter, 9.0);
+    let now = few(9.0);
+    let soon = few(9.0004);
     assert!((900..=1100).contains(&now.len()), "{}", now.len());
     let mean = |particles: &[Particle]| particles.iter().map(|p| p.position).sum::<Vec3>() / particles.len() as f32;
     assert!((mean(&all) - mean(&now)).length() < 0.1);

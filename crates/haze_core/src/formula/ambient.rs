@@ -47,7 +47,8 @@ mod tests {
             let [above, below] = [Vec3::Y, Vec3::NEG_Y].map(|axis| lambert(hemisphere_coordinate(normal, axis)));
             assert!((above + below - 1.0).abs() < 1e-6, "{normal}");
             // Six-way maps of a Lambert surface with this normal.
-            let (positive, negative) = (normal.max(Vec3::ZERO), (-normal).max(Vec3::ZERO));
+            let positive = normal.max(Vec3::ZERO);
+            let negative = (-normal).max(Vec3::ZERO);
             let axis = Vec3::Y;
             let sum = six_way_hemisphere(positive, negative, axis) + six_way_hemisphere(positive, negative, -axis);
             assert!((sum - (positive + negative).element_sum()).abs() < 1e-6);

@@ -34,11 +34,13 @@ impl DepthConvention {
     pub fn from_clip_from_view(clip_from_view: &Mat4) -> Result<Self, FieldError> {
         let orthographic = clip_from_view.z_axis.w == 0.0;
         // In f64, because the far plane depends on the last bits of a matrix entry close to 1.
-        let (scale, offset) = (f64::from(clip_from_view.z_axis.z), f64::from(clip_from_view.w_axis.z));
+        let scale = f64::from(clip_from_view.z_axis.z);
+        let offset = f64::from(clip_from_view.w_axis.z);
         let view_depth_at = |ndc_depth: f64| {
             if orthographic { (offset - ndc_depth) / scale } else { offset / (ndc_depth + scale) }
         };
-        let (at_zero, at_one) = (view_depth_at(0.0), view_depth_at(1.0));
+        let at_zero = view_depth_at(0.0);
+        let at_one = view_depth_at(1.0);
         let reversed = if orthographic { at_zero > at_one } else { at_zero.abs() > at_one.abs() };
         let (near, far) = if reversed { (at_one, at_zero) } else { (at_zero, at_one) };
         // Rounding may leave a far plane at infinity or just beyond, which is at a large negative distance.
@@ -60,7 +62,8 @@ impl DepthConvention {
 /// - infinite: the limit f → ∞, so z = n / (1 − d), or n / d' when reversed
 /// - orthographic: z = n + d·(f − n), or f − d'·(f − n) when reversed
 pub fn depth_coefficients(convention: &DepthConvention) -> Vec4 {
-    let (n, f) = (f64::from(convention.near), f64::from(convention.far));
+    let n = f64::from(convention.near);
+    let f = f64::from(convention.far);
     let [a, b, c, d] = match (convention.orthographic, convention.reversed) {
         (false, false) if f.is_infinite() => [n, 0.0, 1.0, -1.0],
         (false, true) if f.is_infinite() => [n, 0.0, 0.0, 1.0],
@@ -114,7 +117,8 @@ mod tests {
     /// Projections of every convention. Reversed means depth' = 1 − depth.
     fn projections() -> [Mat4; 6] {
         let reverse = Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, -1.0, 0.0), Vec4::new(0.0, 0.0, 1.0, 1.0));
-        let (standard, flat) = (perspective(1.0, 1.5, 0.25, 60.0), orthographic(-4.0, 4.0, -3.0, 3.0, 0.25, 60.0));
+        let standard = perspective(1.0, 1.5, 0.25, 60.0);
+        let flat = orthographic(-4.0, 4.0, -3.0, 3.0, 0.25, 60.0);
         [
             standard,
             reverse * standard,

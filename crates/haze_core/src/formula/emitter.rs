@@ -39,7 +39,8 @@ pub fn birth_offset(emitter: &EmitterUniform, random: Vec3) -> Vec3 {
 /// Seconds from the interval of the first birth to that of another.
 pub fn birth_delay(emitter: &EmitterUniform, number: u32) -> f32 {
     let place = emitter.first_in_pulse + number;
-    let (pulse, in_pulse) = (place / emitter.per_pulse, place % emitter.per_pulse);
+    let pulse = place / emitter.per_pulse;
+    let in_pulse = place % emitter.per_pulse;
     let births = i64::from(in_pulse) - i64::from(emitter.first_in_pulse);
     pulse as f32 * emitter.period + births as f32 / emitter.rate
 }
@@ -68,7 +69,11 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> EmittedParticl
 pub fn emitted_particle_on(emitter: &EmitterUniform, number: u32, reached: &mut FlowStep) -> EmittedParticle {
     let index = emitter.first.wrapping_add(number);
     let random = |salt| birth_random(index, salt, emitter.seed);
-    let (life, place, motion, look, color) = (random(0), random(1), random(2), random(3), random(4));
+    let life = random(0);
+    let place = random(1);
+    let motion = random(2);
+    let look = random(3);
+    let color = random(4);
     // Births are jittered within their interval. Without that a fast emitter would pulse.
     let seconds = emitter.since_first - birth_delay(emitter, number) - life.y / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));

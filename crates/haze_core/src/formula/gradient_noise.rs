@@ -43,7 +43,9 @@ fn lattice_noise(position: Vec3, lattice_gradient: impl Fn(IVec3) -> Vec3) -> No
         let pick = |axis: usize| {
             if offset[axis] == 1 { (fade[axis], slope[axis]) } else { (1.0 - fade[axis], -slope[axis]) }
         };
-        let ((wx, sx), (wy, sy), (wz, sz)) = (pick(0), pick(1), pick(2));
+        let (wx, sx) = pick(0);
+        let (wy, sy) = pick(1);
+        let (wz, sz) = pick(2);
         let weight = wx * wy * wz;
         value += weight * dot;
         gradient += lattice * weight + Vec3::new(sx * wy * wz, wx * sy * wz, wx * wy * sz) * dot;
@@ -172,7 +174,8 @@ mod tests {
     #[test]
     fn tiling_noise_repeats() {
         for p in points() {
-            let (here, there) = (tiling_noise(p, 4, 2), tiling_noise(p + Vec3::new(4.0, -8.0, 12.0), 4, 2));
+            let here = tiling_noise(p, 4, 2);
+            let there = tiling_noise(p + Vec3::new(4.0, -8.0, 12.0), 4, 2);
             assert!((here.value - there.value).abs() < 1e-4 && here.gradient.distance(there.gradient) < 1e-3, "{p}");
         }
     }

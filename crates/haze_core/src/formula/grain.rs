@@ -22,9 +22,11 @@ pub fn octave_share(fineness: f32) -> f32 {
 /// of the flipbook's loop that has passed. `tiles`: of the noise, across the sprite. `fineness`: of the first octave, as
 /// above.
 pub fn sample_grain(noise: &impl Texture3d, uv: Vec2, phase: f32, tiles: f32, fineness: f32, octaves: u32) -> Vec3 {
-    let (mut sum, mut total) = (Vec4::ZERO, 0.0);
+    let mut sum = Vec4::ZERO;
+    let mut total = 0.0;
     let mut place = (GRAIN_RIGHT * uv.x + GRAIN_DOWN * uv.y) * tiles + phase;
-    let (mut weight, mut fine) = (1.0, fineness);
+    let mut weight = 1.0;
+    let mut fine = fineness;
     for _ in 0..octaves {
         let share = weight * octave_share(fine);
         sum += sample_noise_volume(noise, place) * share;

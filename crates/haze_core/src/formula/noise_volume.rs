@@ -26,7 +26,10 @@ pub fn sample_noise_volume(noise: &impl Texture3d, coordinate: Vec3) -> Vec4 {
 /// Sums octaves of the noise: inverse density gradient (−1..1) and density. Each has three times the frequency and half the weight of the one before; weights sum to
 /// 1. (MS)
 pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u32) -> Vec4 {
-    let (mut sum, mut total, mut weight, mut place) = (Vec4::ZERO, 0.0, 1.0, coordinate);
+    let mut sum = Vec4::ZERO;
+    let mut total = 0.0;
+    let mut weight = 1.0;
+    let mut place = coordinate;
     for _ in 0..octaves {
         sum += sample_noise_volume(noise, place) * weight;
         total += weight;

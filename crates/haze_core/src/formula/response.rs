@@ -12,7 +12,8 @@ use crate::settings::RampFilter;
 pub fn diffuse_response<T: Texture2d>(
     [ramp, ramp_from_behind]: [&T; 2],
     filter: RampFilter,
-    (normal, to_light): (Vec3, Vec3),
+    normal: Vec3,
+    to_light: Vec3,
     covered: f32,
     against: f32,
 ) -> Vec3 {

@@ -12,8 +12,10 @@ pub fn grid_entry(light: Vec4, from: Vec3, size: Vec3) -> Vec4 {
     let distance = to_light.dot(to_light).max(1.0e-8).sqrt();
     let direction = to_light / distance;
     let steady = Vec3::select(direction.abs().cmplt(Vec3::splat(1.0e-6)), Vec3::splat(1.0e-6), direction);
-    let (low, high) = (-from / steady, (size - from) / steady);
-    let (first, last) = (low.min(high), low.max(high));
+    let low = -from / steady;
+    let high = (size - from) / steady;
+    let first = low.min(high);
+    let last = low.max(high);
     let enter = first.x.max(first.y).max(first.z).max(0.0);
     let leave = last.x.min(last.y).min(last.z);
     let reach = if light.w > 0.5 { leave } else { leave.min(distance) };

@@ -61,7 +61,8 @@ pub fn tilted_six_way(light: SixWay, tilt: Vec2) -> SixWay {
 /// [`six_way_response`] of the unrotated sprite to light from that side.
 pub fn rotate_six_way(positive: Vec3, negative: Vec3, rotation: Vec2) -> SixWay {
     let squares = rotation * rotation;
-    let (p, n) = (positive.truncate(), negative.truncate());
+    let p = positive.truncate();
+    let n = negative.truncate();
     let (along, against) = if rotation.x > 0.0 { (p, n) } else { (n, p) };
     let (up, down) = if rotation.y > 0.0 { (p.yx(), n.yx()) } else { (n.yx(), p.yx()) };
     SixWay {
@@ -84,11 +85,13 @@ mod tests {
 
     #[test]
     fn rotating_the_sprite_equals_rotating_the_light_the_other_way() {
-        let (positive, negative) = (Vec3::new(0.1, 0.5, 0.3), Vec3::new(0.9, 0.2, 0.7));
+        let positive = Vec3::new(0.1, 0.5, 0.3);
+        let negative = Vec3::new(0.9, 0.2, 0.7);
         for step in 0..32 {
             let rotation = Vec2::from_angle(step as f32 * 0.37);
             let turned = rotate_six_way(positive, negative, rotation);
-            let (x, y) = (Vec3::new(rotation.x, -rotation.y, 0.0), Vec3::new(rotation.y, rotation.x, 0.0));
+            let x = Vec3::new(rotation.x, -rotation.y, 0.0);
+            let y = Vec3::new(rotation.y, rotation.x, 0.0);
             let response = |to_light| six_way_response(positive, negative, to_light, 0.0);
             let expected =
                 [(x, turned.positive.x), (y, turned.positive.y), (-x, turned.negative.x), (-y, turned.negative.y)];

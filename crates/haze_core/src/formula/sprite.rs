@@ -65,7 +65,8 @@ pub fn load_sprite_bilinear(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, 
     let base = texel.floor();
     let fraction = texel - base;
     let limit = |texel: IVec2| texel.clamp(IVec2::ZERO, IVec2::splat(size - 1)).as_uvec2();
-    let (low, high) = (limit(base.as_ivec2()), limit(base.as_ivec2() + 1));
+    let low = limit(base.as_ivec2());
+    let high = limit(base.as_ivec2() + 1);
     let load = |x, y| sprite.load(UVec2::new(x, y), frame as u32, level);
     let top = load(low.x, low.y).lerp(load(high.x, low.y), fraction.x);
     let bottom = load(low.x, high.y).lerp(load(high.x, high.y), fraction.x);
@@ -113,7 +114,8 @@ pub fn detail_from_texel(texel: Vec3) -> Vec3 {
 /// Samples the detail map between two frames. The motion is the first frame's.
 pub fn sample_detail(detail: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, lod: f32) -> Vec3 {
     let sample = |frame| detail_from_texel(sample_sprite_frame(detail, uv, frame, lod).xyz());
-    let (first, second) = (sample(frames.first), sample(frames.second));
+    let first = sample(frames.first);
+    let second = sample(frames.second);
     Vec3::new(first.x + (second.x - first.x) * frames.blend, first.y, first.z)
 }
 

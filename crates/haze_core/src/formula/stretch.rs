@@ -71,7 +71,8 @@ mod tests {
         let center = Vec3::new(0.0, 0.0, -5.0);
         let of = |radius| sprite_stretch(center, Vec3::X * 3.0, 0.1, radius, 100.0, 0.0);
         let area = |radius: f32| radius * radius / (1.0 - of(radius).length_squared());
-        let (radius, wide) = (0.01, 0.05);
+        let radius = 0.01;
+        let wide = 0.05;
         let kept = widened_share(radius, wide, of(radius), of(wide));
         assert!((area(wide) * kept - area(radius)).abs() < 1.0e-3 * area(radius));
         assert!((widened_share(wide, wide, of(wide), of(wide)) - 1.0).abs() < 1.0e-6);

@@ -100,7 +100,8 @@ mod tests {
     fn a_lattice_that_begins_elsewhere_is_the_noise_there() {
         for p in points(200) {
             let at = skewed(p);
-            let (moved, first) = (at - Vec3::new(3.0, -40.0, 7.0), IVec3::new(3, -40, 7));
+            let moved = at - Vec3::new(3.0, -40.0, 7.0);
+            let first = IVec3::new(3, -40, 7);
             let error = (swirl_noise(moved, first, Vec2::X, 5) - swirl_noise(at, IVec3::ZERO, Vec2::X, 5)).length();
             assert!(error < 2.0e-3, "{p}: {error}");
         }

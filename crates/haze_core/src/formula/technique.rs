@@ -91,7 +91,8 @@ pub fn sphere_axis_bounds(center: Vec2, radius: f32, near: f32) -> Vec2 {
     let tangent_squared = center.length_squared() - radius * radius;
     if tangent_squared > 0.0 {
         let distance = center.length();
-        let (cosine, sine) = (tangent_squared.sqrt() / distance, radius / distance);
+        let cosine = tangent_squared.sqrt() / distance;
+        let sine = radius / distance;
         let lower = Vec2::new(cosine * center.x - sine * center.y, cosine * center.y + sine * center.x);
         let upper = Vec2::new(cosine * center.x + sine * center.y, cosine * center.y - sine * center.x);
         if !clipped || lower.y * cosine > near {

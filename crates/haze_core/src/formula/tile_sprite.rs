@@ -40,8 +40,17 @@ pub fn is_filled(cells: UVec2, uv: Vec2) -> bool {
 
 /// True if any cell between two corners, in uv, is filled.
 pub fn is_filled_between(cells: UVec2, low: Vec2, high: Vec2) -> bool {
-    let (first, last) = (cell_at(low), cell_at(high));
+    let first = cell_at(low);
+    let last = cell_at(high);
     (first.y..=last.y).any(|y| (first.x..=last.x).any(|x| is_cell_filled(cells, UVec2::new(x, y))))
+}
+
+/// True if both corners, in uv, are inside the image and all cells between them are filled.
+pub fn is_full_between(cells: UVec2, low: Vec2, high: Vec2) -> bool {
+    let first = cell_at(low);
+    let last = cell_at(high);
+    let is_inside = low.cmpge(Vec2::ZERO).all() && high.cmplt(Vec2::ONE).all();
+    is_inside && (first.y..=last.y).all(|y| (first.x..=last.x).all(|x| is_cell_filled(cells, UVec2::new(x, y))))
 }
 
 /// A word whose lowest `count` bytes are set, up to four.
@@ -58,7 +67,8 @@ pub fn uv_in_square(uv_from_texels: Vec4, center: Vec2, texel: Vec2) -> Vec2 {
 /// Half the sides of the uv box that contains a rectangle of texels with half sides `half_size`, with a margin of 0.01
 /// texels for rounding.
 pub fn reach_in_square(uv_from_texels: Vec4, half_size: Vec2) -> Vec2 {
-    let (matrix, half_size) = (uv_from_texels.abs(), half_size + 0.01);
+    let matrix = uv_from_texels.abs();
+    let half_size = half_size + 0.01;
     Vec2::new(matrix.xy().dot(half_size), matrix.zw().dot(half_size))
 }
 

@@ -80,12 +80,14 @@ impl EmitterSnapshot {
     pub fn bounds(&self, extent: SpriteExtent) -> Bounds {
         let e = &self.uniform;
         let mut bounds = Bounds::EMPTY;
-        let (longest, shortest) = (e.lifetime * (1.0 + e.lifetime_spread), e.lifetime * (1.0 - e.lifetime_spread));
+        let longest = e.lifetime * (1.0 + e.lifetime_spread);
+        let shortest = e.lifetime * (1.0 - e.lifetime_spread);
         let oldest = e.since_first.min(longest);
         // A particle that bounces comes back to where younger ones are; one that is slower than others stays there.
         let lags = e.bounce > 0.0 || e.has_curves != 0;
         let highest = |curve: &CurvePoints| (0..MAX_CURVE_POINTS).map(|i| curve_point(curve, i).y).fold(0.0, f32::max);
-        let (fastest, largest) = (highest(&e.speed_curve), highest(&e.size_curve));
+        let fastest = highest(&e.speed_curve);
+        let largest = highest(&e.size_curve);
         let youngest = if lags { 0.0 } else { (e.since_first - birth_delay(e, e.count)).max(0.0) };
         if e.count == 0 || oldest < youngest {
             return bounds;
@@ -95,9 +97,11 @@ impl EmitterSnapshot {
         let born = e.extent.max(disc(e.disc_x, e.extent.x) + disc(e.disc_z, e.extent.z));
         let at = |step: u32| youngest + (oldest - youngest) * step as f32 / AGE_INTERVALS as f32;
         for step in 0..AGE_INTERVALS {
-            let (early, late) = (at(step), at(step + 1));
+            let early = at(step);
+            let late = at(step + 1);
             let flown = late * fastest;
-            let (reached_early, reached_late) = (drag_integrals(e.drag, early), drag_integrals(e.drag, flown));
+            let reached_early = drag_integrals(e.drag, early);
+            let reached_late = drag_integrals(e.drag, flown);
             // The factors only grow with age, so the ends of an interval bound them.
             let ways = [
                 (e.velocity, reached_early.x, reached_late.x),
@@ -106,7 +110,8 @@ impl EmitterSnapshot {
             ];
             let (mut low, mut high) =
                 ways.into_iter().fold((e.position, e.position), |(low, high), (way, from, to)| {
-                    let (from, to) = (if lags { Vec3::ZERO } else { way * from }, way * to);
+                    let from = if lags { Vec3::ZERO } else { way * from };
+                    let to = way * to;
                     (low + from.min(to), high + from.max(to))
                 });
             let mut turning = 0.0;

@@ -51,7 +51,9 @@ mod tests {
     #[test]
     fn extent_contains_stretched_sprites() {
         let mut settings = Settings::default();
-        (settings.sprite.size, settings.sprite.stretch, settings.sprite.stretch_limit) = (2.0, 0.1, 6.0);
+        settings.sprite.size = 2.0;
+        settings.sprite.stretch = 0.1;
+        settings.sprite.stretch_limit = 6.0;
         let extent = SpriteExtent::from_settings(&settings);
         let velocity = Vec3::new(3.0, -4.0, 2.0);
         for depth in [0.2_f32, 2.0, 30.0] {

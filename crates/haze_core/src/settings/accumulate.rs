@@ -62,11 +62,11 @@ choice! {
 choice! {
     /// Choice of the target's scale. `docs/upsampling.md` has the error of each scale.
     ScaleMode {
-        /// `scale`, as it is.
+        /// `downscale`, as it is.
         #[default]
         Fixed = "fixed",
         /// The coarsest from 1 to 4 whose predicted error is at most `max_error`: coarse for large soft smoke, fine for small
-        /// and detailed smoke. It changes with the view. Particles in a host's buffer keep `scale`.
+        /// and detailed smoke. It changes with the view. Particles in a host's buffer keep `downscale`.
         Auto = "auto",
     }
 }
@@ -125,7 +125,7 @@ choice! {
         Auto = "auto",
         /// Once per pixel of the picture, from the upsampled normal and amount.
         Full = "full",
-        /// Once per texel of the target, then upsampled: a light costs `scale`² times less. Hard steps in a diffuse
+        /// Once per texel of the target, then upsampled: a light costs `downscale`² times less. Hard steps in a diffuse
         /// ramp become soft.
         Target = "target",
     }
@@ -162,13 +162,13 @@ settings! {
         layers: Traversal = Traversal::default(), choice;
         /// Pixels of the picture per texel of the target, along each side. Higher: less sharp, and cheaper by the
         /// square.
-        scale: u32 = 2, integer(1..=MAX_SCALE, "pixels");
-        /// Choice of the scale: `scale`, or by the detail of the smoke.
+        downscale: u32 = 2, integer(1..=MAX_SCALE, "pixels");
+        /// Choice of the scale: `downscale`, or by the detail of the smoke.
         scale_mode: ScaleMode = ScaleMode::default(), choice;
         /// Largest predicted error with the scale mode `auto`: root mean square over the smoke, of the amount 1. Higher:
         /// coarser and cheaper.
         max_error: f32 = 0.005, number(0.001..=0.1, "");
-        /// Most texels along the picture's longer side. Lower raises `scale` on large pictures.
+        /// Most texels along the picture's longer side. Lower raises `downscale` on large pictures.
         max_side: u32 = 4096, integer(16..=16384, "texels");
         /// Scene depth that sprites are compared with.
         depth_source: DepthSource = DepthSource::default(), choice;
@@ -198,12 +198,13 @@ impl Accumulate {
 
     /// Sets a fixed scale, pixels per texel.
     pub fn fix_scale(&mut self, scale: u32) {
-        (self.scale, self.scale_mode) = (scale, ScaleMode::Fixed);
+        self.downscale = scale;
+        self.scale_mode = ScaleMode::Fixed;
     }
 
-    /// Fixed divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.
+    /// Fixed divisor in use: `downscale`, raised until the picture's longer side has at most `max_side` texels.
     pub fn effective_scale(&self, picture: UVec2) -> u32 {
-        self.scale.max(self.finest_scale(picture))
+        self.downscale.max(self.finest_scale(picture))
     }
 
     /// Smallest divisor at which the picture's longer side has at most `max_side` texels.
@@ -218,8 +219,9 @@ mod tests {
 
     #[test]
     fn max_side_raises_the_scale() {
-        let scale =
-            |scale, max_side, picture| Accumulate { scale, max_side, ..Accumulate::default() }.effective_scale(picture);
+        let scale = |scale, max_side, picture| {
+            Accumulate { downscale: scale, max_side, ..Accumulate::default() }.effective_scale(picture)
+        };
         assert_eq!(scale(2, 4096, UVec2::new(1920, 1080)), 2);
         assert_eq!(scale(2, 480, UVec2::new(1920, 1080)), 4);
         assert_eq!(scale(1, 1, UVec2::new(7, 3)), 7);

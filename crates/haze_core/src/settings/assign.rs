@@ -3,19 +3,21 @@
 use std::collections::BTreeSet;
 
 use super::fields::Fields;
+use super::old_names::current_path;
 use super::traversal::{FieldRef, PathStep, for_each_field};
 use crate::error::{FieldError, one_line};
 
 /// Sets the fields that `path` names to `value`. Returns their name without list indices.
 ///
-/// `systems[1].settings.accumulate.scale` is one field, `systems.settings.accumulate.scale` is that field of every
-/// system. So is `accumulate.scale`, or any other ending that belongs to one field only. A value is written as in a
+/// `systems[1].settings.accumulate.downscale` is one field, `systems.settings.accumulate.downscale` is that field of every
+/// system. So is `accumulate.downscale`, or any other ending that belongs to one field only. A value is written as in a
 /// preset, without quotes; three numbers are written `1,2,3`. Ranges are not checked: validate the settings afterwards.
 ///
 /// # Errors
 /// Fails if no field has this name, if several have it, or if the value is of another kind. Nothing is changed then.
 pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -> Result<String, FieldError> {
-    let wanted = parse_path(path)?;
+    let current = current_path(path);
+    let wanted = parse_path(&current)?;
     // Works on a copy, so that an error leaves nothing half changed.
     let mut changed = settings.clone();
     let mut names = Names::default();
@@ -41,7 +43,8 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
 
 /// True for the full path of a field that [`set_field`] sets, if `path` was given and `name` returned.
 pub fn is_field_named(field: &str, path: &str, name: &str) -> bool {
-    let steps = (parse_path(field), parse_path(path));
+    let path = current_path(path);
+    let steps = (parse_path(field), parse_path(&path));
     matches!(steps, (Ok(field), Ok(path)) if is_wanted(&field, &path) && names_without_indices(&field) == name)
 }
 

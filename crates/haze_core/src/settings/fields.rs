@@ -48,7 +48,7 @@ pub enum ImageRole {
 /// Kind of a file that is shown around the smoke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BackdropKind {
-    /// glTF scene.
+    /// Objects around the smoke.
     Scene,
     /// Panorama of the sky.
     Sky,
@@ -57,14 +57,6 @@ pub enum BackdropKind {
 impl BackdropKind {
     /// Every kind.
     pub const ALL: [Self; 2] = [Self::Scene, Self::Sky];
-
-    /// Endings of its files.
-    pub const fn endings(self) -> [&'static str; 2] {
-        match self {
-            Self::Scene => ["glb", "gltf"],
-            Self::Sky => ["hdr", "exr"],
-        }
-    }
 }
 
 /// Visitor of the fields of a settings struct. Fields that are not numbers are ignored by default.
@@ -183,7 +175,8 @@ impl Validator {
         }
         field.push_str(name);
         let space = if unit.is_empty() { "" } else { " " };
-        let (low, high) = (range.start().to_string(), range.end().to_string());
+        let low = range.start().to_string();
+        let high = range.end().to_string();
         let expected = if high == "inf" {
             format!("at least {low}{space}{unit}")
         } else {

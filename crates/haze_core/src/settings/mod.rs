@@ -8,9 +8,11 @@ mod accumulate;
 mod assign;
 pub mod choice;
 mod curve;
+mod debug;
 pub mod deserialize;
 pub mod fields;
 mod lighting;
+mod old_names;
 mod scale_budget;
 pub mod settings_macro;
 mod shadow;
@@ -28,16 +30,18 @@ pub use assign::set_field;
 pub use choice::choice;
 pub use choice::{Choice, ParseChoiceError};
 pub use curve::{Curve, CurveError, MAX_CURVE_POINTS};
+pub use debug::DebugSettings;
 pub use fields::{BackdropKind, FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Ambient, Backlight, CoverageMode, Diffuse, DiffuseMode, Fire, Lighting, RampFilter, SoftScatter, SoftScatterMode,
     SpecularScatter,
 };
+pub use old_names::{current_path, rename_old_keys};
 pub use scale_budget::{Budget, ScaleBudget};
 pub use settings_macro::settings;
 pub use shadow::Shadow;
 pub use soft_fade::{FadeCurve, SoftFade};
-pub use technique::{Density, Grain, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
+pub use technique::{Exponential, Grain, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
 pub use traversal::write_field_path;
 pub use traversal::{FieldRef, FieldValue, PathStep, field_path, field_values, for_each_field};
 
@@ -84,6 +88,22 @@ choice! {
 }
 
 choice! {
+    /// Tonemap of the program's pictures: from the light of a scene, which has no limit, to the colors of a screen. The library
+    /// changes no color of a host.
+    Tonemap {
+        /// Contrast of film. Bright colors turn on their way to white: orange fire to yellow, violet to pink.
+        #[default]
+        Aces = "aces",
+        /// Contrast of film. Bright colors pale and keep their hue: for magic in blue, cyan or violet. Red flames turn to salmon.
+        KeepHue = "keep_hue",
+        /// Soft contrast, and colors that pale slowly.
+        Agx = "agx",
+        /// Colors as they were painted, up to four fifths of white; brighter ones pale and keep their hue.
+        Neutral = "neutral",
+    }
+}
+
+choice! {
     /// Debug view: the stage of the shading that is shown. OTEE's "Shade tree".
     DebugView {
         /// Lit smoke over the scene.
@@ -99,11 +119,13 @@ choice! {
         SpecularScatter = "specular_scatter",
         /// Decoded normals, n/2 + 1/2.
         Normals = "normals",
-        /// Accumulated amount, as gray.
+        /// Accumulated amount of all systems, as white smoke: gray over black.
         Amount = "amount",
-        /// Sprite layers per pixel: black 0, blue 4, green 8, yellow 16, red 32, white 64 and more.
+        /// Sprite layers per pixel, of the system in front where several have smoke: black 0, blue 4, green 8, yellow 16,
+        /// red 32, white 64 and more.
         Overdraw = "overdraw",
-        /// Depth that sprites are compared with: white at the near side of the box, black beyond the far side.
+        /// Depth that sprites are compared with: white at the near side of the box, black beyond the far side. Of the system
+        /// in front where several boxes overlap.
         ReducedDepth = "reduced_depth",
         /// Shares of the first three lights with shadow that reach the smoke, in red, green and blue: what comes through other
         /// smoke, 2^(-optical depth), and past the scene.
@@ -164,8 +186,8 @@ settings! {
         soft_fade: SoftFade = SoftFade::default(), group;
         /// Settings of the technique of that name.
         spherical_billboard: SphericalBillboard = SphericalBillboard::default(), group;
-        /// Settings of the technique of that name.
-        density: Density = Density::default(), group;
+        /// Settings of the technique `density`.
+        exponential: Exponential = Exponential::default(), group;
         /// Settings of the techniques of that name.
         volumetric: Volumetric = Volumetric::default(), group;
         /// Diffuse light, by normal.
@@ -180,6 +202,8 @@ settings! {
         soft_scatter: SoftScatter = SoftScatter::default(), group;
         /// Glow around lights behind the smoke.
         specular_scatter: SpecularScatter = SpecularScatter::default(), group;
+        /// Settings to debug smoke, and to measure it.
+        debug: DebugSettings = DebugSettings::default(), group;
     }
 }
 
@@ -191,7 +215,7 @@ impl Settings {
 
     /// True if sprites are lit by six-way maps.
     pub fn is_six_way(&self) -> bool {
-        self.lighting == Lighting::SixWay && !self.technique.is_volumetric() && !self.sprite.debug_sprite
+        self.lighting == Lighting::SixWay && !self.technique.is_volumetric() && !self.debug.checkerboard
     }
 
     /// True if smoke can shade the diffuse light of this system: each light has a lookup of its own.
@@ -204,8 +228,8 @@ impl Settings {
         self.shadow.strength > 0.0 && self.can_receive_shadow()
     }
 
-    /// True if the smoke is lit at its mean depth, in the shadow of the scene.
-    pub fn lights_by_depth(&self) -> bool {
+    /// True if shadow falls on the smoke at its mean depth: that of the scene, and that of smoke from the fourth light on.
+    pub fn receives_shadow_by_depth(&self) -> bool {
         self.shadow.by_depth && self.receives_shadow()
     }
 
@@ -222,7 +246,7 @@ impl Settings {
 
     /// True if smoke shades ambient light.
     pub fn shades_ambient(&self) -> bool {
-        self.has_ambient() && self.lights_by_depth()
+        self.has_ambient() && self.receives_shadow_by_depth()
     }
 
     /// True if the smoke gives light of its own.
@@ -244,7 +268,7 @@ impl Settings {
     pub fn grain_octaves(&self) -> u32 {
         let Grain { erosion, dissolve, bump, octaves, .. } = self.grain;
         let is_shown = erosion > 0.0 || dissolve > 0.0 || bump > 0.0;
-        let has_image = !self.technique.is_volumetric() && !self.sprite.debug_sprite;
+        let has_image = !self.technique.is_volumetric() && !self.debug.checkerboard;
         if is_shown && has_image { octaves } else { 0 }
     }
 
@@ -286,8 +310,8 @@ impl Settings {
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.order == BlendOrder::Weighted {
             return conflict("order", "\"weighted\"", "\"sorted\" with format \"rgba8unorm\", which cannot hold sums");
         }
-        if accumulate.depth_source == DepthSource::Host && accumulate.scale != 1 {
-            return conflict("scale", &accumulate.scale.to_string(), "1 with depth_source \"host\"");
+        if accumulate.depth_source == DepthSource::Host && accumulate.downscale != 1 {
+            return conflict("downscale", &accumulate.downscale.to_string(), "1 with depth_source \"host\"");
         }
         Ok(())
     }
@@ -323,8 +347,8 @@ mod tests {
         assert_eq!(settings.validate(String::new).unwrap_err().field, "accumulate.order");
         settings.accumulate.order = BlendOrder::Sorted;
         settings.accumulate.depth_source = DepthSource::Host;
-        assert_eq!(settings.validate(String::new).unwrap_err().field, "accumulate.scale");
-        settings.accumulate.scale = 1;
+        assert_eq!(settings.validate(String::new).unwrap_err().field, "accumulate.downscale");
+        settings.accumulate.downscale = 1;
         settings.validate(String::new).unwrap();
     }
 }

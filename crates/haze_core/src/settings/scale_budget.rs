@@ -37,7 +37,7 @@ const BLOCK: u32 = 64;
 const FINER_INTERVAL: u32 = 2;
 const MAX_FINER_INTERVAL: u32 = 16;
 
-/// Picks [`Accumulate::scale`](super::Accumulate::scale) from measured GPU time, so that a [`Budget`] is kept. Plain
+/// Picks [`Accumulate::downscale`](super::Accumulate::downscale) from measured GPU time, so that a [`Budget`] is kept. Plain
 /// data, without a clock or a device.
 ///
 /// A scale that is far too slow becomes coarser within a few measurements, one that is a little too slow within two
@@ -192,8 +192,10 @@ impl ScaleBudget {
         let (min, max) = self.limits();
         let scale = self.scale.clamp(min, max);
         if scale != self.scale {
-            (self.scale, self.before, self.is_finer, self.statistics) =
-                (scale, None, false, ScaleStatistics::default());
+            self.scale = scale;
+            self.before = None;
+            self.is_finer = false;
+            self.statistics = ScaleStatistics::default();
         }
     }
 }
@@ -211,12 +213,15 @@ impl ScaleStatistics {
 
     /// Takes a median. Returns the mean of the block if this one completes it.
     fn block(&mut self, median: f32) -> Option<f32> {
-        (self.sum, self.count) = (self.sum + median, self.count + 1);
+        self.sum += median;
+        self.count += 1;
         if self.count < BLOCK {
             return None;
         }
         self.mean = self.sum / BLOCK as f32;
-        (self.sum, self.count, self.blocks) = (0.0, 0, self.blocks.saturating_add(1));
+        self.sum = 0.0;
+        self.count = 0;
+        self.blocks = self.blocks.saturating_add(1);
         self.peak = self.peak.max(self.mean);
         Some(self.mean)
     }

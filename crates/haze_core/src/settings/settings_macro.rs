@@ -17,15 +17,22 @@ macro_rules! settings {
 
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let fields = &[$(stringify!($field)),+];
-                $crate::settings::deserialize::struct_by_name(deserializer, stringify!($name), fields)
+                $crate::settings::deserialize::struct_by_name(deserializer)
             }
         }
 
         impl<'de> $crate::settings::deserialize::FieldsByName<'de> for $name {
-            fn read_field<A: serde::de::MapAccess<'de>>(&mut self, name: &str, map: &mut A) -> Result<(), A::Error> {
+            const NAME: &'static str = stringify!($name);
+            const FIELDS: &'static [&'static str] = &[$(stringify!($field)),+];
+
+            fn read_field<A: serde::de::MapAccess<'de>>(
+                &mut self,
+                name: &str,
+                map: &mut A,
+                _moved: &mut $crate::settings::deserialize::MovedFields,
+            ) -> Result<(), A::Error> {
                 match name {
-                    $(stringify!($field) => self.$field = $crate::settings::deserialize::value(map)?,)+
+                    $(stringify!($field) => self.$field = $crate::settings::settings_macro::read!(map, _moved, $kind)?,)+
                     _ => {}
                 }
                 Ok(())
@@ -50,6 +57,18 @@ macro_rules! settings {
     };
 }
 pub use settings;
+
+/// Value of one row from a file.
+#[macro_export]
+macro_rules! read {
+    ($map:ident, $moved:ident, group) => {
+        $crate::settings::deserialize::group($map, $moved)
+    };
+    ($map:ident, $moved:ident, $kind:ident) => {
+        $crate::settings::deserialize::value($map)
+    };
+}
+pub use read;
 
 /// Heading before a row, or `None`.
 #[macro_export]

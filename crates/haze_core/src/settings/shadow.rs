@@ -19,9 +19,10 @@ settings! {
         /// The fourth and further lights shade smoke only with `by_depth`: their shadow is looked up at the mean depth of
         /// the smoke at each pixel, that of the first three at each sprite.
         lights: u32 = 3, integer(1..=15, "");
-        /// Lights the smoke at its mean depth at each pixel, in place of one plane for all pixels, and in the shadow of the
-        /// scene: beams stand in dust, a lamp inside the smoke lights what is near it. The scene's shadow comes from a host's
-        /// shadow maps, `FrameInput::shadow_maps`. One more texture is accumulated.
+        /// Lights the smoke at its mean depth at each pixel, in place of one plane for all pixels: a lamp inside the smoke
+        /// lights what is near it. At a `strength` above 0, the scene shades the smoke too, and beams stand in dust: its shadow
+        /// comes from a host's shadow maps, `FrameInput::shadow_maps`. One more texture is accumulated, at any `strength`: a
+        /// host's own passes may read the depth of the smoke there.
         by_depth: bool = false, flag;
         /// Mix of full light and the shadow that the smoke casts on the scene, tinted by the shadow ramp. The first system of
         /// a frame that casts any decides it. The demo scene shows it; a host's renderer does if its shaders call

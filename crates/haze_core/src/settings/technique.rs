@@ -81,9 +81,6 @@ settings! {
         size: f32 = 1.0, number(0.0..=100.0, "");
         /// Source of the flipbook frame: time, age, or none.
         animation: SpriteAnimation = SpriteAnimation::default(), choice;
-        /// Holds every sprite at the frame it was born with, and the noise of volumetric sprites at time 0. Frames come
-        /// from the emitter: a host with its own simulation has to stop them itself.
-        freeze_animation: bool = false, flag;
         /// Motion of texels between two frames, by the detail map. 0: frames are only blended. 1: texels move all the
         /// way.
         motion: f32 = 0.0, number(0.0..=1.0, "");
@@ -102,10 +99,6 @@ settings! {
         stretch_axis: Vec3 = Vec3::ZERO, vector(-1.0e3..=1.0e3, "m/s");
         /// Largest length of a stretched sprite, in lengths of the sprite at rest. Lower: fast sprites stay compact.
         stretch_limit: f32 = 4.0, number(1.0..=64.0, "");
-        /// Shows a checkerboard instead of the sprite. (NV)
-        debug_sprite: bool = false, flag;
-        /// Draws all sprites this many times, to measure the cost of fragments. (NV)
-        debug_loop: u32 = 1, integer(1..=10_000, "");
     }
 }
 
@@ -146,9 +139,9 @@ settings! {
 }
 
 settings! {
-    /// Settings of the technique `density`.
+    /// Settings of the technique `density`, whose amount nears 1 exponentially along the ray.
     #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct Density {
+    pub struct Exponential {
         /// Density of the slab where the sprite's alpha is 1. Higher: objects are hidden closer to its front.
         density: f32 = 1.0, number(0.0..=1000.0, "1/m");
     }

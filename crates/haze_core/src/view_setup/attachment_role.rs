@@ -40,7 +40,7 @@ impl AttachmentRole {
             // Six-way light has a sum of weights of its own.
             Self::Weights => settings.accumulate.sums_weights() && !settings.is_six_way(),
             Self::OpticalDepths => settings.receives_shadow(),
-            Self::Depth => settings.lights_by_depth(),
+            Self::Depth => settings.shadow.by_depth,
             Self::Heat => settings.burns(),
             Self::Tint => settings.is_tinted(),
         }
@@ -137,8 +137,10 @@ mod tests {
     #[test]
     fn a_fifth_texture_is_refused_by_name() {
         let mut settings = Settings::default();
-        (settings.shadow.strength, settings.shadow.by_depth) = (1.0, true);
-        (settings.fire.intensity, settings.sprite.age_color) = (1.0, 1.0);
+        settings.shadow.strength = 1.0;
+        settings.shadow.by_depth = true;
+        settings.fire.intensity = 1.0;
+        settings.sprite.age_color = 1.0;
         let error = AttachmentSet::validate(&settings, || "systems[1].settings".into()).unwrap_err().to_string();
         assert!(error.starts_with("systems[1].settings.sprite.age_color: 1 is not valid"), "{error}");
         settings.shadow.by_depth = false;

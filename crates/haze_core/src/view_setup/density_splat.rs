@@ -15,7 +15,8 @@ pub fn density_splat(system: &SystemUniform, particles: &[Particle], size: UVec3
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
         let in_view = system.view_from_particles.transform_point3(particle.position);
         let center = system.grid_from_view.transform_point3(in_view);
-        let (radius, depth) = (density_radius(system, particle), sprite_optical_depth(system, particle));
+        let radius = density_radius(system, particle);
+        let depth = sprite_optical_depth(system, particle);
         add_sprite(size, density, center, radius, depth);
     }
 }
@@ -47,7 +48,8 @@ fn add_sprite(size: UVec3, density: &mut [u64], center: Vec3, radius: f32, depth
     if radius.is_nan() || radius <= 0.0 {
         return;
     }
-    let (last, reach) = (size.as_vec3() - 1.0, bump_radius(radius));
+    let last = size.as_vec3() - 1.0;
+    let reach = bump_radius(radius);
     let low = (center - reach).floor().clamp(Vec3::ZERO, last).as_uvec3();
     let high = (center + reach).floor().clamp(Vec3::ZERO, last).as_uvec3();
     for z in low.z..=high.z {

@@ -40,18 +40,20 @@ pub struct ErrorPrediction {
 }
 
 impl ErrorPrediction {
-    /// Predicts the errors from `particles`. `each`: number of sprites that a particle stands for. `setup`: of the system, at any
-    /// scale.
+    /// Predicts the errors from `particles`. `particles_per_sample`: number of sprites that each stands for. `setup`: of the
+    /// system, at any scale.
     pub fn new(
         projector: &SpriteProjector<'_>,
         setup: &SystemSetup,
-        (particles, each): (&[Particle], u32),
+        particles: &[Particle],
+        particles_per_sample: u32,
         settings: &Settings,
         material: &MaterialInfo,
     ) -> Self {
         let step = particles.len().div_ceil(SAMPLE).max(1);
         let sample = particles.iter().step_by(step).filter(|particle: &&Particle| particle.is_visible());
-        let (mut areas, mut depths) = (0.0_f64, 0.0_f64);
+        let mut areas = 0.0_f64;
+        let mut depths = 0.0_f64;
         let mut squares = [[0.0_f64; 2]; COARSEST_AUTO_SCALE as usize];
         let grid = TexelGrid { origin: Vec2::ZERO, scale: 1.0, size: projector.view.size.as_uvec2() };
         for covered in projector.coverages(&grid, sample) {
@@ -65,7 +67,7 @@ impl ErrorPrediction {
             areas += covered.texels;
             depths += covered.texels * f64::from(optical_depth(covered.particle, settings));
         }
-        let count = step as f64 * f64::from(each);
+        let count = step as f64 * f64::from(particles_per_sample);
         let of_box = setup.pixels.as_dvec2().element_product().max(1.0);
         // Sprites at random places cover this much of their box.
         let covered = (of_box * (1.0 - (-count * areas / of_box).exp())).max(1.0e-9);
@@ -149,7 +151,8 @@ fn interpolation_error(fineness: f32) -> f32 {
 fn lost_grain(fineness: f32, scale: f32, settings: &Settings) -> f32 {
     let lost = |octave: i32| {
         let fine = fineness * 3.0_f32.powi(octave);
-        let (full, shown) = (octave_share(fine / scale), octave_share(fine));
+        let full = octave_share(fine / scale);
+        let shown = octave_share(fine);
         0.5_f32.powi(octave) * (full - shown + shown * interpolation_error(fine))
     };
     (0..settings.grain_octaves() as i32).map(|octave| lost(octave).powi(2)).sum::<f32>().sqrt()

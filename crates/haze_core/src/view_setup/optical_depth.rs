@@ -22,7 +22,8 @@ const ASSUMED_OPTICAL_DEPTH: f32 = 4.0;
 /// Computes the optical depth in front of each knot of `optical_depth_in_front`. `particles_per_sample`: number of
 /// sprites that each particle represents.
 pub(super) fn optical_depths(
-    (view, space): (&ViewGeometry, &ParticleSpace),
+    view: &ViewGeometry,
+    space: &ParticleSpace,
     particles: &[Particle],
     particles_per_sample: u32,
     settings: &Settings,
@@ -31,7 +32,9 @@ pub(super) fn optical_depths(
     let mut knots = [0.0_f32; OPTICAL_DEPTH_KNOTS];
     // Distributes optical depth times area of every sprite to the two nearest knots, and sums the first two moments of
     // the view-space positions.
-    let (mut total, mut sum, mut squares) = (0.0_f64, DVec2::ZERO, DVec2::ZERO);
+    let mut total = 0.0_f64;
+    let mut sum = DVec2::ZERO;
+    let mut squares = DVec2::ZERO;
     let step = particles.len().div_ceil(ENOUGH).max(1);
     let particles_per_sample = particles_per_sample as f32 * step as f32;
     for particle in particles.iter().step_by(step).filter(|particle| particle.is_visible()) {
@@ -84,7 +87,7 @@ fn center_optical_depth_and_radius(particle: &Particle, settings: &Settings) -> 
             let radius = radius * settings.spherical_billboard.radius;
             (2.0 * radius * settings.spherical_billboard.density * amount, radius)
         }
-        Technique::Density => (2.0 * radius * settings.density.density * amount, radius),
+        Technique::Density => (2.0 * radius * settings.exponential.density * amount, radius),
         // Half of the noise volume is empty.
         Technique::VolumetricHard | Technique::VolumetricSoft => {
             (radius * settings.volumetric.opacity * amount, radius)
@@ -122,7 +125,8 @@ mod tests {
         let particles: Vec<_> = walls.flat_map(|sprite| std::iter::repeat_n(sprite, copies)).collect();
         let extent = SmokeExtent { center: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
         let knots = optical_depths(
-            (&view, &ParticleSpace::new(&view, &Mat4::IDENTITY)),
+            &view,
+            &ParticleSpace::new(&view, &Mat4::IDENTITY),
             &particles,
             1,
             &Settings::default(),
@@ -137,7 +141,8 @@ mod tests {
         // Sprites are 0.5 m wide and 0.25 m apart: four overlap everywhere, each with 3/8 of its optical depth on
         // average.
         let of_wall = |amount| 4.0 * 0.375 * of_amount(amount);
-        let (first, second) = (of_wall(0.3), of_wall(0.6));
+        let first = of_wall(0.3);
+        let second = of_wall(0.6);
         let [before, between, behind, far_behind] = in_front_of([0.3, 0.6], [6.0, 10.0, 14.5, 40.0], 1);
         assert!(before.abs() < 0.01, "{before}");
         assert!((between / first - 1.0).abs() < 0.1, "{between} {first}");
@@ -148,7 +153,8 @@ mod tests {
     #[test]
     fn a_share_of_many_sprites_stands_for_all() {
         let depths = [6.0, 10.0, 14.5, 40.0];
-        let (one, many) = (in_front_of([0.003, 0.006], depths, 1), in_front_of([0.003, 0.006], depths, 200));
+        let one = in_front_of([0.003, 0.006], depths, 1);
+        let many = in_front_of([0.003, 0.006], depths, 200);
         for (one, many) in one.into_iter().zip(many) {
             assert!((many - 200.0 * one).abs() <= 1.0e-3 * many, "{many} {one}");
         }

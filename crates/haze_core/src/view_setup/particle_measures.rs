@@ -71,7 +71,8 @@ impl ParticleMeasures {
     /// Measures particles; replaces all earlier measures. `near`: view depth of the near plane, metres. `settings`: their
     /// sizes are in metres of the world.
     pub fn measure(&mut self, space: &ParticleSpace, near: f32, particles: &[Particle], settings: &Settings) {
-        let (extent, size) = (SpriteExtent::from_settings(settings), settings.sprite.size);
+        let extent = SpriteExtent::from_settings(settings);
+        let size = settings.sprite.size;
         let is_in_world = space.world_from_particles == Mat4::IDENTITY;
         let mut dense = WorldBox::EMPTY;
         self.order.clear();

@@ -102,7 +102,7 @@ impl ResolvedSettings {
 
     /// Number of blocks of lights whose shadow falls on the smoke.
     pub fn shadow_blocks(&self) -> u32 {
-        if self.lights_by_depth() { self.shadow.lights.div_ceil(LIGHTS_PER_BLOCK as u32) } else { 1 }
+        if self.receives_shadow_by_depth() { self.shadow.lights.div_ceil(LIGHTS_PER_BLOCK as u32) } else { 1 }
     }
 
     /// True if the smoke is lit once per texel, and a texel is larger than a pixel.
@@ -127,7 +127,7 @@ mod tests {
     fn auto_lights_texels_where_steps_of_ramps_are_small_for_the_scale() {
         let lights_per_texel = |step: f32, scale| {
             let mut settings = Settings::default();
-            settings.accumulate.scale = scale;
+            settings.accumulate.downscale = scale;
             let ramps = RampSteps { diffuse: step, ..RampSteps::default() };
             let resolved = ResolvedSettings::new(&settings, 1.0, UVec2::splat(512), 1.0, &ramps, Support::ALL);
             resolved.lights_per_texel()
@@ -141,7 +141,8 @@ mod tests {
     fn several_textures_are_sorted_where_they_cannot_be_blended_apart() {
         let order = |shadow: f32, independent_blend| {
             let mut settings = Settings::default();
-            (settings.accumulate.order, settings.shadow.strength) = (BlendOrder::Weighted, shadow);
+            settings.accumulate.order = BlendOrder::Weighted;
+            settings.shadow.strength = shadow;
             let support = Support { independent_blend, ..Support::ALL };
             ResolvedSettings::new(&settings, 1.0, UVec2::splat(512), 1.0, &RampSteps::default(), support).order()
         };

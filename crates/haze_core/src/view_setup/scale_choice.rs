@@ -47,10 +47,11 @@ impl ScaleChoice {
         }
         let max_error = settings.accumulate.max_error;
         let choice = match particles {
-            Some(particles) => {
+            Some((particles, particles_per_sample)) => {
                 let view = view.uniform(false);
                 let projector = setup.projector(&view, settings, trim);
-                let prediction = ErrorPrediction::new(&projector, setup, particles, settings, material);
+                let prediction =
+                    ErrorPrediction::new(&projector, setup, particles, particles_per_sample, settings, material);
                 Self::within(&prediction, settings.finest_scale, max_error, before)
             }
             None => Self { scale: settings.scale, error: None, coarser_error: None, max_error },

@@ -59,7 +59,8 @@ impl ExtentSums {
     /// Adds a visible particle at a view-space position, weighted by amount and area. `near`: view depth of the near
     /// plane, metres. `size` multiplies its radius.
     pub fn include(&mut self, near: f32, position: Vec3A, particle: &Particle, size: f32) {
-        let (radius, amount) = (particle.radius * size, particle.shown_amount());
+        let radius = particle.radius * size;
+        let amount = particle.shown_amount();
         let back = -position.z + radius;
         if amount < NEARLY_TRANSPARENT {
             self.faint_backs.push((back, amount));
@@ -73,7 +74,9 @@ impl ExtentSums {
         self.block_count += 1;
         if self.block_count == BLOCK {
             (self.positions, self.squares) = self.totals();
-            (self.block_positions, self.block_squares, self.block_count) = (Vec4::ZERO, 0.0, 0);
+            self.block_positions = Vec4::ZERO;
+            self.block_squares = 0.0;
+            self.block_count = 0;
         }
     }
 

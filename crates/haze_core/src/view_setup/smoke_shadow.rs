@@ -34,7 +34,8 @@ pub struct SmokeGrid {
 impl SmokeGrid {
     /// Grid around a box, with `resolution` cells along its longest side.
     fn new(bounds: &Bounds, resolution: u32) -> Self {
-        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let min = bounds.min.as_dvec3();
+        let max = bounds.max.as_dvec3();
         let longest = (max - min).max_element().max(MIN_EXTENT);
         let longest_extent = f64::from(resolution.max(1)) - 0.5;
         let cell = longest / longest_extent;
@@ -92,23 +93,28 @@ impl SmokeShadow {
     /// lights that have shadow maps. `systems`: of each system, the box of the smoke that casts shadow, and the settings.
     /// Returns `None` if no system receives shadow, or there is no smoke.
     pub fn new(
-        (view, up): (&ViewGeometry, Vec3),
+        view: &ViewGeometry,
+        up: Vec3,
         max_volume_depth: u32,
         lights: &[Light],
         is_mapped: impl Fn(usize) -> bool,
         systems: impl Iterator<Item = (Bounds, ResolvedSettings)>,
     ) -> Option<Self> {
         let mut around = Bounds::EMPTY;
-        let (mut resolution, mut on_scene, mut by_depth, mut has_openness) = (None, None, false, false);
+        let mut resolution = None;
+        let mut on_scene = None;
+        let mut by_depth = false;
+        let mut has_openness = false;
         let mut count = 0;
         for (index, (bounds, settings)) in systems.enumerate() {
             if !bounds.is_empty() {
-                (around.min, around.max) = (around.min.min(bounds.min), around.max.max(bounds.max));
+                around.min = around.min.min(bounds.min);
+                around.max = around.max.max(bounds.max);
             }
             if settings.receives_shadow() {
                 resolution = resolution.max(Some(settings.shadow.resolution));
                 count = count.max(settings.shadow.lights);
-                by_depth |= settings.lights_by_depth();
+                by_depth |= settings.receives_shadow_by_depth();
                 has_openness |= settings.shades_ambient();
                 let strength = settings.shadow.scene;
                 on_scene = on_scene.or((strength > 0.0).then_some((index, strength)));
@@ -299,7 +305,9 @@ mod tests {
         let clip_from_view = rh::proj::directx::perspective(0.8, 1.0, 0.1, 80.0);
         let view = ViewGeometry::new(&View::new(Mat4::IDENTITY, clip_from_view, UVec2::ONE)).unwrap();
         let mut settings = Settings::default();
-        (settings.shadow.strength, settings.shadow.by_depth, settings.shadow.resolution) = (1.0, true, 96);
+        settings.shadow.strength = 1.0;
+        settings.shadow.by_depth = true;
+        settings.shadow.resolution = 96;
         settings.ambient.intensity = 1.0;
         let lights = [Light::default(); SHADOWED_LIGHTS];
         let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE };
@@ -310,7 +318,7 @@ mod tests {
             let resolved = ResolvedSettings::new(&settings, 1.0, UVec2::ONE, 1.0, &RampSteps::default(), Support::ALL);
             let systems = [(bounds, resolved)].into_iter();
             let shadow =
-                SmokeShadow::new((&view, Vec3::Y), max_volume_depth, &lights, |light| light == 0, systems).unwrap();
+                SmokeShadow::new(&view, Vec3::Y, max_volume_depth, &lights, |light| light == 0, systems).unwrap();
             assert_eq!(shadow.resolution, resolution, "{lights_with_shadow} lights, {max_volume_depth} texels");
             assert!(shadow.resolution * shadow.blocks() <= max_volume_depth);
             assert!(shadow.grid.size.max_element() <= resolution);

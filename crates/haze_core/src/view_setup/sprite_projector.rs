@@ -77,7 +77,7 @@ impl SpriteTrim {
         Self {
             animation: sprite.animation,
             alpha_bounds: material.alpha_bounds.clone(),
-            first_frame: (!sprite.debug_sprite && sprite.motion == 0.0).then_some(first_frame),
+            first_frame: (!settings.debug.checkerboard && sprite.motion == 0.0).then_some(first_frame),
         }
     }
 
@@ -112,7 +112,8 @@ impl SpriteProjector<'_> {
             radius *= system.billboard_radius;
         }
         let half_depth = self.sprite_thickness(radius);
-        let (front, back) = (-center.z - half_depth, -center.z + half_depth);
+        let front = -center.z - half_depth;
+        let back = -center.z + half_depth;
         let fade = near_fade(back, system.near_fade_start, system.near_fade_end);
         let mut amount = particle.shown_amount() * system.opacity * fade;
         let is_seen = back > view.near && front < view.far && radius > 0.0 && amount > 0.0;
@@ -179,12 +180,14 @@ impl SpriteProjector<'_> {
 
     /// Same as `sphere_corner()` in the shader: returns the upper left and the lower right corner, in pixels.
     pub fn sphere_rectangle(&self, sprite: &ProjectedSprite, texels_per_pixel: f32) -> (Vec2, Vec2) {
-        let (view, ProjectedSprite { center, radius, .. }) = (self.view, *sprite);
+        let view = self.view;
+        let ProjectedSprite { center, radius, .. } = *sprite;
         let rays = if view.orthographic > 0.5 {
             [center.xy() - radius, center.xy() + radius]
         } else {
             let bounds = |position| sphere_axis_bounds(Vec2::new(position, -center.z), radius, view.near);
-            let (x, y) = (bounds(center.x), bounds(center.y));
+            let x = bounds(center.x);
+            let y = bounds(center.y);
             [Vec2::new(x.x, y.x), Vec2::new(x.y, y.y)]
         };
         let edge = 1.0 + (texels_per_pixel * view.size).recip();
@@ -259,7 +262,8 @@ fn area_within(corners: [Vec2; 4], size: Vec2, scratch: &mut [Vec<DVec2>; 2]) ->
         for (normal, most) in [(-DVec2::X, 0.0), (DVec2::X, size.x), (-DVec2::Y, 0.0), (DVec2::Y, size.y)] {
             clipped.clear();
             for (&a, &b) in pairs(polygon) {
-                let (a_beyond, b_beyond) = (a.dot(normal) - most, b.dot(normal) - most);
+                let a_beyond = a.dot(normal) - most;
+                let b_beyond = b.dot(normal) - most;
                 if a_beyond <= 0.0 {
                     clipped.push(a);
                 }

@@ -124,7 +124,8 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
     let accumulate = &settings.accumulate;
     let [near_fade_start, near_fade_end] =
         settings.soft_fade.near_fade_depths(settings.technique.is_flat(), view.depth.near);
-    let (scale, pixels) = (settings.scale, projected.max - projected.min);
+    let scale = settings.scale;
+    let pixels = projected.max - projected.min;
     let rect = match accumulate.depth_source {
         DepthSource::Reduced => target_rect(projected.min, pixels, scale, view.size),
         // All attachments of a pass must have one size.
@@ -173,7 +174,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         detail_lod: material.detail.map_or(0.0, |detail| detail.lod),
         billboard_radius: settings.spherical_billboard.radius,
         billboard_density: settings.spherical_billboard.density,
-        density: settings.density.density,
+        density: settings.exponential.density,
         noise_size: settings.volumetric.noise_size,
         volume_opacity: settings.volumetric.opacity,
         noise_offset: noise_offset(view, settings, up, time),
@@ -181,7 +182,7 @@ pub fn system_setup(view: &ViewGeometry, targets: UVec2, system: &SystemInput<'_
         depth_weight: accumulate.depth_weight,
         optical_depth_knots: match settings.order() {
             BlendOrder::Sorted => [Vec4::ZERO; 4],
-            BlendOrder::Weighted => optical_depths((view, space), particles, particles_per_sample, settings, &extent),
+            BlendOrder::Weighted => optical_depths(view, space, particles, particles_per_sample, settings, &extent),
         },
         spherical_harmonics: spherical_harmonics(view, settings, material, lights, extent.center),
         shadow_strength: if shadow.is_some() && settings.receives_shadow() { settings.shadow.strength } else { 0.0 },
@@ -275,7 +276,7 @@ fn spherical_harmonics(
 /// f32 is precise enough after hours and far from the world's origin.
 fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f64) -> Vec3 {
     let volumetric = &settings.volumetric;
-    let seconds = if settings.sprite.freeze_animation { 0.0 } else { time };
+    let seconds = if settings.debug.freeze_animation { 0.0 } else { time };
     let eye = view.view_from_world.as_dmat4().inverse().w_axis.truncate();
     let place = eye - up.as_dvec3() * (f64::from(volumetric.scroll_speed) * seconds);
     let size = f64::from(volumetric.noise_size);

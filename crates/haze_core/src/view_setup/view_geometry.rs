@@ -65,7 +65,8 @@ impl ViewGeometry {
             let back = Mat4::from_translation(Vec3::new(0.0, 0.0, -depth_offset));
             view_from_world = back * view_from_world;
             clip_from_view *= Mat4::from_translation(Vec3::new(0.0, 0.0, depth_offset));
-            (depth.near, depth.far) = (0.0, depth.far + depth_offset);
+            depth.near = 0.0;
+            depth.far += depth_offset;
         }
         let clip = &clip_from_view;
         let focal = Vec2::new(clip.x_axis.x, clip.y_axis.y);
@@ -153,7 +154,8 @@ fn normalized_projection(clip_from_view: &Mat4) -> Result<Mat4, FieldError> {
 /// Returns true if the viewer looks along +z of view space. For an orthographic projection, the positions of the near
 /// and far planes decide; if it reaches as far behind the viewer as in front, −z is assumed.
 fn looks_along_positive_z(projection: &Mat4) -> bool {
-    let (scale, offset) = (projection.z_axis.z, projection.w_axis.z);
+    let scale = projection.z_axis.z;
+    let offset = projection.w_axis.z;
     if projection.z_axis.w != 0.0 { projection.z_axis.w > 0.0 } else { (0.5 - offset) / scale > 0.0 }
 }
 
@@ -176,10 +178,8 @@ mod tests {
 
     #[test]
     fn depth_convention_is_derived_from_the_projection_matrix() {
-        let (perspective, orthographic) = (
-            rh::proj::directx::perspective(FOV, 1.5, 0.2, 80.0),
-            rh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, 0.5, 60.0),
-        );
+        let perspective = rh::proj::directx::perspective(FOV, 1.5, 0.2, 80.0);
+        let orthographic = rh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, 0.5, 60.0);
         let infinite = f32::INFINITY;
         let cases = [
             (perspective, 0.2, 80.0, false, false),

@@ -3,8 +3,9 @@
 use std::fmt::{Display, Formatter};
 
 use glam::{UVec2, Vec4};
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_core::frame::FOV_RANGE;
 use haze_demo::shot::Shot;
 
@@ -139,7 +140,7 @@ pub(super) async fn fitting_fov(
 /// Sets the field of view that holds the smoke of the first `count` frames.
 ///
 /// # Errors
-/// [`Error::Field`] if none does, and if keyframes set it; errors of rendering; [`Error::Io`] if it was stopped.
+/// [`Error::Field`] if none does, and if keyframes set it; errors of rendering; [`AssetError::Io`](haze_core::error::AssetError::Io) if it was stopped.
 pub(super) async fn fit(
     backend: &Backend,
     shot: &mut Shot,

@@ -47,7 +47,8 @@ fn halved(image: &Image<Vec4>) -> Image<Vec4> {
 /// Value of a coarser level at a texel of the next finer one, bilinear.
 fn between(coarse: &Image<Vec3>, at: UVec2) -> Vec3 {
     let place = (at.as_vec2() - 0.5) * 0.5;
-    let (low, share) = (place.floor(), place - place.floor());
+    let low = place.floor();
+    let share = place - place.floor();
     let load = |x: f32, y: f32| {
         let last = coarse.size.as_ivec2() - 1;
         coarse.load(glam::Vec2::new(x, y).as_ivec2().clamp(glam::IVec2::ZERO, last))
@@ -63,7 +64,8 @@ mod tests {
     #[test]
     fn smoke_keeps_its_color_and_clear_texels_get_that_beside_them() {
         let mut layer = Image::new(UVec2::new(13, 9), Vec4::ZERO);
-        let (red, blue) = (Vec3::new(0.8, 0.1, 0.0), Vec3::new(0.0, 0.2, 0.9));
+        let red = Vec3::new(0.8, 0.1, 0.0);
+        let blue = Vec3::new(0.0, 0.2, 0.9);
         layer.for_each(|at, texel| {
             let (color, alpha) = match at.x {
                 0..3 => (red, 0.5),

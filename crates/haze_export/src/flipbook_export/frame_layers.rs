@@ -1,11 +1,11 @@
 //! Layers of one frame of a flipbook.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use haze::Error;
 use haze_core::assets::image::Image;
+use haze_core::error::Error;
 use haze_core::formula::color::luminance;
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::exposure;
+use haze_demo::tonemap_pass::display_transform;
 
 use crate::backend::Backend;
 use crate::smoke_layers::SmokeLayers;
@@ -32,7 +32,7 @@ pub async fn frame_light(backend: &Backend, shot: &Shot) -> Result<Image<Vec4>, 
 }
 
 fn exposed(mut image: Image<Vec4>, shot: &Shot) -> Image<Vec4> {
-    let exposure = Vec3::splat(exposure(shot)).extend(1.0);
+    let exposure = Vec3::splat(display_transform(shot).exposure).extend(1.0);
     image.texels.iter_mut().for_each(|texel| *texel *= exposure);
     image
 }
@@ -54,7 +54,8 @@ impl FrameLayers {
         has_six_way: bool,
     ) -> Result<Self, Error> {
         let layers = SmokeLayers::new(backend, shot).await?;
-        let (width, height) = (shot.size.x as f32, shot.size.y as f32);
+        let width = shot.size.x as f32;
+        let height = shot.size.y as f32;
         let mut motion = layers.motion(seconds).await?;
         motion.texels.iter_mut().for_each(|texel| *texel /= Vec4::new(width, height, 1.0, 1.0));
         let fire = if burns { Some(layers.fire().await?) } else { None };

@@ -1,7 +1,6 @@
 //! Flipbooks for engines: sheets of color, normals, motion vectors, fire and six-way light, which fit each other.
 
 mod cut_smoke;
-mod emission;
 mod fill;
 mod frame_layers;
 mod motion_fit;
@@ -13,18 +12,17 @@ mod sprite_sheet;
 
 use std::path::Path;
 
-use haze::Error;
+use haze_core::error::Error;
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::encoded;
+use haze_demo::tonemap_pass::display_transform;
 use haze_preset::write_file;
 
 use crate::backend::Backend;
 use crate::engine::Engine;
 use crate::image_export::{ExportProgress, Frames, image_label, stopped_before_writing};
-use crate::image_format::Alpha;
+use crate::image_format::{Alpha, Emission};
 use crate::png_stream::EncodedPng;
 pub use cut_smoke::CutSmoke;
-pub use emission::Emission;
 use frame_layers::{FrameLayers, frame_light, mixed};
 use motion_fit::HalfwayImages;
 use numbers::{FlipbookNumbers, Scales};
@@ -79,7 +77,7 @@ impl FlipbookExport {
     /// temporary files without names there, or in the nearest folder above.
     ///
     /// # Errors
-    /// As [`FlipbookOptions::check`]; errors of rendering; [`Error::Io`] if a temporary file cannot be written, or it was stopped.
+    /// As [`FlipbookOptions::check`]; errors of rendering; [`AssetError::Io`](haze_core::error::AssetError::Io) if a temporary file cannot be written, or it was stopped.
     pub async fn render(
         backend: &Backend,
         shot: &Shot,
@@ -89,7 +87,8 @@ impl FlipbookExport {
         folder: &Path,
     ) -> Result<Self, Error> {
         options.check(shot, frames)?;
-        let (count, fade) = (frames.count(), options.loop_fade);
+        let count = frames.count();
+        let fade = options.loop_fade;
         let all = count + fade;
         let burns = frames.burns(shot, all);
         // Frames of the fade are rendered with those that they fade into.
@@ -112,6 +111,11 @@ impl FlipbookExport {
             let share = 1.0 - index as f32 / fade as f32;
             Ok(layers.mixed(&at(count + index, done + 1).await?, share))
         };
+        let FlipbookOptions { engine, cells, emission, has_six_way, effort, .. } = options;
+        let contains_fire = burns && emission == Emission::Contained;
+        let alpha = options.alpha.unwrap_or(if contains_fire { Alpha::Premultiplied } else { Alpha::Straight });
+        let tonemap = display_transform(shot).tonemap;
+        let layout = SheetLayout { engine, frame: shot.size, cells, alpha, emission, tonemap, effort, folder };
         // Image halfway between a frame and the next, encoded.
         let halfway = async |index: u32| {
             let at =
@@ -125,12 +129,8 @@ impl FlipbookExport {
                 Ok(mixed(light, &at(count + index).await?, share))
             };
             let light = progress.show(image_label(done(index), all), light).await?;
-            Ok::<_, Error>(encoded(&light, 1.0))
+            Ok::<_, Error>(layout.encoded(&light))
         };
-        let FlipbookOptions { engine, cells, emission, has_six_way, effort, .. } = options;
-        let contains_fire = burns && emission == Emission::Contained;
-        let alpha = options.alpha.unwrap_or(if contains_fire { Alpha::Premultiplied } else { Alpha::Straight });
-        let layout = SheetLayout { engine, frame: shot.size, cells, alpha, emission, effort, folder };
         let mut sheets = Sheets::new(layout, burns, has_six_way)?;
         let mut cut_smoke = None;
         let mut before = None;
@@ -156,7 +156,7 @@ impl FlipbookExport {
             six_way_emission: made.six_way_emission,
         };
         let names = made.images.iter().map(|(name, _)| *name);
-        let numbers = FlipbookNumbers::new(&options, alpha, shot.size, (count, frames.rate), &scales, names);
+        let numbers = FlipbookNumbers::new(&options, alpha, shot.size, count, frames.rate, &scales, names);
         if let Some(cut_smoke) = &mut cut_smoke {
             let stopped = |_| stopped_before_writing(folder, all, all);
             cut_smoke.fitting_fov = cut_smoke::fitting_fov(backend, shot, frames, all, progress, stopped).await?;
@@ -173,7 +173,7 @@ impl FlipbookExport {
     /// Writes the files into the folder, which must exist now.
     ///
     /// # Errors
-    /// [`Error::Io`] for the first file that cannot be written.
+    /// [`AssetError::Io`](haze_core::error::AssetError::Io) for the first file that cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), Error> {
         self.images.iter().try_for_each(|(_, image)| image.write())?;
         // Numbers and strings always become JSON.
@@ -183,7 +183,7 @@ impl FlipbookExport {
         if let Some(module) = module(self.numbers.engine) {
             write_file(&folder.join(MODULE), module.as_bytes())?;
         }
-        write_file(&folder.join(README), self.readme.as_bytes())
+        Ok(write_file(&folder.join(README), self.readme.as_bytes())?)
     }
 
     /// Returns the names of the files that are written.

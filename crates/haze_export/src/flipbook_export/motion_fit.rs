@@ -64,7 +64,8 @@ pub fn kept_inside(motion: &Image<Vec4>) -> Image<Vec4> {
 
 /// Bilinear filter; `place` in texels, 0 at the center of the first.
 fn sample(image: &Image<Vec4>, place: Vec2) -> Vec4 {
-    let (low, share) = (place.floor(), place - place.floor());
+    let low = place.floor();
+    let share = place - place.floor();
     let last = image.size.as_ivec2() - 1;
     let load = |x: i32, y: i32| image.load((low.as_ivec2() + IVec2::new(x, y)).clamp(IVec2::ZERO, last));
     load(0, 0).lerp(load(1, 0), share.x).lerp(load(0, 1).lerp(load(1, 1), share.x), share.y)

@@ -3,11 +3,10 @@
 use glam::UVec2;
 use haze_author::sprite::six_way::Packing;
 
-use super::emission::Emission;
 use super::options::FlipbookOptions;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;
-use crate::image_format::Alpha;
+use crate::image_format::{Alpha, Emission};
 
 /// Version of `flipbook.json`. It grows when a key changes its meaning; keys may be added without.
 pub const VERSION: u32 = 1;
@@ -122,7 +121,8 @@ impl FlipbookNumbers {
         options: &FlipbookOptions,
         alpha: Alpha,
         frame: UVec2,
-        (frames, rate): (u32, f32),
+        frames: u32,
+        rate: f32,
         scales: &Scales,
         images: impl Iterator<Item = &'a str>,
     ) -> Self {

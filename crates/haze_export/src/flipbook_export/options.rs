@@ -1,16 +1,16 @@
 //! Choices of a flipbook.
 
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_core::error::Error;
 use haze_demo::shot::Shot;
 use haze_preset::CompressionEffort;
 
-use super::emission::Emission;
 use super::{cut_smoke, sheets};
 use crate::backend::Backend;
 use crate::engine::Engine;
 use crate::image_export::{ExportProgress, Frames, check_cells};
-use crate::image_format::Alpha;
+use crate::image_format::{Alpha, Emission};
 use crate::memory_check::{BYTES_PER_PIXEL, check_memory};
 
 /// Choices of a flipbook.
@@ -38,9 +38,10 @@ impl FlipbookOptions {
     ///
     /// # Errors
     /// [`Error::Field`] for a fade that is longer than the flipbook, for sheets with too few cells or too many pixels, and for separate
-    /// emission if no system burns; [`Error::Io`] for rows of frames that do not fit into memory.
+    /// emission if no system burns; [`AssetError::Io`](haze_core::error::AssetError::Io) for rows of frames that do not fit into memory.
     pub fn check(&self, shot: &Shot, frames: &Frames) -> Result<(), Error> {
-        let (count, fade) = (frames.count(), self.loop_fade);
+        let count = frames.count();
+        let fade = self.loop_fade;
         if fade >= count {
             let expected = format!("less than the number of frames, {count}");
             return Err(FieldError::new("--loop", fade, expected).into());
@@ -65,7 +66,7 @@ impl FlipbookOptions {
     /// Widens the field of view until it holds the smoke of all frames.
     ///
     /// # Errors
-    /// [`Error::Field`] if none does, and if keyframes set it; errors of rendering; [`Error::Io`] if it was stopped.
+    /// [`Error::Field`] if none does, and if keyframes set it; errors of rendering; [`AssetError::Io`](haze_core::error::AssetError::Io) if it was stopped.
     pub async fn fit(
         &self,
         backend: &Backend,

@@ -1,10 +1,9 @@
 //! Page that goes with a flipbook: its files, and how to use them.
 
-use super::emission::Emission;
 use super::numbers::FlipbookNumbers;
 use super::sheets::{COLOR, EMISSION, MOTION, NORMALS, SIX_WAY};
 use crate::engine::Engine;
-use crate::image_format::Alpha;
+use crate::image_format::{Alpha, Emission};
 
 pub fn readme(engine: Engine, title: &str, numbers: &FlipbookNumbers) -> String {
     let FlipbookNumbers { columns, rows, frames, rate, alpha, emission, motion_scale, .. } = numbers;

@@ -6,19 +6,20 @@ use std::path::{Path, PathBuf};
 
 use bytemuck::Pod;
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
-use haze::Error;
 use haze_author::sprite::six_way::Packing;
 use haze_core::assets::image::Image;
+use haze_core::error::{AssetError, Error};
 use haze_core::formula::six_way::SixWay;
+use haze_core::formula::tonemap::DisplayTransform;
+use haze_core::settings::Tonemap;
 use haze_demo::tonemap_pass::{encoded, rgba8_codes};
 use haze_preset::CompressionEffort;
 
-use super::emission::Emission;
 use super::fill::filled;
 use super::frame_layers::FrameLayers;
 use super::motion_fit::{HalfwayImages, followed, kept_inside};
 use crate::engine::Engine;
-use crate::image_format::Alpha;
+use crate::image_format::{Alpha, Emission};
 use crate::png_stream::{EncodedPng, PngShape, PngStream};
 
 pub const COLOR: &str = "color.png";
@@ -68,6 +69,8 @@ pub struct SheetLayout<'a> {
     pub alpha: Alpha,
     /// Of the colors.
     pub emission: Emission,
+    /// Of the colors.
+    pub tonemap: Tonemap,
     /// Of the files.
     pub effort: CompressionEffort,
     /// Folder of the files; it need not exist.
@@ -75,6 +78,11 @@ pub struct SheetLayout<'a> {
 }
 
 impl SheetLayout<'_> {
+    /// Encodes light that is exposed.
+    pub fn encoded(&self, exposed: &Image<Vec4>) -> Image<Vec4> {
+        encoded(exposed, DisplayTransform { exposure: 1.0, tonemap: self.tonemap })
+    }
+
     fn size(&self) -> UVec2 {
         self.frame * UVec2::new(self.cells.y, self.cells.x)
     }
@@ -161,12 +169,12 @@ impl<T: Pod> ValueSheet<T> {
     fn new(layout: &SheetLayout<'_>, name: &str) -> Result<Self, Error> {
         let path = layout.path(name);
         let values = tempfile::tempfile_in(layout.scratch());
-        let values = values.map_err(|error| Error::Io { path: path.clone(), error })?;
+        let values = values.map_err(|error| Error::from(AssetError::Io { path: path.clone(), error }))?;
         Ok(Self { row: Row::new(layout), path, values, largest: 0.0 })
     }
 
     fn check(&self, result: io::Result<()>) -> Result<(), Error> {
-        result.map_err(|error| Error::Io { path: self.path.clone(), error })
+        result.map_err(|error| Error::from(AssetError::Io { path: self.path.clone(), error }))
     }
 
     fn end_row(&mut self) -> Result<(), Error> {
@@ -184,7 +192,7 @@ impl<T: Pod> ValueSheet<T> {
         let rewound = self.values.rewind();
         self.check(rewound)?;
         let rows = self.values.metadata().map(|found| found.len() / self.row.bytes().len().max(1) as u64);
-        let rows = rows.map_err(|error| Error::Io { path: self.path.clone(), error })?;
+        let rows = rows.map_err(|error| Error::from(AssetError::Io { path: self.path.clone(), error }))?;
         for _ in 0..rows {
             goes_on()?;
             let read = self.values.read_exact(bytemuck::cast_slice_mut(&mut self.row.texels));
@@ -223,7 +231,7 @@ impl<'a> Sheets<'a> {
     /// Starts the sheets.
     ///
     /// # Errors
-    /// [`Error::Io`] if no temporary file can be created.
+    /// [`AssetError::Io`] if no temporary file can be created.
     pub fn new(layout: SheetLayout<'a>, burns: bool, has_six_way: bool) -> Result<Self, Error> {
         Ok(Self {
             light: CodeSheet::new(&layout, COLOR)?,
@@ -240,7 +248,7 @@ impl<'a> Sheets<'a> {
     /// Places the next frame. Its motion vectors are fitted to the images halfway to its neighbors.
     ///
     /// # Errors
-    /// [`Error::Io`] if a row of frames cannot be written.
+    /// [`AssetError::Io`] if a row of frames cannot be written.
     pub fn place(&mut self, layers: &FrameLayers, halfway: HalfwayImages<'_>) -> Result<(), Error> {
         let light = match (self.layout.emission, &layers.fire) {
             (Emission::Separate, Some(fire)) => &without(&layers.light, fire),
@@ -251,7 +259,7 @@ impl<'a> Sheets<'a> {
             Alpha::Premultiplied => self.place_light(light),
         }
         self.place_normals(&filled(&layers.normals));
-        let frame = encoded(&layers.light, 1.0);
+        let frame = self.layout.encoded(&layers.light);
         self.place_motion(&kept_inside(&followed(&filled(&layers.motion), &frame, halfway)));
         if let Some(fire) = &layers.fire {
             self.place_fire(fire);
@@ -286,14 +294,14 @@ impl<'a> Sheets<'a> {
         let corner = self.corner();
         let column = self.column();
         // Dithering depends on the position in the sheet.
-        self.light.row.place(&encoded(light, 1.0), column, |texel, at| rgba8_codes(texel, corner + at));
+        self.light.row.place(&self.layout.encoded(light), column, |texel, at| rgba8_codes(texel, corner + at));
     }
 
     fn place_fire(&mut self, fire: &Image<Vec4>) {
         let corner = self.corner();
         let column = self.column();
         if let Some(sheet) = &mut self.fire {
-            sheet.row.place(&encoded(fire, 1.0), column, |texel, at| {
+            sheet.row.place(&self.layout.encoded(fire), column, |texel, at| {
                 let [r, g, b, _] = rgba8_codes(texel, corner + at);
                 [r, g, b]
             });
@@ -358,7 +366,7 @@ impl<'a> Sheets<'a> {
     /// Encodes the sheets. Cells without a frame are clear. `goes_on` returns an error to stop the work.
     ///
     /// # Errors
-    /// [`Error::Io`] if they cannot be written; that of `goes_on`.
+    /// [`AssetError::Io`] if they cannot be written; that of `goes_on`.
     pub fn encode(mut self, goes_on: &impl Fn() -> Result<(), Error>) -> Result<EncodedSheets, Error> {
         while self.placed < self.layout.cells.element_product() {
             goes_on()?;

@@ -1,14 +1,19 @@
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use haze_core::assets::image::{Image, read_png};
 use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
-use haze_demo::tonemap_pass::rgba8;
+use haze_core::formula::tonemap::DisplayTransform;
+use haze_core::settings::Tonemap;
+use haze_demo::tonemap_pass::{encoded, rgba8};
 use haze_preset::{CompressionEffort, Ease, KeyValue, Keyframe, Track};
 use image::RgbaImage;
 use pollster::block_on;
 
 use super::*;
-use crate::image_format::{Alpha, Background, ImageFormat};
+use crate::image_format::{Alpha, Background, Emission, ImageFormat};
 use crate::smoke_layers::SmokeLayers;
+
+/// Shows light that is exposed.
+const EXPOSED: DisplayTransform = DisplayTransform { exposure: 1.0, tonemap: Tonemap::Aces };
 
 mod motion;
 
@@ -26,7 +31,8 @@ fn frames(count: u32, rate: f32) -> Frames {
 }
 
 fn options(engine: Engine) -> FlipbookOptions {
-    let (cells, effort) = (UVec2::splat(2), CompressionEffort::Quick);
+    let cells = UVec2::splat(2);
+    let effort = CompressionEffort::Quick;
     FlipbookOptions {
         engine,
         cells,
@@ -99,7 +105,8 @@ fn texel(image: &RgbaImage, at: IVec2) -> Vec4 {
 /// Bilinear filter; `uv` of one frame, from the upper left corner.
 fn sample(image: &RgbaImage, uv: Vec2) -> Vec4 {
     let place = uv * SIDE as f32 - 0.5;
-    let (low, share) = (place.floor().as_ivec2(), place - place.floor());
+    let low = place.floor().as_ivec2();
+    let share = place - place.floor();
     let row = |y: i32| texel(image, low + IVec2::new(0, y)).lerp(texel(image, low + IVec2::new(1, y)), share.x);
     row(0).lerp(row(1), share.y)
 }
@@ -118,14 +125,16 @@ fn difference(a: impl Fn(UVec2) -> Vec4, b: impl Fn(UVec2) -> Vec4) -> f32 {
 #[test]
 fn frames_of_the_sheets_are_those_of_the_renderer() {
     for (name, engine) in [("column", Engine::Unreal), ("campfire", Engine::Unity), ("column", Engine::Godot)] {
-        let (shot, frames) = (shot(name), frames(3, 8.0));
+        let shot = shot(name);
+        let frames = frames(3, 8.0);
         let flipbook = Flipbook::new(&shot, &frames, options(engine));
         let now = frames.shot(&shot, 2);
         let format = ImageFormat { background: Background::Transparent, ..ImageFormat::default() };
         let direct = block_on(format.render(&now, async |shot| shot.render_on_cpu())).unwrap().into_rgba8();
         let layers = block_on(SmokeLayers::new(&Backend::Cpu, &now)).unwrap();
         let normals = block_on(layers.normals()).unwrap();
-        let (color, normal) = (flipbook.frame(sheets::COLOR, 2), flipbook.frame(sheets::NORMALS, 2));
+        let color = flipbook.frame(sheets::COLOR, 2);
+        let normal = flipbook.frame(sheets::NORMALS, 2);
         let mut compared = 0;
         for at in pixels() {
             let [found, expected] = [&color, &direct].map(|image| image.get_pixel(at.x, at.y).0);
@@ -152,7 +161,8 @@ fn frames_of_the_sheets_are_those_of_the_renderer() {
 
 #[test]
 fn premultiplied_flipbooks_keep_the_glow_of_fire() {
-    let (shot, frames) = (shot("campfire"), frames(2, 8.0));
+    let shot = shot("campfire");
+    let frames = frames(2, 8.0);
     let premultiplied = FlipbookOptions { alpha: None, ..options(Engine::Unity) };
     let color = |options| Flipbook::new(&shot, &frames, options).frame(sheets::COLOR, 1);
     let [kept, straight] = [premultiplied, options(Engine::Unity)].map(color);
@@ -160,7 +170,8 @@ fn premultiplied_flipbooks_keep_the_glow_of_fire() {
     let before_black = haze_demo::tonemap_pass::tonemap(&before_black.render_on_cpu().unwrap(), &before_black);
     let over_black =
         |texel: Vec4| Vec3::from(texel.xyz().to_array().map(|code| srgb_from_linear(linear_from_srgb(code) * texel.w)));
-    let (mut clear, mut error) = (0, 0.0);
+    let mut clear = 0;
+    let mut error = 0.0;
     for at in pixels() {
         let [found, divided] = [&kept, &straight].map(|image| image.get_pixel(at.x, at.y).0);
         let expected = before_black.get_pixel(at.x, at.y).0;
@@ -226,7 +237,7 @@ fn pages_of_flipbooks_name_the_blend_mode() {
 fn page(engine: Engine, alpha: Alpha) -> String {
     let scales = Scales { motion: 0.1, six_way_intensity: Some(2.0), six_way_emission: Some(3.0) };
     let images = FILES[..6].iter().copied();
-    let numbers = FlipbookNumbers::new(&options(engine), alpha, UVec2::splat(SIDE), (4, 24.0), &scales, images);
+    let numbers = FlipbookNumbers::new(&options(engine), alpha, UVec2::splat(SIDE), 4, 24.0, &scales, images);
     readme::readme(engine, "Fire", &numbers)
 }
 
@@ -244,7 +255,8 @@ fn documented_keys() -> Vec<[String; 3]> {
 
 #[test]
 fn flipbook_json_is_as_documented() {
-    let (shot, frames) = (Shot::load("campfire", UVec2::splat(16)).unwrap(), frames(2, 12.5));
+    let shot = Shot::load("campfire", UVec2::splat(16)).unwrap();
+    let frames = frames(2, 12.5);
     let documented = documented_keys();
     for engine in ENGINES {
         let options = FlipbookOptions { alpha: None, loop_fade: 1, has_six_way: true, ..options(engine) };
@@ -286,12 +298,14 @@ fn flipbook_json_is_as_documented() {
 
 #[test]
 fn separate_emission_is_the_part_that_the_color_lacks() {
-    let (shot, frames) = (shot("campfire"), frames(1, 8.0));
+    let shot = shot("campfire");
+    let frames = frames(1, 8.0);
     let separate = FlipbookOptions { emission: Emission::Separate, alpha: None, ..options(Engine::Godot) };
     let whole = FlipbookOptions { alpha: Some(Alpha::Premultiplied), ..options(Engine::Godot) };
     let layers = block_on(SmokeLayers::new(&Backend::Cpu, &shot)).unwrap();
     let fire = block_on(layers.fire()).unwrap();
-    let exposure = haze_demo::tonemap_pass::exposure(&shot);
+    let transform = display_transform(&shot);
+    let exposure = transform.exposure;
     let burning = pixels().filter(|at| fire.load(at.as_ivec2()).x * exposure > 0.5).count();
     let [part, whole] = [separate, whole].map(|options| Flipbook::new(&shot, &frames, options));
     // Without the glow, straight color keeps all.
@@ -303,11 +317,12 @@ fn separate_emission_is_the_part_that_the_color_lacks() {
         pixels().all(|at| emission.get_pixel(at.x, at.y) == whole.frame(sheets::EMISSION, 0).get_pixel(at.x, at.y));
     assert!(same && burning > 10, "{burning}");
     for at in pixels().map(UVec2::as_ivec2) {
-        let (light, fire) = (layers.light.load(at), fire.load(at));
+        let light = layers.light.load(at);
+        let fire = fire.load(at);
         let rest = (light.xyz() - fire.xyz()).max(Vec3::ZERO).extend(light.w);
         if light.w > 0.05 {
             let rest = Image { size: UVec2::ONE, texels: vec![(rest.xyz() / rest.w).extend(rest.w)] };
-            let apart = (encoded(&rest, exposure).load(IVec2::ZERO) - texel(&part_color, at)).abs().max_element();
+            let apart = (encoded(&rest, transform).load(IVec2::ZERO) - texel(&part_color, at)).abs().max_element();
             // Half a step of 8 bits, and dithering by up to a step.
             assert!(apart < 1.6 / 255.0, "{at}: {apart}");
         }
@@ -325,7 +340,7 @@ fn sprite_sheets_have_the_place_of_each_frame() {
     let numbers = |columns| {
         let options = FlipbookOptions { cells: UVec2::new(2, columns), ..options(Engine::Wgsl) };
         let scales = Scales { motion: 0.1, six_way_intensity: None, six_way_emission: None };
-        FlipbookNumbers::new(&options, Alpha::Straight, UVec2::new(32, 16), (5, 24.0), &scales, FILES.into_iter())
+        FlipbookNumbers::new(&options, Alpha::Straight, UVec2::new(32, 16), 5, 24.0, &scales, FILES.into_iter())
     };
     let text = sprite_sheet::sprite_sheet("Camp Fire", &numbers(3));
     let sheet: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -340,16 +355,20 @@ fn sprite_sheets_have_the_place_of_each_frame() {
 
 #[test]
 fn faded_flipbooks_loop() {
-    let (shot, frames) = (shot("column"), frames(4, 4.0));
+    let shot = shot("column");
+    let frames = frames(4, 4.0);
     let gap = |fade: u32| {
         let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { loop_fade: fade, ..options(Engine::Godot) });
         let image = |index| flipbook.frame(sheets::COLOR, index);
-        let (first, last, second) = (image(0), image(3), image(2));
+        let first = image(0);
+        let last = image(3);
+        let second = image(2);
         let apart =
             |a: &RgbaImage, b: &RgbaImage| difference(|at| texel(a, at.as_ivec2()), |at| texel(b, at.as_ivec2()));
         (apart(&last, &first), apart(&second, &last))
     };
-    let ((open, _), (closed, usual)) = (gap(0), gap(2));
+    let (open, _) = gap(0);
+    let (closed, usual) = gap(2);
     // The first frame follows the last as the last follows the one before.
     assert!(
         closed < 1.5 * usual && closed < 0.8 * open,
@@ -366,7 +385,8 @@ fn faded_flipbooks_loop() {
 #[test]
 fn six_way_maps_are_the_smoke_under_each_light() {
     for engine in [Engine::Unity, Engine::Unreal] {
-        let (shot, frames) = (shot("column"), frames(1, 8.0));
+        let shot = shot("column");
+        let frames = frames(1, 8.0);
         let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { has_six_way: true, ..options(engine) });
         let layers = block_on(SmokeLayers::new(&Backend::Cpu, &shot)).unwrap();
         let [positive, negative] = block_on(layers.six_way()).unwrap();
@@ -400,14 +420,16 @@ fn six_way_maps_are_the_smoke_under_each_light() {
 
 #[test]
 fn emission_of_six_way_maps_is_the_luminance_of_the_fire() {
-    let (shot, frames) = (shot("campfire"), frames(1, 8.0));
+    let shot = shot("campfire");
+    let frames = frames(1, 8.0);
     let flipbook = |engine| Flipbook::new(&shot, &frames, FlipbookOptions { has_six_way: true, ..options(engine) });
     let unity = flipbook(Engine::Unity);
     let map = unity.frame(sheets::SIX_WAY[1], 0);
     let full = unity.numbers.six_way_emission.unwrap();
     let layers = block_on(SmokeLayers::new(&Backend::Cpu, &shot)).unwrap();
     let fire = block_on(layers.fire()).unwrap();
-    let (mut compared, mut brightest): (u32, f32) = (0, 0.0);
+    let mut compared = 0_u32;
+    let mut brightest = 0.0_f32;
     for at in pixels().map(UVec2::as_ivec2) {
         let opacity = layers.light.load(at).w;
         if opacity < 0.06 {
@@ -459,7 +481,8 @@ fn smoke_that_borders_cut_off_is_told_and_fits_a_wider_view() {
 
 #[test]
 fn stopped_flipbooks_leave_no_file() {
-    let (shot, frames) = (shot("column"), frames(3, 8.0));
+    let shot = shot("column");
+    let frames = frames(3, 8.0);
     let folder = tempfile::tempdir().unwrap();
     let options = FlipbookOptions { loop_fade: 1, ..options(Engine::Unity) };
     let stop = ExportProgress::Callback(&|done, _| done < 2);
@@ -471,7 +494,8 @@ fn stopped_flipbooks_leave_no_file() {
 
 #[test]
 fn searches_for_a_view_can_be_stopped_and_say_how_far_they_are() {
-    let (mut shot, frames) = (shot("column"), frames(3, 8.0));
+    let mut shot = shot("column");
+    let frames = frames(3, 8.0);
     let seen = std::cell::RefCell::new(Vec::new());
     let stop = |done, count| {
         seen.borrow_mut().push((done, count));
@@ -488,7 +512,8 @@ fn searches_for_a_view_can_be_stopped_and_say_how_far_they_are() {
 
 #[test]
 fn a_view_that_keyframes_set_is_not_told_to_fit() {
-    let (mut shot, frames) = (shot("column"), frames(2, 8.0));
+    let mut shot = shot("column");
+    let frames = frames(2, 8.0);
     shot.preset.camera.fov = 20.0;
     let key = |time, fov| Keyframe { time, value: KeyValue::Number(fov), ease: Ease::Smooth };
     let keys = vec![key(0.0, 20.0), key(100.0, 20.0)];
@@ -512,13 +537,15 @@ fn a_view_that_keyframes_set_is_not_told_to_fit() {
 #[test]
 fn sheets_hold_one_row_of_frames() {
     for (preset, has_six_way) in [("column", false), ("campfire", true)] {
-        let (shot, frames) = (shot(preset), frames(1, 8.0));
+        let shot = shot(preset);
+        let frames = frames(1, 8.0);
         let burns = frames.burns(&shot, 1);
         let layers = block_on(FrameLayers::render(&Backend::Cpu, &shot, 0.1, burns, has_six_way)).unwrap();
-        let light = encoded(&layers.light, 1.0);
+        let light = encoded(&layers.light, EXPOSED);
         let folder = tempfile::tempdir().unwrap();
         for rows in [1, 5] {
-            let (frame, cells) = (shot.size, UVec2::new(rows, 3));
+            let frame = shot.size;
+            let cells = UVec2::new(rows, 3);
             let effort = CompressionEffort::Quick;
             let layout = SheetLayout {
                 engine: Engine::Unity,
@@ -526,6 +553,7 @@ fn sheets_hold_one_row_of_frames() {
                 cells,
                 alpha: Alpha::Straight,
                 emission: Emission::Contained,
+                tonemap: Tonemap::Aces,
                 effort,
                 folder: folder.path(),
             };
@@ -544,13 +572,14 @@ fn sheets_hold_one_row_of_frames() {
 
 #[test]
 fn sheets_of_rows_are_those_of_whole_images() {
-    let (shot, frames) = (shot("campfire"), frames(3, 8.0));
+    let shot = shot("campfire");
+    let frames = frames(3, 8.0);
     let at = |index| {
         let shot = frames.shot(&shot, index);
         block_on(FrameLayers::render(&Backend::Cpu, &shot, 1.0 / 8.0, true, true)).unwrap()
     };
     let layers = [at(0), at(1), at(2)];
-    let light = layers.each_ref().map(|layers| encoded(&layers.light, 1.0));
+    let light = layers.each_ref().map(|layers| encoded(&layers.light, EXPOSED));
     let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { has_six_way: true, ..options(Engine::Unreal) });
     let whole = |layer: &dyn Fn(usize) -> Image<Vec4>| {
         let mut sheet = Image::new(UVec2::splat(2 * SIDE), Vec4::ZERO);
@@ -564,13 +593,13 @@ fn sheets_of_rows_are_those_of_whole_images() {
         sheet
     };
     let file = |name: &str| read_png(&flipbook.folder.path().join(name)).unwrap();
-    let colors = rgba8(&encoded(&whole(&|index| fill::filled(&layers[index].light)), 1.0));
+    let colors = rgba8(&encoded(&whole(&|index| fill::filled(&layers[index].light)), EXPOSED));
     assert_eq!(file(sheets::COLOR).into_rgba8(), colors);
-    let fire = rgba8(&encoded(&whole(&|index| layers[index].fire.clone().unwrap()), 1.0));
+    let fire = rgba8(&encoded(&whole(&|index| layers[index].fire.clone().unwrap()), EXPOSED));
     assert_eq!(file(sheets::EMISSION).into_rgb8(), image::DynamicImage::from(fire).into_rgb8());
     let halfway = [0, 1].map(|index| {
         let light = block_on(frame_light(&Backend::Cpu, &frames.shot_halfway(&shot, index))).unwrap();
-        encoded(&light, 1.0)
+        encoded(&light, EXPOSED)
     });
     let motion = whole(&|index| {
         let neighbors =
@@ -588,7 +617,8 @@ fn sheets_of_rows_are_those_of_whole_images() {
     let intensity = brightest[0].max(brightest[1]);
     assert_eq!(Some(intensity.to_bits()), flipbook.numbers.six_way_intensity.map(f32::to_bits));
     let code = |value: f32| (value * 255.0).round() as u8;
-    let (motions, positive) = (file(sheets::MOTION).into_rgb8(), file(sheets::SIX_WAY[0]).into_rgba8());
+    let motions = file(sheets::MOTION).into_rgb8();
+    let positive = file(sheets::SIX_WAY[0]).into_rgba8();
     for (index, pixel) in (0..).zip(motions.pixels()) {
         let at = IVec2::new(index % (2 * SIDE as i32), index / (2 * SIDE as i32));
         let way = (motion.load(at).xy() / scale * Vec2::new(1.0, -1.0)).clamp(Vec2::NEG_ONE, Vec2::ONE) * 0.5 + 0.5;

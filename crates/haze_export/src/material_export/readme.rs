@@ -3,6 +3,7 @@
 use haze_core::settings::RampFilter;
 use haze_preset::PresetSystem;
 
+use super::godot_scene::{SCENE, left_out};
 use super::snippet::{Function, Snippet};
 use crate::engine::Engine;
 
@@ -15,7 +16,7 @@ pub fn readme(engine: Engine, title: &str, system: &PresetSystem, snippet: &Snip
          are lit, shadow, and ambient light are those of the engine: overlapping sprites look denser and less even than \
          in haze.\n\n",
     );
-    intro + &textures(engine, system, snippet) + &functions(snippet) + &steps(engine, snippet)
+    intro + &textures(engine, system, snippet) + &functions(snippet) + &steps(engine, system, snippet)
 }
 
 fn textures(engine: Engine, system: &PresetSystem, snippet: &Snippet) -> String {
@@ -36,6 +37,11 @@ fn textures(engine: Engine, system: &PresetSystem, snippet: &Snippet) -> String 
         return text
             + "\nRamps are **sRGB**, 8 bits, the sprite is not; rows count from the first (top). The modules load them so.\n\n";
     }
+    if engine == Engine::Godot {
+        return text
+            + "\nRamps are **sRGB**, 8 bits, the sprite is not; rows count from the first (top). The `.import` files have the settings \
+               of the import: lossless, the ramps without mipmaps.\n\n";
+    }
     text + &format!(
         "\nColor is **sRGB**, 8 bits. Rows count from the {row} row of the image. Import without mipmaps, without lossy \
          compression, without resizing; filter {filter}; the edges are clamped by the formula itself.\n\n"
@@ -55,7 +61,7 @@ fn functions(snippet: &Snippet) -> String {
     )
 }
 
-fn steps(engine: Engine, snippet: &Snippet) -> String {
+fn steps(engine: Engine, system: &PresetSystem, snippet: &Snippet) -> String {
     let names = |before: &str, prefix: &str| {
         let names: Vec<_> = snippet.ramps.iter().map(|ramp| format!("{before}`{prefix}{}`", ramp.name)).collect();
         names.join(", ")
@@ -94,19 +100,7 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
             names("", ""),
             if burns { ", `heat`" } else { "" },
         ),
-        Engine::Godot => format!(
-            "## In Godot 4\n\n\
-             1. Import the textures with *Compress Mode* `Lossless` and *Mipmaps* off. Import the sprite (a PNG of haze, for \
-             example from its folder `sprites/`) in the same way, with mipmaps.\n\
-             2. Make a *ShaderMaterial* with `haze_material.gdshader` (Godot 4.4 or later, all renderers); set the sprite \
-             (`haze_sprite`) with its columns and rows (`haze_sprite_cells`), and {}.\n\
-             3. Use it on quads, such as the draw pass of `GPUParticles3D`: the shader turns them towards the camera, by the \
-             angle of each particle. *Animation* of the process material plays the frames. The color's alpha multiplies the \
-             amount{}.\n\n\
-             All lights of the scene light the smoke, by `light()`.\n",
-            names("the texture of ", "haze_"),
-            if burns { "; the age is the place in the heat ramp" } else { "" },
-        ),
+        Engine::Godot => godot_steps(system, &names("", "haze_"), burns),
         Engine::Three => {
             let heat = if burns { "; the age is the place in the heat ramp" } else { "" };
             let scale = if burns { ", `material.numbers.heat.value` their heat" } else { "" };
@@ -148,4 +142,40 @@ fn steps(engine: Engine, snippet: &Snippet) -> String {
             names("", ""),
         ),
     }
+}
+
+fn godot_steps(system: &PresetSystem, parameters: &str, burns: bool) -> String {
+    let heat = if burns { "; the age is the place in the heat ramp" } else { "" };
+    let material = format!(
+        "`haze_material.gdshader` is the shader of a *ShaderMaterial* for quads: it turns them towards the camera, by the angle of \
+         each particle, and blends the frames of the sprite{heat}. The color of a particle multiplies the light on it, its alpha the \
+         amount. Parameters: `haze_sprite`, its columns and rows (`haze_sprite_cells`), its number of frames (`haze_sprite_frames`), \
+         {parameters}. For another sprite, import a PNG of haze in the same way.\n\n\
+         All lights of the scene light the smoke, by `light()`: an energy of 1 is an intensity of 1 in haze. The Compatibility renderer \
+         blends sRGB codes: thin smoke looks darker there.\n",
+    );
+    let intro = "## In Godot 4\n\nFor Godot 4.4 or later, all renderers. ";
+    if system.particle_files.is_used() {
+        return format!("{intro}There is no scene with particles: those of this smoke come from files.\n\n{material}");
+    }
+    let left_out = left_out(system);
+    let rows: String = left_out.iter().map(|(name, text)| format!("| {name} | {text} |\n")).collect();
+    let other = match left_out.is_empty() {
+        true => String::new(),
+        false => format!("\nOther than in haze:\n\n| setting | in Godot |\n|---|---|\n{rows}"),
+    };
+    format!(
+        "{intro}Copy the folder into a project and put `{SCENE}` into a scene, at the origin of haze's world: a `GPUParticles3D` with \
+         the preset's emitter.\n\n\
+         | of the emitter | in Godot |\n|---|---|\n\
+         | rate, lives | *Amount* over *Lifetime*, the longest life; *Lifetime Randomness* |\n\
+         | velocity, drag, buoyancy, wind and its shear, speed over the life | *Directional Velocity*, by a curve |\n\
+         | random velocity, burst, orbit | *Initial Velocity*, *Radial Velocity*, *Orbit Velocity* |\n\
+         | radius over the life | *Scale*, by a curve |\n\
+         | amount over the life | *Alpha Curve* |\n\
+         | colors | *Color Initial Ramp*, *Color Ramp* |\n\
+         | rotation, spin, frames | *Angle*, *Angular Velocity*, *Animation* |\n\
+         | anchor | *Center Offset* of the quad |\n{other}\n\
+         Shadow, ambient light and the glow of lights behind the smoke are not part of it, either.\n\n{material}",
+    )
 }

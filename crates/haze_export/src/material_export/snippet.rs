@@ -1,8 +1,9 @@
 //! WGSL of a material, assembled from the functions of the transfer pass.
 
 use glam::Vec3;
-use haze::{Error, MaterialAssets, shader};
+use haze::{MaterialAssets, shader};
 use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
 use haze_core::settings::{Backlight, Choice as _, CoverageMode, Settings, SoftScatterMode};
 
 use super::translation::untranslated;
@@ -56,7 +57,8 @@ impl Snippet {
     /// [`Error::Field`] if the library does not compose.
     pub fn new(settings: &Settings, engine: Engine) -> Result<Self, Error> {
         let knows_age = engine.knows_age();
-        let (ramps, functions) = (used_ramps(settings, knows_age), functions(settings, knows_age));
+        let ramps = used_ramps(settings, knows_age);
+        let functions = functions(settings, knows_age);
         let constants = constants(settings);
         let own: String = functions.iter().map(Function::wgsl).collect();
         let library = shader::compose(LIBRARY).map_err(|reason| untranslated("WGSL", &reason))?;
@@ -233,7 +235,8 @@ struct Item {
 
 /// Splits a library into its declarations.
 fn items(library: &str, declared_name: impl Fn(&str) -> Option<&str>) -> Vec<Item> {
-    let (mut items, mut text) = (Vec::new(), String::new());
+    let mut items = Vec::new();
+    let mut text = String::new();
     let mut name = None;
     for line in library.lines() {
         if line.is_empty() && name.is_none() {

@@ -1,6 +1,7 @@
 //! Source files of a material, in the language of each engine.
 
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_core::error::Error;
 use haze_core::settings::Settings;
 
 use crate::engine::Engine;
@@ -45,14 +46,15 @@ pub fn sources(
         Engine::Unity => vec![("haze_material.hlsl", custom_function(snippet, &hlsl_functions(&snippet.wgsl)?))],
         Engine::Godot => {
             let functions = used_glsl(&glsl_functions(&snippet.wgsl)?, &names);
-            vec![("haze_material.gdshader", spatial_shader(snippet, &functions))]
+            vec![("haze_material.gdshader", spatial_shader(snippet, &functions, sprite))]
         }
     })
 }
 
 /// Body of a Custom node of Unreal Engine. It may not define functions, but a struct with functions.
 fn custom_node(snippet: &Snippet, functions: &str) -> String {
-    let (mut constants, mut body) = (String::new(), String::new());
+    let mut constants = String::new();
+    let mut body = String::new();
     for line in functions.lines() {
         let constant = line.strip_prefix("static const ").and_then(|rest| rest.strip_suffix(';'));
         match constant.and_then(|rest| rest.split_once(" = ")) {

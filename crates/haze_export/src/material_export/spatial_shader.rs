@@ -2,6 +2,7 @@
 
 use super::calls::{Calls, HEAT, NOTE, call};
 use super::snippet::Snippet;
+use super::sprite_texture::SpriteTexture;
 
 /// Textures and light in both kinds of renderers. Compatibility leaves textures as they are encoded, and decodes `EMISSION` by a
 /// cubic; the other renderers work in linear light. (Godot, `drivers/gles3/shaders/scene.glsl`)
@@ -41,20 +42,33 @@ vec3 haze_encoded(vec3 light) {
 
 /// Turns the quad towards the camera.
 const VERTEX: &str = "\
-// Turns the quad towards the camera. INSTANCE_CUSTOM of particles: angle, age and frame; both of these 0 to 1. On other meshes
-// all are 0.
+// Turns the quad towards the camera. INSTANCE_CUSTOM of particles: angle, time since birth and frame, both of these 0 to 1, and
+// the time of death. On other meshes all are 0.
 void vertex() {
     vec3 size = vec3(length(MODEL_MATRIX[0]), length(MODEL_MATRIX[1]), length(MODEL_MATRIX[2]));
     haze_turn = vec2(cos(INSTANCE_CUSTOM.x), sin(INSTANCE_CUSTOM.x));
     vec4 right = INV_VIEW_MATRIX[0] * haze_turn.x - INV_VIEW_MATRIX[1] * haze_turn.y;
     vec4 up = INV_VIEW_MATRIX[0] * haze_turn.y + INV_VIEW_MATRIX[1] * haze_turn.x;
     MODELVIEW_MATRIX = VIEW_MATRIX * mat4(right * size.x, up * size.y, INV_VIEW_MATRIX[2] * size.z, MODEL_MATRIX[3]);
-    float frames = haze_sprite_cells.x * haze_sprite_cells.y;
-    haze_frame = mod(floor(haze_sprite_frame + INSTANCE_CUSTOM.z * frames), frames);
+    haze_frame = mod(haze_sprite_frame + INSTANCE_CUSTOM.z * haze_sprite_frames, haze_sprite_frames);
+    haze_tint = COLOR.rgb;
+";
+
+/// Age of a particle, 0 to 1. Without a time of death, as of CPUParticles3D, all die at 1.
+const AGE: &str = "    float age = INSTANCE_CUSTOM.y / (INSTANCE_CUSTOM.w > 0.0 ? INSTANCE_CUSTOM.w : 1.0);\n";
+
+/// Blends two frames of the sprite.
+const FRAMES: &str = "\
+vec4 haze_frame_texel(float frame, vec2 uv) {
+    float index = mod(frame, haze_sprite_frames);
+    vec2 cell = vec2(mod(index, haze_sprite_cells.x), floor(index / haze_sprite_cells.x));
+    return texture(haze_sprite, (uv + cell) / haze_sprite_cells);
+}
 ";
 
 /// `functions`: those of the material, in GLSL. All global names begin with `haze`, so that they are none of Godot's.
-pub fn spatial_shader(snippet: &Snippet, functions: &str) -> String {
+/// `sprite`: of the system.
+pub fn spatial_shader(snippet: &Snippet, functions: &str, sprite: &SpriteTexture) -> String {
     // Godot refuses a parameter with the name of a uniform or varying.
     let uniform = |name: &str| format!("haze_{name}");
     let uniforms = snippet.ramps.iter().map(|ramp| {
@@ -67,7 +81,7 @@ pub fn spatial_shader(snippet: &Snippet, functions: &str) -> String {
             "to_light" => "LIGHT",
             "to_viewer" => "VIEW",
             HEAT => "haze_particle_heat",
-            "age" => "INSTANCE_CUSTOM.y",
+            "age" => "age",
             _ => "haze_amount",
         }
         .to_owned()
@@ -77,30 +91,32 @@ pub fn spatial_shader(snippet: &Snippet, functions: &str) -> String {
         Some(by_age) => (
             "// Multiplies the heat by age. 0: cold.\nuniform float haze_heat : hint_range(0.0, 1.0) = 1.0;\n",
             "varying float haze_particle_heat;\n",
-            format!("    haze_particle_heat = haze_heat * {by_age};\n"),
+            format!("{AGE}    haze_particle_heat = haze_heat * {by_age};\n"),
         ),
         None => ("", "", String::new()),
     };
     let emission = calls.emission.as_ref().map(|emission| format!(" + {emission}")).unwrap_or_default();
     let Calls { diffuse, soft_scatter, coverage, .. } = &calls;
+    let [columns, rows, frames] = [sprite.cells.x, sprite.cells.y, sprite.frames].map(|count| format!("{count}.0"));
     let functions = functions.replace("textureLod(", "haze_texture(").replace("texelFetch(", "haze_texel(");
     format!(
         "{NOTE}shader_type spatial;\n\
          render_mode blend_mix, depth_draw_never, cull_disabled, ambient_light_disabled, specular_disabled;\n\n\
          // A sprite of haze: normal/2 + 1/2 in rgb, amount in a. Not sRGB.\n\
          uniform sampler2D haze_sprite : filter_linear_mipmap, repeat_disable;\n\
-         // Its columns and rows, and the first frame that is shown.\n\
-         uniform vec2 haze_sprite_cells = vec2(1.0);\nuniform float haze_sprite_frame = 0.0;\n{uniforms}{heat}\n\
+         // Its columns and rows, its frames, and the first frame that is shown.\n\
+         uniform vec2 haze_sprite_cells = vec2({columns}, {rows});\nuniform float haze_sprite_frames = {frames};\n\
+         uniform float haze_sprite_frame = 0.0;\n{uniforms}{heat}\n\
          // Cosine and sine of the particle's angle.\n\
-         varying vec2 haze_turn;\nvarying float haze_frame;\nvarying float haze_amount;\n{hot_varying}\n\
-         {COLOR_SPACES}\n{functions}\n{VERTEX}{vertex_heat}}}\n\n\
-         void fragment() {{\n    float frame = floor(haze_frame + 0.5);\n    \
-         vec2 cell = vec2(mod(frame, haze_sprite_cells.x), floor(frame / haze_sprite_cells.x));\n    \
-         vec4 texel = texture(haze_sprite, (UV + cell) / haze_sprite_cells);\n    haze_amount = texel.a * COLOR.a;\n    \
+         varying vec2 haze_turn;\nvarying float haze_frame;\nvarying vec3 haze_tint;\nvarying float haze_amount;\n{hot_varying}\n\
+         {COLOR_SPACES}\n{functions}\n{FRAMES}\n{VERTEX}{vertex_heat}}}\n\n\
+         void fragment() {{\n    float first = floor(haze_frame + 1e-3);\n    \
+         vec4 texel = mix(haze_frame_texel(first, UV), haze_frame_texel(first + 1.0, UV), clamp(haze_frame - first, 0.0, 1.0));\n    \
+         haze_amount = texel.a * COLOR.a;\n    \
          vec3 normal = normalize(texel.rgb * 2.0 - 1.0);\n    \
          NORMAL = vec3(dot(normal.xy, haze_turn), dot(normal.yx, haze_turn * vec2(1.0, -1.0)), normal.z);\n    \
          ALBEDO = vec3(1.0);\n    EMISSION = haze_encoded({soft_scatter}{emission});\n    ALPHA = {coverage};\n}}\n\n\
          // Godot multiplies the colors of lights by PI.\n\
-         void light() {{\n    DIFFUSE_LIGHT += {diffuse} * LIGHT_COLOR * (ATTENUATION / PI);\n}}\n",
+         void light() {{\n    DIFFUSE_LIGHT += {diffuse} * haze_tint * LIGHT_COLOR * (ATTENUATION / PI);\n}}\n",
     )
 }

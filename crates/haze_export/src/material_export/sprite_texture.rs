@@ -4,6 +4,9 @@ use glam::{UVec2, Vec4};
 use haze_core::assets::sprite::Sprite;
 use image::{Rgba, RgbaImage};
 
+/// Name of the file.
+pub const SPRITE: &str = "sprite.png";
+
 /// Frames of a sprite on one image: rgb = normal / 2 + 1/2 (x right, y up, z towards the viewer), a = amount. Not sRGB.
 pub struct SpriteTexture {
     pub image: RgbaImage,
@@ -15,7 +18,8 @@ pub struct SpriteTexture {
 
 impl SpriteTexture {
     pub fn new(sprite: &Sprite) -> Self {
-        let (size, frames) = (sprite.size(), sprite.frame_count());
+        let size = sprite.size();
+        let frames = sprite.frame_count();
         let columns = (1..).find(|columns| columns * columns >= frames).unwrap_or(1);
         let cells = UVec2::new(columns, frames.div_ceil(columns));
         let image = RgbaImage::from_fn(cells.x * size, cells.y * size, |x, y| {

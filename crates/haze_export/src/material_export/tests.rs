@@ -19,10 +19,13 @@ const ENGINES: [Engine; 5] = [Engine::Unreal, Engine::Unity, Engine::Godot, Engi
 /// Settings that use every ramp, as far as they choose, with numbers that differ from each other.
 fn settings(has_ramps: bool, ramp_filter: RampFilter) -> Settings {
     let mut settings = Settings { ramp_filter, boost: 1.7, ..Settings::default() };
-    (settings.diffuse.intensity, settings.soft_scatter.intensity) = (0.8, 1.3);
+    settings.diffuse.intensity = 0.8;
+    settings.soft_scatter.intensity = 1.3;
     let scatter = &mut settings.soft_scatter;
-    (scatter.scatter_amount, scatter.scatter_smooth) = (0.1, 0.5);
-    (scatter.scatter_color, scatter.ambient_color) = (vec3(0.6, 0.5, 0.2), vec3(0.1, 0.2, 0.4));
+    scatter.scatter_amount = 0.1;
+    scatter.scatter_smooth = 0.5;
+    scatter.scatter_color = vec3(0.6, 0.5, 0.2);
+    scatter.ambient_color = vec3(0.1, 0.2, 0.4);
     if has_ramps {
         settings.diffuse.backlight = Backlight::Ramp;
         settings.soft_scatter.mode = SoftScatterMode::Ramp;
@@ -66,14 +69,16 @@ fn cases() -> Vec<Case> {
 
 /// Diffuse response and coverage, soft scatter, and emission, from `formula/`.
 fn expected(settings: &Settings, assets: &MaterialAssets, case: &Case) -> [Vec4; 3] {
-    let ([normal, to_light, to_viewer], amount) = (case.vectors, case.amount);
-    let (filter, covered) = (settings.ramp_filter, coverage(amount, settings.boost));
+    let [normal, to_light, to_viewer] = case.vectors;
+    let amount = case.amount;
+    let filter = settings.ramp_filter;
+    let covered = coverage(amount, settings.boost);
     let against = match settings.diffuse.backlight {
         Backlight::Ramp => backlight_weight(to_light, to_viewer),
         Backlight::Same => 0.0,
     };
     let ramps = [&assets.diffuse_ramp, &assets.backlight_ramp];
-    let diffuse = diffuse_response(ramps, filter, (normal, to_light), covered, against);
+    let diffuse = diffuse_response(ramps, filter, normal, to_light, covered, against);
     let opacity = match settings.coverage {
         CoverageMode::Linear => covered,
         CoverageMode::Ramp => painted_share(sample_ramp(&assets.coverage_ramp, filter, covered)),
@@ -154,7 +159,8 @@ fn run(gpu: &Headless, snippet: &Snippet, text: &str, assets: &MaterialAssets, c
             mapped_at_creation: false,
         })
     };
-    let (input, output) = (buffer(wgpu::BufferUsages::COPY_DST), buffer(wgpu::BufferUsages::COPY_SRC));
+    let input = buffer(wgpu::BufferUsages::COPY_DST);
+    let output = buffer(wgpu::BufferUsages::COPY_SRC);
     gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&inputs));
     let textures: Vec<_> = snippet.ramps.iter().map(|ramp| upload(gpu, (ramp.of)(assets))).collect();
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
@@ -225,7 +231,8 @@ fn error(settings: &Settings, assets: &MaterialAssets, cases: &[Case], found: &[
 #[test]
 fn wgsl_computes_what_the_renderers_compute() {
     let gpu = Headless::new().unwrap();
-    let (assets, cases) = (assets(), cases());
+    let assets = assets();
+    let cases = cases();
     for settings in all_settings() {
         let snippet = Snippet::new(&settings, Engine::Wgsl).unwrap();
         let exact = snippet.wgsl.replace("EXACT_FILTERING: bool = false", "EXACT_FILTERING: bool = true");
@@ -416,16 +423,106 @@ fn materials_for_godot_have_the_heat_by_age() {
     let preset = Preset::load("campfire").unwrap();
     let assets = preset.load_materials("campfire".as_ref()).unwrap();
     for engine in ENGINES {
-        let export = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets[0], engine).unwrap();
+        let export = MaterialExport::new(&preset.name, 0, &preset.systems[0], &assets[0], engine).unwrap();
         let is_godot = engine == Engine::Godot;
         let knows_age = is_godot || engine == Engine::Three;
         assert_eq!(export.files().any(|file| file == "heat_ramp.png"), knows_age, "{engine:?}");
-        let readme = &export.texts.iter().find(|(name, _)| *name == "README.md").unwrap().1;
+        let readme = &export.texts.iter().find(|(name, _)| name == "README.md").unwrap().1;
         assert_eq!(readme.contains("`haze_heat_ramp`"), is_godot, "{readme}");
         assert_eq!(readme.contains("| `heat_ramp.png` |"), knows_age, "{readme}");
-        let by_age = "haze_particle_heat = haze_heat * haze_heat_by_age(haze_heat_ramp, INSTANCE_CUSTOM.y);";
+        let by_age = "haze_particle_heat = haze_heat * haze_heat_by_age(haze_heat_ramp, age);";
         assert_eq!(export.texts[0].1.contains(by_age), is_godot, "{}", export.texts[0].1);
     }
+}
+
+/// Files of the first system of a preset for Godot.
+fn godot_export(preset: &Preset) -> MaterialExport {
+    let assets = preset.load_materials("column".as_ref()).unwrap();
+    MaterialExport::new(&preset.name, 0, &preset.systems[0], &assets[0], Engine::Godot).unwrap()
+}
+
+fn text_of<'a>(export: &'a MaterialExport, file: &str) -> Option<&'a str> {
+    export.texts.iter().find(|(name, _)| name == file).map(|(_, text)| text.as_str())
+}
+
+#[test]
+fn scenes_for_godot_refer_to_what_is_there() {
+    for name in haze_preset::builtin::PRESETS.iter().map(|preset| preset.name) {
+        let preset = Preset::load(name).unwrap();
+        let export = godot_export(&preset);
+        let scene = text_of(&export, SCENE).unwrap();
+        let quoted = |before: &str| -> BTreeSet<String> {
+            scene.split(before).skip(1).map(|rest| rest.split('"').next().unwrap().to_owned()).collect()
+        };
+        let [external, internal] = [quoted("ExtResource(\""), quoted("SubResource(\"")];
+        let used: BTreeSet<_> = external.union(&internal).cloned().collect();
+        assert_eq!(used, quoted(" id=\""), "{name}");
+        let files: BTreeSet<_> = export.files().map(str::to_owned).collect();
+        for file in quoted(" path=\"") {
+            assert!(files.contains(&file), "{name}: {file}");
+            assert_eq!(file.ends_with(".png"), files.contains(&format!("{file}.import")), "{name}: {file}");
+        }
+        let is_no_number = |word: &str| matches!(word, "NaN" | "inf" | "-inf");
+        assert!(!scene.split([' ', ',', '(', ')', '[', ']', '\n']).any(is_no_number), "{name}");
+    }
+}
+
+#[test]
+fn scenes_for_godot_have_the_numbers_of_the_emitter() {
+    let mut preset = Preset::load("column").unwrap();
+    let number = |preset: &Preset, name: &str| -> String {
+        let export = godot_export(preset);
+        let scene = text_of(&export, SCENE).unwrap();
+        let line = scene.lines().find_map(|line| line.strip_prefix(&format!("{name} = ")));
+        line.unwrap_or_else(|| panic!("{name}")).to_owned()
+    };
+    let emitter = &mut preset.systems[0].emitter;
+    emitter.rate = 20.0;
+    emitter.lifetime = 4.0;
+    emitter.lifetime_spread = 0.25;
+    emitter.turbulence = 0.0;
+    emitter.velocity_spread = 0.6;
+    emitter.drag = 0.5;
+    assert_eq!(number(&preset, "lifetime"), "5.0");
+    assert_eq!(number(&preset, "amount"), "100");
+    assert_eq!(number(&preset, "lifetime_randomness"), "0.4");
+    assert_eq!(number(&preset, "preprocess"), "5.0");
+    assert_eq!(number(&preset, "initial_velocity_max"), "0.6");
+    assert_eq!(number(&preset, "damping_max"), "0.1");
+    preset.systems[0].emitter.size = 4.0;
+    assert_eq!([number(&preset, "lifetime"), number(&preset, "amount")], ["10.0", "100"]);
+    preset.systems[0].emitter.size = 1.0;
+    preset.systems[0].emitter.duration = 2.0;
+    assert_eq!([number(&preset, "amount"), number(&preset, "explosiveness")], ["40", "0.6"]);
+    preset.systems[0].emitter.period = 8.0;
+    assert_eq!(number(&preset, "amount"), "25");
+}
+
+#[test]
+fn readmes_for_godot_say_what_its_particles_do_not_do() {
+    let mut preset = Preset::load("column").unwrap();
+    let has = |preset: &Preset, name: &str| {
+        text_of(&godot_export(preset), "README.md").unwrap().contains(&format!("| `{name}` |"))
+    };
+    for name in ["period", "attraction", "ring_speed", "heat_spread", "obstacle"] {
+        assert!(!has(&preset, name), "{name}");
+    }
+    let system = &mut preset.systems[0];
+    system.emitter.duration = 1.0;
+    system.emitter.period = 2.0;
+    system.emitter.heat_spread = 0.5;
+    system.emitter.attraction = 1.0;
+    system.emitter.ring_speed = 1.0;
+    system.emitter.obstacle_margin = 1.0;
+    system.settings.fire.intensity = 2.0;
+    for name in ["period", "attraction", "ring_speed", "heat_spread", "obstacle", "small_share", "turbulence"] {
+        assert!(has(&preset, name), "{name}");
+    }
+    assert!(text_of(&godot_export(&preset), SCENE).is_some());
+    preset.systems[0].particle_files.path = "smoke_####.ply".into();
+    let export = godot_export(&preset);
+    assert!(text_of(&export, SCENE).is_none());
+    assert!(text_of(&export, "README.md").unwrap().contains("There is no scene with particles"));
 }
 
 #[test]
@@ -433,9 +530,9 @@ fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
     let preset = Preset::load("wildfire_sky").unwrap();
     let assets = preset.load_materials("wildfire_sky".as_ref()).unwrap();
     for engine in ENGINES {
-        let export = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets[0], engine).unwrap();
+        let export = MaterialExport::new(&preset.name, 0, &preset.systems[0], &assets[0], engine).unwrap();
         let names: Vec<_> = export.textures.iter().map(|(name, _)| name.as_str()).collect();
-        let sprite = (engine == Engine::Three).then_some("sprite.png");
+        let sprite = matches!(engine, Engine::Godot | Engine::Three).then_some("sprite.png");
         assert!(
             names.into_iter().eq(["diffuse_ramp.png", "backlight_ramp.png"].into_iter().chain(sprite)),
             "{engine:?}"
@@ -464,7 +561,7 @@ fn textures_hold_the_ramps_in_the_row_order_of_the_engine() {
 fn materials_for_engines_of_flipbooks_alone_are_refused() {
     let preset = Preset::load("column").unwrap();
     let refused = |engine| {
-        let made = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets(), engine);
+        let made = MaterialExport::new(&preset.name, 0, &preset.systems[0], &assets(), engine);
         made.err().unwrap().to_string()
     };
     assert_eq!(
@@ -517,7 +614,7 @@ fn light_that_comes_from_no_ramp_is_refused() {
     let mut preset = Preset::load("column").unwrap();
     let assets = assets();
     let refused = |preset: &Preset| {
-        let made = MaterialExport::new(&preset.name, (0, &preset.systems[0]), &assets, Engine::Wgsl);
+        let made = MaterialExport::new(&preset.name, 0, &preset.systems[0], &assets, Engine::Wgsl);
         made.err().unwrap().to_string()
     };
     preset.systems[0].settings.diffuse.mode = DiffuseMode::PaintedMotif;

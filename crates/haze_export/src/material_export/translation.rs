@@ -2,7 +2,8 @@
 
 use std::collections::HashSet;
 
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_core::error::Error;
 use naga::back::{glsl, hlsl};
 use naga::compact::{KeepUnused, compact};
 use naga::proc::BoundsCheckPolicies;

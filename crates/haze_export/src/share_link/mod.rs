@@ -10,8 +10,10 @@ mod packed_text;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::ramp::RampRecipe;
+use haze_core::error::Error;
+use haze_core::settings::rename_old_keys;
 use haze_preset::{Preset, builtin};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -105,8 +107,11 @@ impl Look {
         let name = RENAMED.iter().find(|(old, _)| *old == b).map_or(b.as_str(), |(_, new)| new);
         let name = builtin::find(builtin::PRESETS, name).ok_or_else(damaged)?.name;
         let mut json = json_of(&base(name)?);
-        if d.is_some_and(|difference| !json_diff::apply(&mut json, difference)) {
-            return Err(damaged().into());
+        if let Some(mut difference) = d {
+            rename_old_keys(&mut difference);
+            if !json_diff::apply(&mut json, difference) {
+                return Err(damaged().into());
+            }
         }
         let preset = Preset::parse(Path::new("link"), &json.to_string())?;
         let mut ramps = BTreeMap::new();

@@ -17,7 +17,7 @@ fn changed_look() -> Look {
     for (field, value) in [
         ("camera.position", "1.5,2.25,-3.125"),
         ("camera.exposure", "1.35"),
-        ("systems[0].settings.accumulate.scale", "4"),
+        ("systems[0].settings.accumulate.downscale", "4"),
         ("systems[0].emitter.rate", "17.5"),
         ("systems[0].material.diffuse_ramp", "mine.png"),
     ] {
@@ -76,7 +76,7 @@ fn links_of_version_1_open_for_ever() {
                     (&look.preset.camera, &look.preset.lights),
                     (&changed.preset.camera, &changed.preset.lights)
                 );
-                assert_eq!(look.preset.systems[0].settings.accumulate.scale, 4);
+                assert_eq!(look.preset.systems[0].settings.accumulate.downscale, 4);
                 assert_eq!(look.ramps, changed.ramps);
             }
             _ => {}
@@ -84,6 +84,21 @@ fn links_of_version_1_open_for_ever() {
         count += 1;
     }
     assert!(count >= 2);
+}
+
+#[test]
+fn links_with_names_of_before_open() {
+    let settings = r#"{"density":{"density":6},"sprite":{"debug_loop":3},"accumulate":{"scale":4}}"#;
+    let difference = format!(r#"{{"systems":{{"0":{{"cache":{{"up":"z"}},"settings":{settings}}}}}}}"#);
+    let text = format!(r#"{{"b":"column","d":{difference}}}"#);
+    let look = Look::from_fragment(&format!("1{}", packed_text::pack(&text).unwrap())).unwrap();
+    let mut expected = Preset::load("column").unwrap();
+    let system = &mut expected.systems[0];
+    system.particle_files.up = haze_preset::UpAxis::Z;
+    system.settings.exponential.density = 6.0;
+    system.settings.debug.draw_count = 3;
+    system.settings.accumulate.downscale = 4;
+    assert_eq!(look.preset, expected);
 }
 
 #[test]

@@ -140,11 +140,14 @@ impl AnimatedFields {
             return Self { tracks: Vec::new() };
         }
         let by_setting: HashMap<&str, &Track> = tracks.iter().map(|track| (track.setting.as_str(), track)).collect();
-        let (mut found, mut index, mut name) = (Vec::new(), 0, String::new());
+        let mut found = Vec::new();
+        let mut index = 0;
+        let mut name = String::new();
         for_each_animated_field(fields, &mut |path, field| {
             write_field_path(path, &mut name);
             if let Some((track, kind)) = by_setting.get(name.as_str()).copied().zip(field.kind()) {
-                let (flickers, own) = (field.flickers(), field.value());
+                let flickers = field.flickers();
+                let own = field.value();
                 found.push(FoundTrack { field: index, track: track.clone(), kind, flickers, own });
             }
             index += 1;
@@ -154,12 +157,13 @@ impl AnimatedFields {
 
     /// Sets the fields to their values at a time. Their ranges are kept. Needs no memory of the heap, except for choices.
     pub(crate) fn write(&self, time: f64, has_flicker: bool, fields: &mut dyn Fields) {
-        self.write_values(time, (has_flicker, true), None, fields);
+        self.write_values(time, Writing { has_flicker, is_clamped: true }, None, fields);
     }
 
     /// Sets the fields to their values at a time, outside of their ranges too, but one field to the value of a keyframe.
-    pub(super) fn write_keyframe(&self, setting: &str, key: (f32, &KeyValue), fields: &mut dyn Fields) {
-        self.write_values(f64::from(key.0), (false, false), Some((setting, key.1)), fields);
+    pub(super) fn write_keyframe(&self, setting: &str, time: f32, value: &KeyValue, fields: &mut dyn Fields) {
+        let writing = Writing { has_flicker: false, is_clamped: false };
+        self.write_values(f64::from(time), writing, Some((setting, value)), fields);
     }
 
     /// True if the setting of the first track can flicker.
@@ -184,14 +188,15 @@ impl AnimatedFields {
     fn write_values(
         &self,
         time: f64,
-        (has_flicker, is_clamped): (bool, bool),
+        Writing { has_flicker, is_clamped }: Writing,
         instead: Option<(&str, &KeyValue)>,
         fields: &mut dyn Fields,
     ) {
         if self.tracks.is_empty() {
             return;
         }
-        let (mut rest, mut index) = (self.tracks.iter().peekable(), 0);
+        let mut rest = self.tracks.iter().peekable();
+        let mut index = 0;
         for_each_animated_field(fields, &mut |_, field| {
             if let Some(found) = rest.next_if(|found| found.field == index) {
                 let given = instead.filter(|(setting, _)| *setting == found.track.setting);
@@ -203,6 +208,15 @@ impl AnimatedFields {
             index += 1;
         });
     }
+}
+
+/// Way in which values are written.
+#[derive(Clone, Copy)]
+struct Writing {
+    /// Adds the flicker of tracks.
+    has_flicker: bool,
+    /// Keeps the ranges of the fields.
+    is_clamped: bool,
 }
 
 /// Maximum nesting depth. No preset comes near it.

@@ -37,7 +37,8 @@ struct Segment<'a> {
 /// `None` without keyframes.
 pub(super) fn value(keys: &[Keyframe], period: f32, time: f64, kind: Kind) -> Option<KeyValue> {
     let time = if period > 0.0 { time.rem_euclid(f64::from(period)) } else { time };
-    let (first, last) = (keys.first()?, keys.last()?);
+    let first = keys.first()?;
+    let last = keys.last()?;
     let next = keys.partition_point(|key| f64::from(key.time) <= time);
     if keys.len() == 1 || period <= 0.0 && next == 0 {
         return Some(first.value.clone());
@@ -90,7 +91,8 @@ impl<'a> Segment<'a> {
     }
 
     fn component(&self, progress: f32, get: &dyn Fn(&Keyframe) -> f32) -> f32 {
-        let (start, end) = (get(self.from.key), get(self.to.key));
+        let start = get(self.from.key);
+        let end = get(self.to.key);
         let slope = |from: &Place<'_>, to: &Place<'_>| Slope::between(from, to, get(to.key) - get(from.key));
         start + (end - start) * self.eased(progress, end - start, &slope, &|_| 1.0)
     }
@@ -126,7 +128,8 @@ impl<'a> Segment<'a> {
             Ease::Hold => 0.0,
             Ease::Smooth => {
                 let here = slope(&self.from, &self.to);
-                let (from, to) = (&self.from, &self.to);
+                let from = &self.from;
+                let to = &self.to;
                 let start = self
                     .before
                     .as_ref()
@@ -172,14 +175,16 @@ impl Slope {
         if self.per_second * next.per_second <= 0.0 {
             return 0.0;
         }
-        let (left, right) = (self.seconds + 2.0 * next.seconds, 2.0 * self.seconds + next.seconds);
+        let left = self.seconds + 2.0 * next.seconds;
+        let right = 2.0 * self.seconds + next.seconds;
         (left + right) / (left / self.per_second + right / next.per_second)
     }
 }
 
 /// Cubic from 0 to 1 with these slopes at its ends.
 fn hermite(x: f32, start: f32, end: f32) -> f32 {
-    let (x2, x3) = (x * x, x * x * x);
+    let x2 = x * x;
+    let x3 = x * x * x;
     (x3 - 2.0 * x2 + x) * start + (3.0 * x2 - 2.0 * x3) + (x3 - x2) * end
 }
 
@@ -262,7 +267,8 @@ mod tests {
     #[test]
     fn smooth_directions_rest_where_they_turn_back_or_aside_and_pass_where_they_go_on() {
         let key = |(time, azimuth, elevation): (f32, f32, f32)| {
-            let ((sin, cos), (up, level)) = (azimuth.to_radians().sin_cos(), elevation.to_radians().sin_cos());
+            let (sin, cos) = azimuth.to_radians().sin_cos();
+            let (up, level) = elevation.to_radians().sin_cos();
             let value = KeyValue::Vector(Vec3::new(cos * level, up, sin * level));
             Keyframe { time, value, ease: Ease::Smooth }
         };
@@ -274,7 +280,10 @@ mod tests {
             };
             at(time - 5e-3).angle_between(at(time + 5e-3)).to_degrees() / 1e-2
         };
-        let (there, on, back, up) = ((1.0, 40.0, 0.0), (2.0, 80.0, 0.0), (2.0, 0.0, 0.0), (2.0, 40.0, 40.0));
+        let there = (1.0, 40.0, 0.0);
+        let on = (2.0, 80.0, 0.0);
+        let back = (2.0, 0.0, 0.0);
+        let up = (2.0, 40.0, 40.0);
         let begin = (0.0, 0.0, 0.0);
         for (last, expected) in [(on, 40.0), (back, 0.0), (up, 0.0)] {
             let speeds = [0.99, 1.0, 1.01].map(|time| speed([begin, there, last], time));
@@ -300,7 +309,8 @@ mod tests {
             let period = if is_periodic { time + 1.0 } else { 0.0 };
             for pair in keys.windows(2) {
                 let found = number_at(&keys, period, pair[0].time + at * (pair[1].time - pair[0].time));
-                let (a, b) = (number(&pair[0]), number(&pair[1]));
+                let a = number(&pair[0]);
+                let b = number(&pair[1]);
                 prop_assert!((a.min(b) - 1e-3..=a.max(b) + 1e-3).contains(&found), "{a} {found} {b}");
             }
             let ends = [number(&keys[0]), number(keys.last().unwrap())];

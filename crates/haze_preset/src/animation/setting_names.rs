@@ -8,7 +8,8 @@ use crate::asset_folders::MIN_SIMILARITY;
 /// Name of the setting that is most like a wrong name: in its last part, and then as a whole.
 pub(super) fn nearest(wrong: &str, fields: &mut dyn Fields) -> Option<String> {
     let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
-    let (wanted, mut nearest) = (last(wrong), None::<((f64, f64), String)>);
+    let wanted = last(wrong);
+    let mut nearest = None::<((f64, f64), String)>;
     for_each_animated_field(fields, &mut |path, field| {
         let name = field_path(path);
         let alike = (strsim::jaro_winkler(&wanted, &last(&name)), strsim::jaro_winkler(wrong, &name));

@@ -39,15 +39,15 @@ pub(crate) fn validate_tracks<T: Fields + Clone>(
     let animated = AnimatedFields::new(tracks, &mut copy);
     for (index, track) in tracks.iter().enumerate() {
         for (number, key) in track.keys.iter().enumerate() {
-            animated.write_keyframe(&track.setting, (key.time, &key.value), &mut copy);
-            check(&copy).map_err(|error| with_keyframe(error, &track.setting, key.time, (index, number)))?;
+            animated.write_keyframe(&track.setting, key.time, &key.value, &mut copy);
+            check(&copy).map_err(|error| with_keyframe(error, &track.setting, key.time, index, number))?;
         }
     }
     Ok(())
 }
 
 /// Names the keyframe in the error of a value. The error of another setting names the time.
-fn with_keyframe(mut error: FieldError, setting: &str, time: f32, (track, key): (usize, usize)) -> FieldError {
+fn with_keyframe(mut error: FieldError, setting: &str, time: f32, track: usize, key: usize) -> FieldError {
     if error.field == setting {
         error.field = format!("animation[{track}].keys[{key}].value");
         error.expected = format!("{} for {setting}", error.expected);
@@ -89,7 +89,8 @@ fn check_times(track: &Track, at: &str) -> Result<(), FieldError> {
 
 /// Checks that the setting exists, and that the values are of its type.
 fn check_types(track: &Track, at: &str, fields: &mut dyn Fields) -> Result<(), FieldError> {
-    let (mut found, mut name) = (None, String::new());
+    let mut found = None;
+    let mut name = String::new();
     for_each_animated_field(fields, &mut |path, field| {
         write_field_path(path, &mut name);
         if found.is_none() && name == track.setting {

@@ -23,7 +23,8 @@ impl VisibleSystem<'_> {
             } else if mode == DepthDownsample::Point {
                 limit(self.scene_view_depth((first + scale / 2).min(last)))
             } else {
-                let (mut nearest, mut farthest) = (SKY_VIEW_DEPTH, 0.0_f32);
+                let mut nearest = SKY_VIEW_DEPTH;
+                let mut farthest = 0.0_f32;
                 let end = (first + scale - 1).min(last);
                 for y in first.y..=end.y {
                     for x in first.x..=end.x {

@@ -20,7 +20,8 @@ impl AccumulatedTarget<'_> {
     /// inside.
     pub fn slope_texel(&self, light: impl Fn(IVec2) -> Vec4, at: IVec2) -> Vec4 {
         let at = at.clamp(IVec2::ZERO, self.visible.setup.rect.size.as_ivec2() - 1);
-        let (depth, fade) = (self.guide(at), 1.0 / self.visible.system.fade_scale);
+        let depth = self.guide(at);
+        let fade = 1.0 / self.visible.system.fade_scale;
         let cross = [IVec2::NEG_X, IVec2::ZERO, IVec2::X, IVec2::NEG_Y, IVec2::Y];
         let depths = cross.map(|offset| self.guide(at + offset));
         let (nearest, farthest) = depths.iter().fold((depth, depth), |(low, high), &d| (low.min(d), high.max(d)));

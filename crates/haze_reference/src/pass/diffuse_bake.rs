@@ -129,7 +129,7 @@ impl VisibleSystem<'_> {
         let ramps = [&self.material.diffuse_ramp, &self.material.backlight_ramp];
         let against = self.backlight_share(sample.direction, position);
         let filter = self.settings.ramp_filter;
-        let response = diffuse_response(ramps, filter, (normal, sample.direction), covered, against);
+        let response = diffuse_response(ramps, filter, normal, sample.direction, covered, against);
         response * light.color * sample.attenuation * self.shadow_on_light(light, sample.direction, position, shade)
     }
 
@@ -185,7 +185,8 @@ impl VisibleSystem<'_> {
     /// Light that hot smoke gives, per share of the scene that all smoke hides. `fire`: as from
     /// [`fire_from_moments`](haze_core::formula::fire::fire_from_moments).
     pub fn emission(&self, fire: Vec2, amount: f32) -> Vec3 {
-        let (system, ramp) = (&self.system, &self.material.fire_ramp);
+        let system = &self.system;
+        let ramp = &self.material.fire_ramp;
         fire_response(ramp, self.settings.ramp_filter, fire, amount, system.boost) * system.fire_intensity
     }
 

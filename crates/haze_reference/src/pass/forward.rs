@@ -29,7 +29,7 @@ impl VisibleSystem<'_> {
                 let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
                 let covered = coverage(amount, system.boost);
                 let mut shade = Shade::of_sprites(sprite.optical_depths);
-                if self.settings.lights_by_depth() {
+                if self.settings.receives_shadow_by_depth() {
                     let moments = self.moments_of_sprite(sprite.view_depth, sprite.radius);
                     let pixel = at.as_vec2() + 0.5;
                     shade = self.shade_on_ray(sprite.optical_depths, pixel, moments);

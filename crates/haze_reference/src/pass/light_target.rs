@@ -18,7 +18,8 @@ impl AccumulatedTarget<'_> {
 
     /// Texel of the lit target. Positions outside are clamped to the nearest texel inside.
     pub fn lit_texel(&self, at: IVec2) -> Vec4 {
-        let (visible, system) = (self.visible, &self.visible.system);
+        let visible = self.visible;
+        let system = &self.visible.system;
         let at = at.clamp(IVec2::ZERO, visible.setup.rect.size.as_ivec2() - 1);
         let accumulated = self.first_texture().map_or(Vec4::ZERO, |texture| texture.load(at));
         let amount = accumulated.w;

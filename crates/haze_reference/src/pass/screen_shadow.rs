@@ -62,7 +62,8 @@ impl<'a> ScreenShadow<'a> {
             let ViewUniform { size, ray_scale, orthographic, .. } = self.view;
             let pixels = pixels_per_metre(size.y, ray_scale.y, -point.z, orthographic);
             let above = self.world_from_view.transform_point3(point + normal * (2.0 / pixels));
-            let (mut full, mut shaded) = (self.ambient, self.ambient);
+            let mut full = self.ambient;
+            let mut shaded = self.ambient;
             for (index, light) in self.lights.iter().enumerate() {
                 let sample = sample_light(light, point);
                 let facing = sample.attenuation * normal.dot(sample.direction).clamp(0.0, 1.0);

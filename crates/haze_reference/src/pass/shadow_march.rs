@@ -15,7 +15,7 @@ pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow, block: u32) -> Vec
     let radii = shadow.march.radii[block];
     let march = |origin| {
         let towards = |slot: usize| {
-            stored(optical_depth_towards(density, shadow, (lights[slot], radii[slot]), origin, SHADOW_STEPS))
+            stored(optical_depth_towards(density, shadow, lights[slot], radii[slot], origin, SHADOW_STEPS))
         };
         Vec3::from([0, 1, 2].map(towards))
     };
@@ -26,7 +26,7 @@ pub fn march_to_lights(density: &[f32], shadow: &SmokeShadow, block: u32) -> Vec
 pub fn march_to_sky(density: &[f32], shadow: &SmokeShadow) -> Vec<Vec3> {
     let openness = |origin: Vec3, side: f32| {
         let directions = shadow.march.sky.map(|direction| (direction.truncate() * side).extend(1.0));
-        let depths = directions.map(|to| optical_depth_towards(density, shadow, (to, 0.0), origin, SKY_STEPS));
+        let depths = directions.map(|to| optical_depth_towards(density, shadow, to, 0.0, origin, SKY_STEPS));
         stored(depths.map(|depth| (-depth).exp2()).iter().sum::<f32>() / SKY_DIRECTIONS as f32)
     };
     let march = |origin| Vec3::new(openness(origin, 1.0), openness(origin, -1.0), 0.0);
@@ -38,11 +38,12 @@ fn cell_centers(size: UVec3) -> impl Iterator<Item = Vec3> {
     (0..size.element_product()).map(move |index| cell(index).as_vec3() + 0.5)
 }
 
-/// `light`: as in [`shadow_ray`], and its radius in cells.
+/// `light`: as in [`shadow_ray`]. `radius`: of the light, cells.
 fn optical_depth_towards(
     density: &[f32],
     shadow: &SmokeShadow,
-    (light, radius): (Vec4, f32),
+    light: Vec4,
+    radius: f32,
     origin: Vec3,
     steps: u32,
 ) -> f32 {

@@ -38,7 +38,8 @@ pub fn map_visibility(map: &ShadowMapUniform, layers: &[Image<f32>], place: Vec3
     let found: Option<(Vec4, &Image<f32>)> = map.clip_from_grid.iter().zip(layers).find_map(inside);
     found.map_or(1.0, |(at, layer)| {
         let corner = at.xy() * layer.size.as_vec2() - 0.5;
-        let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
+        let base = corner.floor().as_ivec2();
+        let fraction = corner - corner.floor();
         let lit = |x, y| {
             let texel = (base + IVec2::new(x, y)).clamp(IVec2::ZERO, layer.size.as_ivec2() - 1);
             shadow_map_visibility(at.z, layer.load(texel), map.bias, map.reversed == 1)

@@ -38,7 +38,8 @@ impl AccumulatedTarget<'_> {
     /// Quad of the light, if any of it is visible.
     pub fn glow_quad<'a>(&self, light: &'a LightUniform) -> Option<GlowQuad<'a>> {
         let visible = self.visible;
-        let (size, view) = (visible.system.specular_scatter_size, &visible.view);
+        let size = visible.system.specular_scatter_size;
+        let view = &visible.view;
         let directional = light.directional > 0.5;
         let homogeneous = if directional { (-light.direction).extend(0.0) } else { light.position.extend(1.0) };
         let clip = view.clip_from_view * homogeneous;
@@ -72,7 +73,9 @@ impl AccumulatedTarget<'_> {
             return None;
         }
         let amount = if self.is_lit { self.sample_lit(pixel).w } else { self.sample_accumulated(pixel).w };
-        if amount <= 0.0 {
+        // A coarse target may have smoke at a thin surface that is in front of all smoke.
+        let is_in_front = visible.scene_view_depth(pixel.floor().as_ivec2()) < visible.system.smoke_near;
+        if amount <= 0.0 || is_in_front {
             return None;
         }
         let coordinate = Vec2::new(distance_squared, amount);

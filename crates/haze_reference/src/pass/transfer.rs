@@ -37,7 +37,9 @@ pub struct Surface {
 impl AccumulatedTarget<'_> {
     /// Diffuse light on a surface, by the system's mode.
     pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
-        let (visible, normal, shade) = (self.visible, surface.normal, &surface.shade);
+        let visible = self.visible;
+        let normal = surface.normal;
+        let shade = &surface.shade;
         if visible.settings.is_six_way() {
             let light = visible.diffuse_from_six_way(&surface.six_way, position, shade);
             return light * visible.system.diffuse_intensity * surface.tint;
@@ -76,7 +78,8 @@ impl AccumulatedTarget<'_> {
     pub fn covers_pixel(&self, at: IVec2, pixel: Vec2) -> bool {
         let visible = self.visible;
         // The ray is parametrised by view depth: from the eye, or straight ahead.
-        let (start, end) = (visible.view_position(pixel, 0.0), visible.view_position(pixel, 1.0));
+        let start = visible.view_position(pixel, 0.0);
+        let end = visible.view_position(pixel, 1.0);
         let origin = visible.world_from_view.transform_point3(start);
         let direction = visible.world_from_view.transform_vector3(end - start);
         let t0 = (visible.system.bounds_min - origin) / direction;
@@ -103,13 +106,14 @@ impl AccumulatedTarget<'_> {
         }
         let accumulated = if self.is_lit { self.sample_lit(pixel) } else { self.sample_accumulated(pixel) };
         let amount = accumulated.w;
-        match debug_view {
-            DebugView::Overdraw => return Some(overdraw_color(amount * 255.0).extend(1.0)),
-            DebugView::Amount => return Some(Vec3::splat(amount).extend(1.0)),
-            _ => {}
-        }
         if amount <= 0.0 {
             return None;
+        }
+        match debug_view {
+            DebugView::Overdraw => return Some(overdraw_color(amount * 255.0).extend(1.0)),
+            // White smoke: over black, the amount of all systems.
+            DebugView::Amount => return Some(Vec4::splat(amount)),
+            _ => {}
         }
         let covered = self.coverage(amount);
         if self.is_lit {
@@ -153,7 +157,7 @@ impl AccumulatedTarget<'_> {
     /// Surface at a pixel, past the scene's shadow.
     pub fn shaded_surface(&self, attachments: &Attachments, pixel: Vec2) -> Surface {
         let mut surface = self.surface(attachments);
-        if AttachmentRole::Depth.is_used(&self.visible.settings) {
+        if self.visible.settings.receives_shadow_by_depth() {
             surface.shade = self.visible.shade_on_ray(surface.shade.optical_depths[0], pixel, surface.depth);
         }
         surface
@@ -207,7 +211,8 @@ impl AccumulatedTarget<'_> {
 
     /// Light from sky and ground, if the system has it and does not bake it.
     pub fn ambient(&self, surface: &Surface, covered: f32) -> Option<Vec3> {
-        let (visible, openness) = (self.visible, surface.shade.openness);
+        let visible = self.visible;
+        let openness = surface.shade.openness;
         let light = match visible.settings.is_six_way() {
             true => visible.ambient_from_six_way(&surface.six_way, openness),
             false => visible.ambient_from_ramp(surface.normal, covered, openness),

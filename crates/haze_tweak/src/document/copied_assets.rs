@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::Error;
 use haze_author::backdrop::{backdrop_names, companion_files};
+use haze_core::error::{AssetError, Error};
 use haze_export::inputs::relative_image_paths;
 use haze_export::recipe_files::recipe_paths;
 use haze_preset::{AssetFolders, Preset, backdrop_file_path};
@@ -49,7 +49,7 @@ fn copy(pairs: impl Iterator<Item = (PathBuf, PathBuf)>) -> Result<(), Error> {
             copies.push((source, target));
         } else if read(&target)? != bytes {
             let reason = format!("differs from {}; expected a folder without a file of this name", source.display());
-            return Err(Error::Image { path: target, reason });
+            return Err(Error::from(AssetError::Image { path: target, reason }));
         }
     }
     for (source, target) in copies {

@@ -3,9 +3,10 @@
 pub use egui_gradient::sentence_case;
 
 /// Fields, groups and choices whose names in files are abbreviations, or terms of programmers.
-const SPELLED_OUT: [(&str, &str); 17] = [
+const SPELLED_OUT: [(&str, &str); 18] = [
     ("accumulate", "Smoke buffer"),
-    ("cache", "Particles from files"),
+    ("particle_files", "Particles from files"),
+    ("downscale", "Scale"),
     ("environment", "Sky and scene"),
     ("fbm", "Fractal noise"),
     ("fov", "Field of view"),

@@ -136,7 +136,8 @@ mod tests {
 
     #[test]
     fn undo_during_a_drag_reverts_the_drag() {
-        let (mut history, mut value) = (History::new(0), 1);
+        let mut history = History::new(0);
+        let mut value = 1;
         history.track(&value, true, name);
         assert_eq!(history.undo(&mut value), Some("0 to 1"));
         assert_eq!(value, 0);
@@ -166,7 +167,8 @@ mod tests {
     fn the_number_of_steps_is_limited() {
         let mut history = History::new(0);
         (1..=3000u32).for_each(|value| history.track(&value, false, name));
-        let (mut value, mut steps) = (3000, 0);
+        let mut value = 3000;
+        let mut steps = 0;
         while history.undo(&mut value).is_some() {
             steps += 1;
         }
@@ -178,7 +180,9 @@ mod tests {
         #[test]
         fn steps_are_undone_and_redone_in_order(does in prop::collection::vec((0u8..5, 0u8..4), 1..60)) {
             let mut history = History::new(0);
-            let (mut model, mut at, mut value) = (vec![0], 0, 0);
+            let mut model = vec![0];
+            let mut at = 0;
+            let mut value = 0;
             for (what, to) in does {
                 match what {
                     0 => {
@@ -215,7 +219,8 @@ mod tests {
                 prop_assert_eq!(history.undo_name().is_some(), at > 0);
                 prop_assert_eq!(history.redo_name().is_some(), at + 1 < model.len());
             }
-            let (last, undone) = (value, at);
+            let last = value;
+            let undone = at;
             (0..undone).for_each(|_| assert!(history.undo(&mut value).is_some()));
             prop_assert_eq!(value, 0);
             (0..undone).for_each(|_| assert!(history.redo(&mut value).is_some()));

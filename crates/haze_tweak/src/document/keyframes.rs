@@ -48,7 +48,9 @@ impl KeyframeEdit {
         };
         // Canceling a drag brings the keyframes from before it back; they are not written again.
         let is_restored = !has_other_lists && preset.animation != self.shown.animation;
-        let (own, shown, edited) = (of(&self.before), of(&self.shown), of(preset));
+        let own = of(&self.before);
+        let shown = of(&self.shown);
+        let edited = of(preset);
         for_each_field(preset, &mut |path, field| {
             if let Some(value) = own.get(&field_path(path)) {
                 field.set(value);
@@ -232,7 +234,8 @@ mod tests {
 
     #[test]
     fn a_change_of_a_setting_with_keyframes_is_a_keyframe_and_any_other_is_not() {
-        let (mut changed, before) = (preset(), preset());
+        let mut changed = preset();
+        let before = preset();
         assert_eq!(edit(&mut changed, 1.0, |_| {}), None);
         assert_eq!(changed, before, "to look changes nothing");
         assert_eq!(edit(&mut changed, 1.0, |preset| preset.lights[1].intensity = 9.0), None);

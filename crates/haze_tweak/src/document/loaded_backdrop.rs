@@ -20,8 +20,14 @@ impl LoadedBackdrop {
     pub fn put(&mut self, kind: BackdropKind, name: &str, loaded: Backdrop) {
         let [scene_name, sky_name] = &mut self.names;
         match kind {
-            BackdropKind::Scene => (*scene_name, self.backdrop.scene) = (name.into(), loaded.scene),
-            BackdropKind::Sky => (*sky_name, self.backdrop.sky) = (name.into(), loaded.sky),
+            BackdropKind::Scene => {
+                *scene_name = name.into();
+                self.backdrop.scene = loaded.scene;
+            }
+            BackdropKind::Sky => {
+                *sky_name = name.into();
+                self.backdrop.sky = loaded.sky;
+            }
         }
     }
 

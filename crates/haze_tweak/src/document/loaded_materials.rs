@@ -52,7 +52,8 @@ mod tests {
         let loaded_materials = LoadedMaterials::new(&preset, load(&preset));
         let [first, second] = &loaded_materials.of(&preset)[..] else { panic!("two systems") };
         assert!(!first.shares_memory(second));
-        let (first, second) = (first.clone(), second.clone());
+        let first = first.clone();
+        let second = second.clone();
         preset.systems.reverse();
         let swapped = loaded_materials.of(&preset);
         assert!(swapped[0].shares_memory(&second) && swapped[1].shares_memory(&first));

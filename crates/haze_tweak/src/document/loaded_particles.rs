@@ -26,5 +26,5 @@ impl LoadedParticles {
 
 /// Returns the particle-file path of each system; empty for a system without one.
 pub fn paths(preset: &Preset) -> Vec<String> {
-    preset.systems.iter().map(|system| system.cache.path.clone()).collect()
+    preset.systems.iter().map(|system| system.particle_files.path.clone()).collect()
 }

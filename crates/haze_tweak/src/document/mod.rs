@@ -18,7 +18,8 @@ pub mod sprite_edits;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_core::error::Error;
 use haze_export::inputs::{backdrop_file_paths, image_paths};
 use haze_preset::{AssetFolders, Preset, builtin};
 
@@ -100,7 +101,8 @@ impl Document {
         let (preset, text) = file_io::read_preset(name_or_path)?;
         let recipes = Recipes::default();
         let history = History::new((preset.clone(), recipes.clone()));
-        let (saved, path) = (Some(preset.clone()), name_or_path.into());
+        let saved = Some(preset.clone());
+        let path = name_or_path.into();
         Ok(Self { saved, preset, recipes, history, gradient_step: None, path, text, stamp, writing: Weak::new() })
     }
 
@@ -196,14 +198,19 @@ impl Document {
         if is_written && Weak::as_ptr(&self.writing) == Arc::as_ptr(&text) {
             // The stamp is left open, so that the next check reads the file: another program may have written it
             // meanwhile.
-            (self.text, self.stamp, self.saved, self.path) = (text.to_string(), None, Some(preset), path);
+            self.text = text.to_string();
+            self.stamp = None;
+            self.saved = Some(preset);
+            self.path = path;
         }
     }
 
     /// Reads the file again, as a step that can be undone.
     pub fn revert(&mut self) -> Result<(), Error> {
         let Self { preset, text, stamp, .. } = Self::open(&self.path)?;
-        (self.text, self.stamp, self.saved) = (text, stamp, Some(preset.clone()));
+        self.text = text;
+        self.stamp = stamp;
+        self.saved = Some(preset.clone());
         self.put(preset, "Revert");
         Ok(())
     }
@@ -228,7 +235,8 @@ impl Document {
 
     /// Keeps the edited version without touching the file. The document then has unsaved changes.
     pub fn keep_mine(&mut self) {
-        (self.stamp, self.saved) = (Stamp::of(&self.path), None);
+        self.stamp = Stamp::of(&self.path);
+        self.saved = None;
     }
 
     /// Returns the preset as text for the clipboard.

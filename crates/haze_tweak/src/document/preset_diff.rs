@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use haze_core::settings::{FieldValue, field_path, field_values, for_each_field};
-use haze_preset::{Preset, Track};
+use haze_preset::{Preset, PresetSystem, Track};
 
 use super::display_names::{display_name, sentence_case};
 use super::keyframes::track;
@@ -85,17 +85,30 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
         changed.retain(|path| path != "environment.lamp");
     }
     let Some(first) = changed.first() else { return "Change".into() };
-    let (owner, of) = (owner_of(first), of_owner(after, first));
+    let owner = owner_of(first);
+    let of = of_owner(after, first);
     let length = |preset| lists(preset).into_iter().find(|(list, _)| list == first).map(|(_, length)| length);
     match changed.as_slice() {
         [list] if length(before) < length(after) => format!("{} added", sentence_case(singular(list))),
         [list] if length(before) > length(after) => format!("{} removed", sentence_case(singular(list))),
         fields if fields.iter().all(|field| MOVES.contains(&field.as_str())) => "Camera".into(),
+        fields if is_move(fields, before, after) => "System moved".into(),
         fields if moves_sun(fields) => "Sun and sky".into(),
         [field] => format!("{}{of}", display_name(field.rsplit('.').next().unwrap_or(field))),
         fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} settings{of}", fields.len()),
         fields => format!("{} settings", fields.len()),
     }
+}
+
+/// True if fields are those of systems that have only changed their places.
+fn is_move(fields: &[String], before: &Preset, after: &Preset) -> bool {
+    let before = &before.systems;
+    let after = &after.systems;
+    if before == after || !fields.iter().all(|field| field.starts_with("systems[")) {
+        return false;
+    }
+    let count = |list: &[PresetSystem], system| list.iter().filter(|other| *other == system).count();
+    before.len() == after.len() && before.iter().all(|system| count(before, system) == count(after, system))
 }
 
 /// True if fields are those of a time of day.
@@ -107,7 +120,8 @@ fn moves_sun(fields: &[String]) -> bool {
 /// Returns the name of a setting with that of its light or system: "Boost of smoke", "Shadow: Strength of smoke".
 pub fn setting_title(preset: &Preset, path: &str) -> String {
     let mut names = path.rsplit('.');
-    let (name, group) = (names.next().unwrap_or(path), names.next().unwrap_or_default());
+    let name = names.next().unwrap_or(path);
+    let group = names.next().unwrap_or_default();
     let is_plain = group.contains('[') || ["", "settings", "emitter", "camera"].contains(&group);
     let group = if is_plain { String::new() } else { format!("{}: ", display_name(group)) };
     format!("{group}{}{}", display_name(name), of_owner(preset, path))
@@ -137,7 +151,6 @@ fn singular(list: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use haze::{Light, Settings};
-    use haze_preset::PresetSystem;
 
     use super::*;
     use crate::document::keyframes::add_key;
@@ -175,6 +188,14 @@ mod tests {
         expect(said(dusk), "environment.horizon lights[1].direction", "Sun and sky");
         expect(said(|preset| preset.lights.truncate(2)), "lights", "Light removed");
         expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "System added");
+        let two = |swaps: bool| {
+            let mut preset = Preset::load("campfire").unwrap();
+            if swaps {
+                preset.systems.reverse();
+            }
+            preset
+        };
+        assert_eq!(step_name(&two(false), &two(true)), "System moved");
         expect(
             said(|preset| (preset.lights[1].color.x, preset.lights[1].intensity) = (0.0, 0.0)),
             "lights[1].color lights[1].intensity",

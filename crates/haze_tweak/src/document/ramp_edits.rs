@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use egui_gradient::GradientEditor;
-use haze::{Error, MaterialAssets};
+use haze::MaterialAssets;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::fit_stops::fit_image;
 use haze_author::ramp::lint::{BANDING, lint_ramp};
 use haze_core::assets::ramp::Ramp;
-use haze_core::error::builtin_path;
+use haze_core::error::{Error, builtin_path};
 use haze_core::settings::{FieldValue, field_values, set_field};
 use haze_preset::{AssetFolders, MaterialSources, Preset, builtin};
 
@@ -93,7 +93,8 @@ impl RampEdits {
 
     /// Requests a copy of a built-in ramp. A built-in preset must be saved first.
     pub fn request_copy(&mut self, system: usize, field: &'static str, is_built_in: bool) {
-        (self.wanted, self.needs_saved_preset) = (Some((system, field)), is_built_in);
+        self.wanted = Some((system, field));
+        self.needs_saved_preset = is_built_in;
     }
 
     /// Forgets the requested copy.
@@ -127,7 +128,9 @@ impl RampEdits {
     pub fn import_and_bake(&mut self, name: &str) -> Result<(usize, f32), Error> {
         let fitted = self.fit(name)?;
         // `advance` writes it.
-        self.known.get_mut(name).into_iter().for_each(|known| known.written = None);
+        if let Some(known) = self.known.get_mut(name) {
+            known.written = None;
+        }
         Ok(fitted)
     }
 
@@ -255,7 +258,7 @@ fn stamps(picture: &Path) -> [Option<Stamp>; 2] {
 /// Writes the recipe first, because the image can be made again from it.
 pub fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
     file_io::write(&recipe_of(picture), recipe.to_json().as_bytes())?;
-    write_baked_png(picture, baked)
+    Ok(write_baked_png(picture, baked)?)
 }
 
 /// Writes a copy of a built-in ramp beside a preset under a free name, and returns the name.

@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 use haze_preset::Preset;
 
 use super::Document;
@@ -67,7 +67,7 @@ impl Recovery {
         if self.written.as_ref().is_none_or(|(_, written)| *written != path) {
             // A path that is not Unicode cannot be written as text; the work is then recovered without it.
             let written = lock.write(path.to_str().unwrap_or_default());
-            written.map_err(|error| Error::Io { path: lock.path().into(), error })?;
+            written.map_err(|error| Error::from(AssetError::Io { path: lock.path().into(), error }))?;
         }
         file_io::write_state_file(&preset_beside(lock.path()), document.preset.to_json("").as_bytes())?;
         self.written = Some((document.preset.clone(), path));
@@ -110,7 +110,7 @@ fn free_lock(folder: &Path) -> Result<Lock, Error> {
     let free = (1..MAX_LOCKS).map(path).filter(is_free).find_map(|path| Lock::take(&path));
     free.ok_or_else(|| {
         let error = std::io::Error::other("cannot lock a file here; expected a writable folder");
-        Error::Io { path: path(1), error }
+        Error::from(AssetError::Io { path: path(1), error })
     })
 }
 
@@ -135,7 +135,8 @@ impl CrashedWork {
 /// Returns the unsaved work of crashed processes in the folder, and the errors of files that cannot be read. Those
 /// files stay.
 pub fn find_crashed_work(folder: &Path) -> (Vec<CrashedWork>, Vec<Error>) {
-    let (mut found, mut errors) = (Vec::new(), Vec::new());
+    let mut found = Vec::new();
+    let mut errors = Vec::new();
     let is_lock = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         name.starts_with("recovery-") && name.ends_with(".lock")
@@ -183,7 +184,8 @@ mod tests {
     #[test]
     fn work_left_by_a_crash_is_offered_once() {
         let folder = tempfile::tempdir().unwrap();
-        let (state, now) = (folder.path().join("state"), Instant::now());
+        let state = folder.path().join("state");
+        let now = Instant::now();
         let mut document = changed(1.0);
         let mut recovery = Recovery::new(&state);
         recovery.write_periodically(&document, now).unwrap();
@@ -216,7 +218,8 @@ mod tests {
     #[test]
     fn saved_work_leaves_no_files() {
         let folder = tempfile::tempdir().unwrap();
-        let (state, now) = (folder.path(), Instant::now());
+        let state = folder.path();
+        let now = Instant::now();
         let mut document = changed(1.0);
         let mut recovery = Recovery::new(state);
         recovery.write_periodically(&document, now).unwrap();
@@ -241,7 +244,8 @@ mod tests {
     #[test]
     fn the_last_valid_preset_is_kept_with_its_path() {
         let folder = tempfile::tempdir().unwrap();
-        let (state, file) = (folder.path().join("state"), folder.path().join("shot.json"));
+        let state = folder.path().join("state");
+        let file = folder.path().join("shot.json");
         let mut document = changed(1.0);
         document.save_as(&file).unwrap();
         let mut recovery = Recovery::new(&state);
@@ -271,7 +275,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let blocked = folder.path().join("state");
         fs::write(&blocked, "a file").unwrap();
-        let (mut recovery, now) = (Recovery::new(&blocked), Instant::now());
+        let mut recovery = Recovery::new(&blocked);
+        let now = Instant::now();
         assert!(recovery.write_periodically(&changed(1.0), now).is_err());
         assert!(recovery.write_periodically(&changed(1.0), now + RECOVERY_WRITE_INTERVAL).is_ok());
         fs::remove_file(&blocked).unwrap();

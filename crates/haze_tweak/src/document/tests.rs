@@ -155,7 +155,8 @@ fn only_writes_by_other_programs_count_as_changes_on_disk() {
 #[test]
 fn images_are_copied_to_another_folder_on_save() {
     let folder = tempfile::tempdir().unwrap();
-    let (old, new) = (folder.path().join("old"), folder.path().join("new"));
+    let old = folder.path().join("old");
+    let new = folder.path().join("new");
     fs::create_dir_all(old.join("ramps")).unwrap();
     fs::create_dir(&new).unwrap();
     let mut document = Document::open(&shot(&old)).unwrap();

@@ -13,7 +13,8 @@ const MAX_LINKS: u32 = 40;
 pub fn places(path: &Path) -> Vec<PathBuf> {
     let steps =
         |path: &Path| path.components().rev().map(|part| part.as_os_str().to_owned()).collect::<Vec<OsString>>();
-    let (mut places, mut links) = (Vec::new(), 0);
+    let mut places = Vec::new();
+    let mut links = 0;
     let mut at = PathBuf::new();
     let mut to_go = std::path::absolute(path).map(|path| steps(&path)).unwrap_or_default();
     while let Some(step) = to_go.pop() {

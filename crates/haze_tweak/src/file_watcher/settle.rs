@@ -36,7 +36,8 @@ impl FileState {
 
     pub fn update(&mut self, stamp: Option<Stamp>, at: Instant) -> FileAction {
         if stamp != self.now {
-            (self.now, self.since) = (stamp, at);
+            self.now = stamp;
+            self.since = at;
         }
         if self.now == self.reported {
             return FileAction::Nothing;

@@ -93,7 +93,8 @@ impl Shared {
         let files: Vec<_> = self.lock().files.keys().cloned().collect();
         let stamps: Vec<_> = files.into_iter().map(|file| (Stamp::of(&file), file)).collect();
         let mut state = self.lock();
-        let (mut is_new, mut next) = (false, None::<Instant>);
+        let mut is_new = false;
+        let mut next = None::<Instant>;
         for (stamp, file) in stamps {
             match state.files.get_mut(&file).map(|file| file.update(stamp, Instant::now())) {
                 None | Some(FileAction::Nothing) => {}

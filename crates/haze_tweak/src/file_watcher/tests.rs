@@ -120,7 +120,8 @@ fn a_slow_write_is_reported_when_it_is_complete() {
     const MAX_TRIES: u32 = 50;
     for _ in 0..MAX_TRIES {
         let mut file = File::create(&path).unwrap();
-        let (mut last, mut longest) = (Instant::now(), Duration::ZERO);
+        let mut last = Instant::now();
+        let mut longest = Duration::ZERO;
         for _ in 0..20 {
             thread::sleep(Duration::from_millis(15));
             file.write_all(b"more ").unwrap();
@@ -142,7 +143,8 @@ fn a_slow_write_is_reported_when_it_is_complete() {
 fn changed_folders_and_links_on_the_way_are_followed() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path();
-    let (mounted, deep) = (root.join("mounted/a.json"), root.join("in/deep/b.json"));
+    let mounted = root.join("mounted/a.json");
+    let deep = root.join("in/deep/b.json");
     fs::create_dir_all(root.join("mounted/..1")).unwrap();
     fs::write(root.join("mounted/..1/a.json"), "1").unwrap();
     symlink("..1", root.join("mounted/..data")).unwrap();
@@ -195,7 +197,8 @@ fn swapped_folders_are_followed() {
 #[test]
 fn a_save_is_reported_within_a_fifth_of_a_second() {
     let folder = tempfile::tempdir().unwrap();
-    let (path, partial) = (folder.path().join("a.png"), folder.path().join("partial"));
+    let path = folder.path().join("a.png");
+    let partial = folder.path().join("partial");
     fs::write(&path, "old").unwrap();
     let watched = Watched::new(&[&path]);
     let mut took: Vec<_> = (0..50)

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::backdrop::{BLENDER_SKY_ROTATION, Backdrop};
+use haze_core::error::Error;
 use haze_core::settings::BackdropKind;
 use haze_preset::AssetFolders;
 

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::preset::{no_effect_reason, role_warnings};
 use haze_core::assets::ramp::RampRole;
 use haze_core::assets::sprite::SpriteLayout;
+use haze_core::error::Error;
 use haze_core::settings::{FieldRef, for_each_field, set_field};
 use haze_export::recipe_files::six_way_path;
 use haze_preset::{AssetFolders, MaterialSources, Preset};
@@ -53,7 +54,8 @@ impl DroppedImage {
                 Err(_) => {}
             }
         }
-        let (file, doubt) = (path.file_name().unwrap_or_default().display(), wrong.unwrap_or_default());
+        let file = path.file_name().unwrap_or_default().display();
+        let doubt = wrong.unwrap_or_default();
         let expected =
             format!("a ramp or a sprite, or a file name that tells the role, such as diffuse_{file}; {doubt}");
         Err(refuse("fits no role", &expected))

@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_core::error::{AssetError, Error};
 use haze_demo::shot::Shot;
 use haze_export::backend::Backend;
 use haze_export::debug_view_sheet;
@@ -17,7 +18,9 @@ use image::{DynamicImage, RgbImage};
 use super::value_spread::spread_values;
 use crate::document::display_names::display_name;
 use crate::platform::file_io::{CompressionEffort, write_png};
-use crate::platform::render_job::{Alpha, Engine, EngineFlipbook, ExportProgress, Frames, ImageFormat, SCENE};
+use crate::platform::render_job::{
+    Engine, EngineFlipbook, ExportProgress, FlipbookChoices, Frames, ImageFormat, SCENE,
+};
 use crate::platform::worker::{Ticket, Worker};
 use crate::platform::{IS_PAGE, file_io, render_job};
 use crate::session::Session;
@@ -98,8 +101,7 @@ pub struct ExportOptions {
     pub format: ImageFormat,
     /// Of a material, and of a flipbook for an engine.
     pub engine: Engine,
-    /// Color of a flipbook for an engine. `None`: premultiplied if a system burns.
-    pub flipbook_alpha: Option<Alpha>,
+    pub engine_flipbook: FlipbookChoices,
     /// System of a material. The selected one, when the export begins.
     pub system: usize,
 }
@@ -116,7 +118,7 @@ impl Default for ExportOptions {
             file: FileKind::default(),
             format: ImageFormat::default(),
             engine: Engine::default(),
-            flipbook_alpha: None,
+            engine_flipbook: FlipbookChoices::default(),
             system: 0,
         }
     }
@@ -177,10 +179,11 @@ impl ExportJob {
     /// `wake` is called from the worker thread when a result is ready. `folder` is that of the last export.
     ///
     /// # Errors
-    /// [`Error::Io`] if the system cannot start another thread.
+    /// [`AssetError::Io`] if the system cannot start another thread.
     pub fn new(wake: impl Fn() + Send + 'static, folder: Option<PathBuf>) -> Result<Self, Error> {
         let worker = Worker::new("haze export", wake);
-        let worker = worker.map_err(|error| Error::Io { path: "a thread to export".into(), error })?;
+        let worker =
+            worker.map_err(|error| Error::from(AssetError::Io { path: "a thread to export".into(), error }))?;
         Ok(Self {
             worker,
             progress: Arc::default(),
@@ -208,7 +211,7 @@ impl ExportJob {
 
     /// Starts an export of the current view. A sheet is made at once; for anything else, the user is asked for a path.
     /// On a page, the browser downloads the file.
-    pub fn order(&mut self, product: ExportKind, session: &mut Session) {
+    pub fn start(&mut self, product: ExportKind, session: &mut Session) {
         if self.worker.is_busy() {
             session.messages.error("export", "An export is running. Stop it, or wait until it ends.");
         } else if product.is_sheet() {
@@ -220,7 +223,7 @@ impl ExportJob {
     }
 
     /// Asks where to save the shown sheet.
-    pub fn order_sheet(&mut self, session: &mut Session) {
+    pub fn save_sheet(&mut self, session: &mut Session) {
         self.ask(Waiting::Sheet, session);
     }
 
@@ -230,7 +233,8 @@ impl ExportJob {
             (Waiting::Sheet, Some(sheet)) => &sheet.kind,
             (Waiting::Sheet, None) => return,
         };
-        let suggested = free_path(self.folder.as_deref(), session, kind.file_ending(self.options.file));
+        let (content, ending) = kind.file_ending(self.options.file);
+        let suggested = free_path(self.folder.as_deref(), session, content, ending);
         self.waiting = Some(waiting);
         if IS_PAGE {
             self.answer(Some(suggested), session);
@@ -274,7 +278,8 @@ impl ExportJob {
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
         self.options.system = session.view.system;
-        let (options, shaders) = (self.options.clone(), session.shaders.clone());
+        let options = self.options.clone();
+        let shaders = session.shaders.clone();
         self.worker.submit_async(async move |ticket: Ticket| {
             let go_on = |done, count| {
                 progress.done.store(done, Ordering::Relaxed);
@@ -319,15 +324,15 @@ struct Target {
 
 /// Returns a path that does not exist yet: in the folder of the last export or of the document, with the name of the
 /// document and the time.
-fn free_path(folder: Option<&Path>, session: &Session, (what, end): (&str, &str)) -> PathBuf {
+fn free_path(folder: Option<&Path>, session: &Session, content: &str, ending: &str) -> PathBuf {
     let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
     let title: String = session.document.title().chars().map(plain).take(60).collect();
     let stem = format!("{title}_{:.2}s", session.playback.time);
     let folder = folder.or(session.document.path().parent()).unwrap_or(Path::new(""));
-    let what = if what.is_empty() { String::new() } else { format!("_{what}") };
+    let content = if content.is_empty() { String::new() } else { format!("_{content}") };
     let name = |number| match number {
-        1 => format!("{stem}{what}{end}"),
-        _ => format!("{stem}{what}_{number}{end}"),
+        1 => format!("{stem}{content}{ending}"),
+        _ => format!("{stem}{content}_{number}{ending}"),
     };
     let paths = (1..10_000).map(|number| folder.join(name(number)));
     let path = paths.into_iter().find(|path| !file_io::is_taken(path)).unwrap_or_else(|| folder.join(name(1)));
@@ -388,9 +393,9 @@ async fn make(
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::EngineFlipbook => {
-            let choices =
-                EngineFlipbook { engine: options.engine, cells: options.cells, alpha: options.flipbook_alpha };
-            render_job::write_engine_flipbook(backend, shot, &frames, choices, path, watch).await?;
+            let flipbook =
+                EngineFlipbook { engine: options.engine, cells: options.cells, choices: options.engine_flipbook };
+            render_job::write_engine_flipbook(backend, shot, &frames, flipbook, path, watch).await?;
             return Ok(ExportResult::Written(path.clone()));
         }
         ExportKind::Material => {

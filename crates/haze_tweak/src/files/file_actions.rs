@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui;
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 use haze_preset::{AssetFolders, backdrop_kind};
 
 use super::dropped_backdrop::DroppedBackdrop;
@@ -71,9 +71,9 @@ impl FileActions {
     /// `wake` is called from other threads when a result is ready.
     ///
     /// # Errors
-    /// [`Error::Io`] if the system cannot start another thread.
+    /// [`AssetError::Io`] if the system cannot start another thread.
     pub fn new(has_dialogs: bool, wake: impl Fn() + Send + Sync + 'static) -> Result<Self, Error> {
-        let thread = |error| Error::Io { path: "a thread for files".into(), error };
+        let thread = |error| Error::from(AssetError::Io { path: "a thread for files".into(), error });
         let wake = Arc::new(wake);
         let its = Arc::clone(&wake);
         Ok(Self {
@@ -162,7 +162,8 @@ impl FileActions {
                 Err(error) => FileResult::Failed(error),
             });
         } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            let (folders, index) = (session.folders(), session.view.system);
+            let folders = session.folders();
+            let index = session.view.system;
             let system = session.document.preset.systems.get(index);
             let material = system.map(|system| system.material.clone()).unwrap_or_default();
             self.worker.submit(move |_| match DroppedImage::read(&path, &folders, &material) {
@@ -279,7 +280,9 @@ impl FileActions {
                 session.messages.info("file", format!("Saved {}", path.display()));
                 file_io::offer_download(&path);
                 // The document may have been changed during the save.
-                then.into_iter().for_each(|next| self.begin_or_ask(next, session));
+                if let Some(next) = then {
+                    self.begin_or_ask(next, session);
+                }
             }
             Err(error) => {
                 session.cancel_copies();

@@ -6,10 +6,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use haze::MaterialAssets;
 use haze::shader::{self, Sources};
-use haze::{Error, MaterialAssets};
 use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::ParticleFrames;
+use haze_core::error::{AssetError, Error, PrepareError};
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use haze_export::inputs::{backdrop_file_paths, relative_image_paths};
@@ -90,14 +91,14 @@ impl HotReload {
     /// Watches the files of a session. `wake` is called from other threads when something has changed.
     ///
     /// # Errors
-    /// [`Error::Io`] if the system cannot start another thread.
+    /// [`AssetError::Io`] if the system cannot start another thread.
     pub fn new(
         session: &Session,
         shaders: &ShaderFolder,
         renderer: &ViewportRenderer,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self, Error> {
-        let thread = |error| Error::Io { path: "a thread to follow files".into(), error };
+        let thread = |error| Error::from(AssetError::Io { path: "a thread to follow files".into(), error });
         let wake = Arc::new(wake);
         let its = Arc::clone(&wake);
         let mut hot_reload = Self {
@@ -147,7 +148,9 @@ impl HotReload {
                 self.load_backdrop(session);
             }
         }
-        let (mut has_pictures, mut has_particle_files, mut has_shaders) = (false, false, false);
+        let mut has_pictures = false;
+        let mut has_particle_files = false;
+        let mut has_shaders = false;
         let mut has_backdrop = false;
         for file in self.watcher.poll() {
             if self.shaders.as_ref().is_some_and(|shaders| shaders.files.contains(&file)) {
@@ -209,7 +212,8 @@ impl HotReload {
     fn load_pictures(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
         let path = session.document.path().to_owned();
-        let (old, folders) = (session.loaded_materials.clone(), session.folders());
+        let old = session.loaded_materials.clone();
+        let folders = session.folders();
         let ticket = self.worker.submit(move |_| {
             let loaded = asset_loading::pictures(&preset, &path, &folders).map(|loaded| old.reuse_equal(loaded));
             ReloadResult::Pictures(preset, loaded)
@@ -223,7 +227,8 @@ impl HotReload {
     /// Loads the particle files that the preset names. The present ones stay if that fails.
     fn load_particle_files(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
-        let (path, folders) = (session.document.path().to_owned(), session.folders());
+        let path = session.document.path().to_owned();
+        let folders = session.folders();
         let ticket = self.worker.submit(move |_| {
             let loaded = asset_loading::particles(&preset, &path, &folders);
             ReloadResult::ParticleFiles(preset, loaded)
@@ -236,7 +241,8 @@ impl HotReload {
     /// Loads scene and sky that the preset names. The present ones stay if that fails.
     fn load_backdrop(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
-        let (path, folders) = (session.document.path().to_owned(), session.folders());
+        let path = session.document.path().to_owned();
+        let folders = session.folders();
         let ticket = self.worker.submit(move |_| {
             let loaded = asset_loading::backdrop(&preset, &path, &folders);
             ReloadResult::Backdrop(preset, loaded)
@@ -249,12 +255,16 @@ impl HotReload {
     /// Compiles the shaders, and the pipelines that the preset needs, on the worker thread.
     pub fn check_shaders(&mut self, session: &Session, renderer: &ViewportRenderer) {
         let Some(shaders) = &mut self.shaders else { return };
-        let (folder, context) = (shaders.folder.clone(), renderer.context());
+        let folder = shaders.folder.clone();
+        let context = renderer.context();
         let shot = session.shot(glam::UVec2::new(64, 36));
         let ticket = self.worker.submit(move |_| {
             let mut files = embedded_names(&folder);
             let checked = check(&folder, &context, &shot, &mut files);
-            if let Err(Error::Io { path, .. } | Error::Shader { path, .. }) = &checked
+            if let Err(
+                Error::Asset(AssetError::Io { path, .. } | AssetError::Text { path, .. })
+                | Error::Prepare(PrepareError::Shader { path, .. }),
+            ) = &checked
                 && path.starts_with(&folder)
             {
                 // A file that could not be read is watched as well.

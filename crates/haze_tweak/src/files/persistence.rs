@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use eframe::egui;
-use haze::Error;
+use haze_core::error::Error;
 use serde::{Deserialize, Serialize};
 
 use super::file_actions::FileActions;
@@ -80,8 +80,8 @@ impl Layout {
         let (found, error): (Self, _) = json_store::read(folder, LAYOUT);
         let window = found.window.filter(|sides| sides.iter().all(|side| (320.0..=16_384.0).contains(side)));
         let is_finite = |panel: &PanelSize| panel.size.is_finite() && panel.room.is_finite();
-        let (settings_width, strip_height) =
-            (found.settings_width.filter(is_finite), found.strip_height.filter(is_finite));
+        let settings_width = found.settings_width.filter(is_finite);
+        let strip_height = found.strip_height.filter(is_finite);
         (Self { window, settings_width, strip_height, ..found }, error)
     }
 
@@ -142,7 +142,8 @@ impl Persistence {
             }
         }
         self.written = Some((layout.clone(), now));
-        let (folder, layout) = (self.folder.clone(), layout.clone());
+        let folder = self.folder.clone();
+        let layout = layout.clone();
         file_actions.write_in_background(move || json_store::write(&folder, LAYOUT, &layout));
     }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 use haze_demo::tonemap_pass::tonemap;
 use haze_preset::{AssetFolders, builtin};
 use image::RgbImage;
@@ -53,10 +53,11 @@ impl PresetThumbnails {
     /// `wake` is called from the worker thread when a thumbnail is ready.
     ///
     /// # Errors
-    /// [`Error::Io`] if the system cannot start another thread.
+    /// [`AssetError::Io`] if the system cannot start another thread.
     pub fn new(wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
         let worker = Worker::new("haze thumbnails", wake);
-        let worker = worker.map_err(|error| Error::Io { path: "a thread to draw thumbnails".into(), error })?;
+        let worker = worker
+            .map_err(|error| Error::from(AssetError::Io { path: "a thread to draw thumbnails".into(), error }))?;
         Ok(Self { worker, entries: Vec::new(), tickets: Vec::new() })
     }
 

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::backdrop::backdrop_names;
+use haze_core::error::Error;
 use haze_export::inputs::relative_image_paths;
 use haze_export::share_link::Look;
 use haze_preset::builtin;
@@ -20,7 +21,7 @@ use crate::session::Session;
 pub fn fragment_of(session: &mut Session) -> Result<String, FieldError> {
     let preset = session.document.preset.clone();
     for (index, system) in preset.systems.iter().enumerate() {
-        if system.cache.is_used() {
+        if system.particle_files.is_used() {
             let problem = format!("systems[{index}] has particle files");
             return Err(refuse(problem, "an emitter; save the preset as a file instead"));
         }

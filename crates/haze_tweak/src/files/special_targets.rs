@@ -9,9 +9,10 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::error::Error;
 use haze_demo::shot::Shot;
 use haze_export::backend::Backend;
 use haze_export::frame_range::FrameNames;
@@ -119,7 +120,8 @@ fn frames() -> Frames {
 
 fn sequence(path: &Path) -> Result<(), Error> {
     let names = FrameNames::parse(&folder_of(path).join("shot_%04d.png"))?;
-    let (shot, effort) = (Shot::load("column", UVec2::splat(8))?, CompressionEffort::Quick);
+    let shot = Shot::load("column", UVec2::splat(8))?;
+    let effort = CompressionEffort::Quick;
     let progress = ExportProgress::Callback(&|_, _| true);
     pollster::block_on(write_sequence(&Backend::Cpu, &shot, &frames(), &names, effort, &progress))
 }

@@ -62,7 +62,8 @@ fn five_values(value: f32, low: f32, high: f32, needs_log_slider: bool) -> [f32;
         return STEPS.map(|step| step.clamp(low, high));
     }
     let (low, high) = if value < 0.0 { (-high, -low) } else { (low, high) };
-    let (least, most) = ((0.25 * size).max(low), (4.0 * size).min(high));
+    let least = (0.25 * size).max(low);
+    let most = (4.0 * size).min(high);
     PLACES.map(|place| (least * (most / least).powf(place)).copysign(value))
 }
 
@@ -79,7 +80,8 @@ impl FieldVisitor for ValueSpread<'_> {
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
-        let (low, high) = (*range.start() as f32, *range.end() as f32);
+        let low = *range.start() as f32;
+        let high = *range.end() as f32;
         self.offer(
             name,
             five_values(*value as f32, low, high, needs_log_slider(&range)).map(|number| number.round().to_string()),

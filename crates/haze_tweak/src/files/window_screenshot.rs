@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{self, Ui};
-use haze::Error;
+use haze_core::error::Error;
 use image::RgbImage;
 
 use crate::platform::file_io::{CompressionEffort, write_png};
@@ -32,7 +32,8 @@ impl Screenshot {
             }
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         } else if self.frames == SETTLED_FRAMES {
-            let (taken, context) = (self.taken.clone(), ui.ctx().clone());
+            let taken = self.taken.clone();
+            let context = ui.ctx().clone();
             ui.ctx().request_screenshot(move |picture| {
                 *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(picture);
                 context.request_repaint();
@@ -46,5 +47,5 @@ pub(super) fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error
     let [width, height] = picture.size.map(|side| side as u32);
     let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
-    write_png(path, &picture.into(), CompressionEffort::Small)
+    Ok(write_png(path, &picture.into(), CompressionEffort::Small)?)
 }

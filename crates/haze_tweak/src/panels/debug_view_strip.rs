@@ -74,7 +74,8 @@ pub fn debug_view_strip(ui: &mut Ui, session: &mut Session, renderer: &ViewportR
 /// Draws the arrow from one view to the next.
 fn arrow(ui: &mut Ui, size: Vec2) {
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-    let (middle, reach) = (rect.center(), 3.5);
+    let middle = rect.center();
+    let reach = 3.5;
     let points = [
         middle + Vec2::new(-0.5 * reach, -reach),
         middle + Vec2::new(0.5 * reach, 0.0),

@@ -2,10 +2,10 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::files::export_job::{ExportJob, ExportKind, FileKind, MAX_PIXELS, Sheet};
+use crate::files::export_job::{ExportJob, ExportKind, ExportOptions, FileKind, MAX_PIXELS, Sheet};
 use crate::platform::IS_PAGE;
 use crate::platform::clock::Duration;
-use crate::platform::render_job::{Alpha, Background, BitDepth, Engine};
+use crate::platform::render_job::{Alpha, Background, BitDepth, Emission, Engine, burns};
 use crate::session::Session;
 use crate::session::setting_search::matches;
 
@@ -33,7 +33,7 @@ pub fn panel(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
                 export_job.stop();
             }
         }
-        None => order(ui, export_job, session),
+        None => export_options(ui, export_job, session),
     });
     export_job.is_open = is_open;
     sheet(ui, export_job, session);
@@ -53,6 +53,11 @@ const FLIPBOOK_ALPHAS: [(&str, Option<Alpha>, &str); 3] = [
     ("Auto", None, "Premultiplied if a system burns, straight otherwise"),
     (ALPHAS[0].0, Some(ALPHAS[0].1), ALPHAS[0].2),
     (ALPHAS[1].0, Some(ALPHAS[1].1), ALPHAS[1].2),
+];
+
+const EMISSIONS: [(&str, Emission, &str); 2] = [
+    ("In the Color", Emission::Contained, "The color is complete; emission.png is for materials that light the smoke"),
+    ("Separate", Emission::Separate, "The color is without the light of fire; emission.png is to be added to it"),
 ];
 
 const FILES: [(&str, (FileKind, BitDepth), &str); 3] = [
@@ -90,7 +95,26 @@ fn choices<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, choices:
     ui.end_row();
 }
 
-fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
+/// Draws the rows of a flipbook for an engine that no other export has.
+fn flipbook_rows(ui: &mut Ui, options: &mut ExportOptions, burns: bool) {
+    let max_fade = options.last.saturating_sub(options.first);
+    let flipbook = &mut options.engine_flipbook;
+    choices(ui, "Alpha", &mut flipbook.alpha, &FLIPBOOK_ALPHAS);
+    // A choice can be taken back after the fire is out.
+    if burns || flipbook.emission == Emission::Separate {
+        choices(ui, "Light of fire", &mut flipbook.emission, &EMISSIONS);
+    }
+    let about = "Number of frames after the last that are faded into the first, so that it loops; 0: it does not loop";
+    let label = ui.label("Loop").id;
+    ui.add(egui::DragValue::new(&mut flipbook.loop_fade).range(0..=max_fade)).labelled_by(label).on_hover_text(about);
+    ui.end_row();
+    let label = ui.label("Six-way maps").id;
+    let about = "Two more sheets: the smoke's light from six sides, for an engine that lights it";
+    ui.checkbox(&mut flipbook.has_six_way, "").labelled_by(label).on_hover_text(about);
+    ui.end_row();
+}
+
+fn export_options(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     let values = match &export_job.product {
         ExportKind::Values(path) => path.clone(),
         _ => String::new(),
@@ -113,7 +137,8 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
             ui.selectable_value(&mut export_job.product, product, name);
         }
     });
-    let (product, options) = (&mut export_job.product, &mut export_job.options);
+    let product = &mut export_job.product;
+    let options = &mut export_job.options;
     let is_for_engine = *product == ExportKind::EngineFlipbook;
     let has_cells = is_for_engine || *product == ExportKind::Flipbook;
     let is_moving = has_cells || matches!(product, ExportKind::Sequence | ExportKind::Gif);
@@ -130,7 +155,7 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
             let shared = ENGINES.map(|(name, engine, _)| (name, engine, about));
             let engines: Vec<_> = shared.into_iter().chain(FLIPBOOK_ENGINES).collect();
             choices(ui, "Engine", &mut options.engine, &engines);
-            choices(ui, "Alpha", &mut options.flipbook_alpha, &FLIPBOOK_ALPHAS);
+            flipbook_rows(ui, options, burns(&session.document.preset));
         }
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
             let label = ui.label(name).id;
@@ -187,7 +212,7 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
     let text = if product.is_sheet() { "Preview" } else { "Export…" };
     if ui.add_enabled(is_ready, egui::Button::new(text)).clicked() {
         let product = product.clone();
-        export_job.order(product, session);
+        export_job.start(product, session);
     }
 }
 
@@ -199,7 +224,8 @@ fn sheet(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
         let picture = egui::ColorImage::from_rgb(size, picture);
         ui.ctx().load_texture("sheet", picture, egui::TextureOptions::LINEAR)
     });
-    let (mut is_open, mut is_saved) = (true, false);
+    let mut is_open = true;
+    let mut is_saved = false;
     let room = ui.ctx().content_rect().size() - egui::Vec2::new(60.0, 160.0);
     let window = egui::Window::new("Sheet").default_pos(CORNER).open(&mut is_open).collapsible(false);
     window.show(ui.ctx(), |ui| {
@@ -207,7 +233,7 @@ fn sheet(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
         ui.add(egui::Image::new(&*texture).max_size(room).alt_text("Image of the sheet"));
     });
     if is_saved {
-        export_job.order_sheet(session);
+        export_job.save_sheet(session);
     } else if !is_open {
         export_job.sheet = None;
     }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use eframe::egui::{self, Key, Ui};
+use haze_preset::backdrop_endings;
 
 use crate::files::file_actions::FileActions;
 use crate::platform::file_dialog::{Purpose, backdrop_title};
@@ -104,7 +105,7 @@ fn type_path(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
         ui.weak(if IS_PAGE { "The browser downloads the file." } else { NO_DIALOG });
         let hint = match typed.purpose {
             Purpose::Export => "Path to export to".to_owned(),
-            Purpose::Backdrop(kind) => format!("Path of a .{} file", kind.endings().join(" or .")),
+            Purpose::Backdrop(kind) => format!("Path of a .{} file", backdrop_endings(kind).join(" or .")),
             Purpose::Open | Purpose::SaveAs => "Path of a JSON file".to_owned(),
         };
         let edit = egui::TextEdit::singleline(&mut typed.text).hint_text(hint).desired_width(f32::INFINITY);

@@ -16,7 +16,8 @@ const AWAY: f32 = 10.0;
 /// `is_dragging_light`: a light is being dragged.
 pub fn panel(ui: &Ui, session: &mut Session, is_pressing: bool, is_dragging_light: bool) {
     let is_look_visible = session.view.tab == Tab::Look;
-    let (is_searching, is_key_list_open) = (session.search.is_open, session.view.help);
+    let is_searching = session.search.is_open;
+    let is_key_list_open = session.view.help;
     session.hints.follow(
         &session.document.preset,
         &UserActivity { is_pressing, is_dragging_light, is_look_visible, is_searching, is_key_list_open },
@@ -76,7 +77,8 @@ fn tip(card: Rect, at: Rect, way: Vec2) -> Pos2 {
 }
 
 fn arrow(ui: &Ui, layer: egui::LayerId, tip: Pos2, way: Vec2) {
-    let (back, side) = (way * (AWAY - 1.0), way.rot90() * 6.0);
+    let back = way * (AWAY - 1.0);
+    let side = way.rot90() * 6.0;
     let color = ui.visuals().selection.stroke.color;
     let points = vec![tip, tip - back + side, tip - back - side];
     ui.ctx().layer_painter(layer).add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));

@@ -19,14 +19,14 @@ use crate::session::smoke_geometry::{SmokeGeometry, place_behind};
 use haze_author::daylight::{irradiance, set_brightness};
 use haze_author::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
 
-/// Draws the list and the settings of the selected light. `seen` gives the smoke that is shown, and the size of the
-/// image.
+/// Draws the list and the settings of the selected light. `smoke`: as it is shown. `image_size`: pixels.
 pub fn panel(
     ui: &mut Ui,
     context: &mut RowContext<'_>,
     preset: &mut Preset,
     shown: &mut LightView,
-    seen: (&SmokeGeometry, UVec2),
+    smoke: &SmokeGeometry,
+    image_size: UVec2,
 ) {
     shown.follow(&preset.lights);
     // If a setting of a light was searched for, that light is selected.
@@ -35,8 +35,8 @@ pub fn panel(
     for (index, light) in preset.lights.iter_mut().enumerate() {
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
-    ui.horizontal_wrapped(|ui| tools(ui, preset, shown, seen));
-    let place = seen.0.bounds().center();
+    ui.horizontal_wrapped(|ui| tools(ui, preset, shown, smoke, image_size));
+    let place = smoke.bounds().center();
     let all: f32 = preset.lights.iter().map(|light| luminance(irradiance(light, place))).sum();
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
@@ -46,7 +46,7 @@ pub fn panel(
     ui.separator();
     let before = light.role;
     role(ui, context, index, light);
-    at_smoke(ui, context, index, light, (place, all));
+    at_smoke(ui, context, index, light, place, all);
     if light.kind != LightKind::Point {
         angles(ui, context, index, light);
     }
@@ -72,10 +72,12 @@ fn role(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Lig
         key: None,
         reason_without_effect: None,
     };
-    let (begin, tooltips) = (ui.cursor().min, context.tooltips);
+    let begin = ui.cursor().min;
+    let tooltips = context.tooltips;
     let request = row.show(ui, |ui, label| {
         let usual = ui.spacing().clone();
-        (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (GAP, 4.0);
+        ui.spacing_mut().item_spacing.x = GAP;
+        ui.spacing_mut().button_padding.x = 4.0;
         // In a narrow panel, the roles are in a list.
         let button = |role: &LightRole| width(ui, &display_name(role.name())) + GAP;
         if LightRole::ALL.iter().map(button).sum::<f32>() > ui.available_width() {
@@ -101,13 +103,7 @@ const AT_SMOKE: &str = "Light that arrives at the center of the smoke, in one un
 
 /// Draws the brightness of a light at the smoke, which sets its intensity. `place`: center of the smoke. `all`: brightness of all
 /// lights there.
-fn at_smoke(
-    ui: &mut Ui,
-    context: &mut RowContext<'_>,
-    index: usize,
-    light: &mut Light,
-    (place, all): (glam::Vec3, f32),
-) {
+fn at_smoke(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Light, place: glam::Vec3, all: f32) {
     let mut brightness = luminance(irradiance(light, place));
     let path = format!("lights[{index}].intensity");
     let row = Row {
@@ -119,9 +115,10 @@ fn at_smoke(
         key: None,
         reason_without_effect: (light.intensity > 0.0 && brightness <= 0.0).then_some("the smoke is out of reach"),
     };
-    let (share, refused) = (brightness / all, &mut context.refused);
+    let share = brightness / all;
+    let refused = &mut context.refused;
     let request = row.show(ui, |ui, label| {
-        if value_control::number(ui, label, &mut brightness, (&(0.0..=1.0e9), Some((0.0, 10.0))), "", refused) {
+        if value_control::number(ui, label, &mut brightness, &(0.0..=1.0e9), Some((0.0, 10.0)), "", refused) {
             set_brightness(light, place, brightness);
         }
     });
@@ -168,7 +165,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
 }
 
 /// Draws the buttons for the list and the selected light.
-fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&SmokeGeometry, UVec2)) {
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, smoke: &SmokeGeometry, image_size: UVec2) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add light", |ui| {
             for &kind in LightKind::ALL {
@@ -191,7 +188,8 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
     }
     let behind = ui.button("Move behind smoke").on_hover_text("Moves the light behind the smoke, seen from the camera");
     if behind.clicked() {
-        let (eye, point) = (preset.camera.position, smoke.visible_center(&preset.camera, size));
+        let eye = preset.camera.position;
+        let point = smoke.visible_center(&preset.camera, image_size);
         if let Some(light) = preset.lights.get_mut(index) {
             place_behind(light, eye, point, &smoke.bounds);
         }
@@ -228,7 +226,7 @@ fn angles(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut L
         let request = row.show(ui, |ui, label| {
             ui.spacing_mut().item_spacing.x = GAP;
             ui.spacing_mut().button_padding.x = 4.0;
-            value_control::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
+            value_control::number(ui, label, value, &(-most..=most), None, "degrees", refused);
         });
         context.requests.extend(request.map(|request| (request, path.clone())));
     };
@@ -317,7 +315,8 @@ mod tests {
         for light in 0..3 {
             harness.state_mut().session.view.lights.selected = Some(light);
             harness.run_steps(5);
-            let (tab, image) = (harness.get_by_label("Look").rect(), harness.get_by_label("viewport").rect());
+            let tab = harness.get_by_label("Look").rect();
+            let image = harness.get_by_label("viewport").rect();
             assert!(tab.left() >= image.right(), "{light}: {tab} {image}");
         }
     }

@@ -31,13 +31,16 @@ pub fn panel(ui: &Ui, session: &mut Session, image: egui::Rect) {
     if session.looks.shown().is_none() {
         return;
     }
-    let (shot, folders) = (session.shot(session.view.size), session.folders());
+    let shot = session.shot(session.view.size);
+    let folders = session.folders();
     session.looks.advance(ui.ctx(), &shot, &folders);
     let Some(shown) = session.looks.shown() else { return };
-    let (system, field) = (shown.system, shown.field);
+    let system = shown.system;
+    let field = shown.field;
     let path = format!("systems[{system}].material.{field}");
     let now = ramp_name(&session.document.preset, system, field);
-    let (mut is_open, mut chosen) = (true, None);
+    let mut is_open = true;
+    let mut chosen = None;
     let most = image.size() - Vec2::new(24.0, 64.0);
     let title = format!("Looks: {}", display_name(field));
     let window = egui::Window::new(title).id(egui::Id::unique("looks")).open(&mut is_open).collapsible(false);

@@ -1,14 +1,15 @@
 //! Look tab: the few controls that determine a look.
 
 use eframe::egui::Ui;
-use haze::LightRole;
+use haze::{Light, LightRole};
 use haze_preset::{Preset, PresetSystem};
 
-use super::rows::setting_rows::{FIVE_VALUES, RowContext, show_named};
+use super::rows::setting_rows::{FIVE_VALUES, LabelledField, RowContext, show_named};
 use super::rows::{self, Row, RowRequest, setting_rows, value_control};
+use crate::document::display_names::display_name;
 use crate::document::light_defaults::light_name;
 use crate::session::light_view::LightView;
-use crate::session::look_controls::{ControlTarget, LOOK_CONTROLS};
+use crate::session::look_controls::{ControlTarget, LOOK_SECTIONS};
 use crate::session::macro_param::MacroParam;
 
 /// Draws the look of one system of the preset.
@@ -23,28 +24,47 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
         return;
     };
     let path = [("systems", Some(index))];
-    for control in LOOK_CONTROLS {
-        let name = control.name;
-        match control.target {
-            ControlTarget::Macro(param) => macro_row(ui, context, system, index, param),
-            ControlTarget::System(field, usual) => show_named(ui, context, &path, system, (name, field, usual)),
-            ControlTarget::Camera(field, usual) => {
-                show_named(ui, context, &[("camera", None)], camera, (name, field, usual));
-            }
-            ControlTarget::KeyLight(field, usual) => {
-                let Some((key, light)) = key.and_then(|key| Some((key, lights.get_mut(key)?))) else { continue };
-                let is_key = light.role == LightRole::Key;
-                let title = if is_key { name } else { BRIGHTEST };
-                show_named(ui, context, &[("lights", Some(key))], light, (title, field, usual));
-                rows::note(ui, if context.second.is_some() { 2.0 } else { 1.0 }, |ui| {
-                    ui.weak(light_name(key, light)).on_hover_text(if is_key { KEY } else { NO_KEY });
-                    if !is_key && ui.small_button("Make it the key light").on_hover_text(KEY).clicked() {
-                        light.role = LightRole::Key;
+    let mut is_first = true;
+    for section in LOOK_SECTIONS {
+        if !section.is_shown(system, index, |path| context.changed.contains(path)) {
+            continue;
+        }
+        if !std::mem::take(&mut is_first) {
+            ui.add_space(4.0);
+            ui.strong(display_name(section.name));
+        }
+        for control in section.controls {
+            let title = control.name;
+            match control.target {
+                ControlTarget::Macro(param) => macro_row(ui, context, system, index, param),
+                ControlTarget::System(field, usual) => {
+                    show_named(ui, context, &path, system, LabelledField { title, path: field, usual });
+                }
+                ControlTarget::Camera(field, usual) => {
+                    let field = LabelledField { title, path: field, usual };
+                    show_named(ui, context, &[("camera", None)], camera, field);
+                }
+                ControlTarget::KeyLight(field, usual) => {
+                    if let Some((key, light)) = key.and_then(|key| Some((key, lights.get_mut(key)?))) {
+                        key_light_row(ui, context, key, light, LabelledField { title, path: field, usual });
                     }
-                });
+                }
             }
         }
     }
+}
+
+/// Draws the row of the key light, which `light` at an index is, or else of the brightest one.
+fn key_light_row(ui: &mut Ui, context: &mut RowContext<'_>, key: usize, light: &mut Light, field: LabelledField<'_>) {
+    let is_key = light.role == LightRole::Key;
+    let title = if is_key { field.title } else { BRIGHTEST };
+    show_named(ui, context, &[("lights", Some(key))], light, LabelledField { title, ..field });
+    rows::note(ui, if context.second.is_some() { 2.0 } else { 1.0 }, |ui| {
+        ui.weak(light_name(key, light)).on_hover_text(if is_key { KEY } else { NO_KEY });
+        if !is_key && ui.small_button("Make it the key light").on_hover_text(KEY).clicked() {
+            light.role = LightRole::Key;
+        }
+    });
 }
 
 /// Name of the slider in a preset without a key light.
@@ -70,7 +90,7 @@ fn macro_row(ui: &mut Ui, context: &mut RowContext<'_>, system: &mut PresetSyste
     let before = ui.cursor().min;
     let request = row.show(ui, |ui, label| {
         let mut value = (param.get)(system);
-        if value_control::number(ui, label, &mut value, (&param.range, Some(param.usual)), param.unit, refused) {
+        if value_control::number(ui, label, &mut value, &param.range, Some(param.usual), param.unit, refused) {
             (param.set)(system, value);
         }
     });
@@ -92,7 +112,7 @@ mod tests {
     use haze::LightRole;
 
     use crate::document::display_names::display_name;
-    use crate::session::look_controls::LOOK_CONTROLS;
+    use crate::session::look_controls::LOOK_SECTIONS;
     use crate::session::view_options::Tab;
     use crate::window::Window;
     use crate::window::testing::window;
@@ -123,7 +143,8 @@ mod tests {
         // Without a key light, the slider has another name and drives the light that is brightest now.
         let lights = &mut harness.state_mut().session.document.preset.lights;
         lights[0].role = LightRole::None;
-        (lights[0].intensity, lights[2].intensity) = (0.1, 900.0);
+        lights[0].intensity = 0.1;
+        lights[2].intensity = 900.0;
         harness.run_steps(3);
         assert!(harness.query_all_by_label("Key light").next().is_none());
         assert!(harness.query_by_label("Practical (Point 3)").is_some());
@@ -140,8 +161,12 @@ mod tests {
     fn sliders_have_names_for_artists_and_are_found_by_either_name() {
         let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
         let has = |harness: &Harness<'_, Window>, name: &str| harness.query_all_by_label(name).next().is_some();
-        for control in LOOK_CONTROLS {
-            assert!(has(&harness, &display_name(control.name)), "{}", control.name);
+        let preset = harness.state().session.document.preset.clone();
+        for section in LOOK_SECTIONS {
+            let is_shown = section.is_shown(&preset.systems[0], 0, |_| false);
+            for control in section.controls {
+                assert_eq!(has(&harness, &display_name(control.name)), is_shown, "{}", control.name);
+            }
         }
         assert!(!has(&harness, "Radius start"));
         let find = |harness: &mut Harness<'_, Window>, text: &str| {
@@ -171,5 +196,22 @@ mod tests {
         harness.hover_at(slider.left_center() - Vec2::new(115.0, 0.0));
         harness.run_steps(8);
         assert!(harness.query_all_by_label_contains("systems[0].emitter.buoyancy").next().is_some());
+    }
+
+    #[test]
+    fn a_look_has_the_sections_of_its_system_and_keeps_a_slider_that_reaches_0() {
+        let mut harness = window("campfire", Vec2::new(1000.0, 900.0), Theme::Dark);
+        let top = |harness: &Harness<'_, Window>, name: &str| {
+            let mut found = harness.query_all_by_label(name);
+            found.find(|node| node.accesskit_node().role() == Role::Slider).map(|node| node.rect().top())
+        };
+        let fire = top(&harness, "Flicker").unwrap();
+        assert!(fire < top(&harness, "Rise").unwrap(), "a fire's own sliders come first");
+        set_key(&mut harness, "Fire", 0.0);
+        assert!(harness.state().session.document.preset.systems[0].settings.fire.intensity.abs() < 1e-6);
+        assert!(top(&harness, "Fire").is_some());
+        // A preset without fire lacks the section.
+        let harness = window("steam_vent", Vec2::new(1000.0, 900.0), Theme::Dark);
+        assert!(top(&harness, "Fire").is_none() && top(&harness, "Rise").is_some());
     }
 }

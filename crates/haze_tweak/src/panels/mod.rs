@@ -22,5 +22,6 @@ pub mod search_box;
 pub mod settings_panel;
 pub mod sprite_panel;
 pub mod sun_panel;
+pub mod systems_panel;
 pub mod timeline;
 pub mod track_editor;

@@ -31,8 +31,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, persistence: Option<&mut Persis
 
 fn recovery(ui: &mut Ui, session: &mut Session, persistence: &mut Persistence) {
     let Some(one) = persistence.crashed_work.last() else { return };
-    let (source, name) =
-        (truncate_middle(&one.source.display().to_string(), 60), truncate_middle(&one.preset.name, 30));
+    let source = truncate_middle(&one.source.display().to_string(), 60);
+    let name = truncate_middle(&one.preset.name, 30);
     let text = format!("Haze closed unexpectedly. Unsaved changes to {source} ({name}) can be recovered.");
     egui::Panel::top("recovery").show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {

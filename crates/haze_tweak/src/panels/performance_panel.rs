@@ -125,12 +125,14 @@ fn budget(ui: &mut Ui, session: &mut Session) {
     };
     let before = timings.budget;
     setting_rows::show(ui, &mut context, &[], &mut timings.budget);
-    let (refused, is_edited) = (context.refused, session.timings.budget != before);
+    let refused = context.refused;
+    let is_edited = session.timings.budget != before;
     session.report_refused_input(refused, is_edited);
     let timings = &session.timings;
     let preset = &mut session.document.preset;
     let of_preset = preset.systems.first().map(|system| &system.settings.accumulate);
-    let of_preset = of_preset.filter(|accumulate| accumulate.scale_mode == ScaleMode::Fixed).map(|fixed| fixed.scale);
+    let of_preset =
+        of_preset.filter(|accumulate| accumulate.scale_mode == ScaleMode::Fixed).map(|fixed| fixed.downscale);
     let Some(scale) = timings.scale() else { return };
     ui.horizontal_wrapped(|ui| {
         let of_preset_text = of_preset.map_or("automatic".into(), |scale| scale.to_string());
@@ -184,7 +186,8 @@ fn drawn(ui: &mut Ui, timings: &FrameTimings) {
 }
 
 fn memory(ui: &mut Ui, timings: &FrameTimings) {
-    let (memory, beside) = (&timings.stats.memory, timings.stats.other_memory);
+    let memory = &timings.stats.memory;
+    let beside = timings.stats.other_memory;
     rows(
         ui,
         "memory",
@@ -297,12 +300,12 @@ mod tests {
         assert_eq!(scale(&mut harness), None);
         harness.get_by_label("Keep the smoke under 0.05 ms").click();
         settle(&mut harness);
-        let of_preset = before.systems[0].settings.accumulate.scale;
+        let of_preset = before.systems[0].settings.accumulate.downscale;
         assert_eq!(scale(&mut harness), Some(8), "the coarsest that the budget allows");
         assert!(of_preset < 8 && harness.state_mut().session_mut().document.preset == before);
         harness.get_by_label("Use this scale").click();
         settle(&mut harness);
-        assert_eq!(harness.state_mut().session_mut().document.preset.systems[0].settings.accumulate.scale, 8);
+        assert_eq!(harness.state_mut().session_mut().document.preset.systems[0].settings.accumulate.downscale, 8);
         // Without the budget, the preset's scale is shown again.
         harness.get_by_label("Keep the smoke under 0.05 ms").click();
         settle(&mut harness);

@@ -67,7 +67,8 @@ pub fn editor(
     let options = DisplayOptions { blend: recipe.blend, histograms: &histograms, marks };
     let mut shown = shown(&recipe, *index)?;
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options));
-    let (place, edited) = (edited.response.rect, edited.inner);
+    let place = edited.response.rect;
+    let edited = edited.inner;
     let index = *index;
     match &simplified {
         Some(Ok(RampFit { recipe: simple, error })) => {
@@ -179,7 +180,8 @@ fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
         }
     });
     let Some(chosen) = recipe.rows.get_mut(*index) else { return false };
-    let (mut is_added, mut is_removed) = (false, false);
+    let mut is_added = false;
+    let mut is_removed = false;
     ui.horizontal(|ui| {
         let label = ui.label("Position");
         let field = egui::DragValue::new(&mut chosen.at).range(0.0..=1.0).speed(0.002).update_while_editing(false);
@@ -224,12 +226,15 @@ pub fn offer_stops(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
         RampOrigin::BuiltIn => {
             let about = "Built-in ramps cannot be changed. Makes an editable copy; asks first.";
             if button(ui, "Make my own…", ramp, about) {
-                let (system, name, image) = (ramp.system, ramp.name.to_owned(), CopiedImage::Ramp(ramp.field));
+                let system = ramp.system;
+                let name = ramp.name.to_owned();
+                let image = CopiedImage::Ramp(ramp.field);
                 session.copy_request = Some(CopyRequest { system, name, image });
             }
         }
         RampOrigin::Painted { has_recipe, has_bands } => {
-            let (has_recipe, has_bands) = (*has_recipe, *has_bands);
+            let has_recipe = *has_recipe;
+            let has_bands = *has_bands;
             let recipe = Path::new(ramp.name).with_extension("ramp.json");
             if has_recipe {
                 ui.label(format!(

@@ -68,7 +68,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let Some(name) = ramp_name(&session.document.preset, index, field) else { continue };
         let name = name.as_str();
         ui.add_space(6.0);
-        choose(ui, session, (title, tooltip), &path, name);
+        choose(ui, session, title, tooltip, &path, name);
         if let Some(reason) = session.no_effect_reason(&session.document.preset, &path) {
             off(ui, session, index, field, switch.as_ref(), reason);
             continue;
@@ -82,7 +82,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
         let spoken = display_name(field);
         let ink = ui.visuals().text_color();
         if let Some(two_axes) = two_axes(field, material) {
-            ramp_place = ramp_place.or(two_axis_ramp(ui, session, ramp, (&two_axes, filter), &lookups));
+            ramp_place = ramp_place.or(two_axis_ramp(ui, session, ramp, &two_axes, filter, &lookups));
             continue;
         }
         let lights = match lookups.survey.filter(|_| is_diffuse(field)) {
@@ -103,7 +103,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
                 ui.weak(format!("{rows} rows by amount: thin smoke at the bottom"));
             }
             let name = if is_diffuse(field) { "Histogram of N·L" } else { "Histogram of amounts" };
-            histogram(ui, (name, ui.available_width()), &across.0);
+            histogram(ui, name, ui.available_width(), &across.0);
             at
         });
         if field == "diffuse_ramp" && lookups.survey.is_some() {
@@ -324,12 +324,14 @@ fn two_axis_ramp(
     ui: &mut Ui,
     session: &mut Session,
     named: NamedRamp<'_>,
-    (two_axes, filter): (&TwoAxes<'_>, RampFilter),
+    two_axes: &TwoAxes<'_>,
+    filter: RampFilter,
     lookups: &Lookups<'_>,
 ) -> Option<RampPlace> {
-    let (ramp, ink) = (two_axes.ramp, ui.visuals().text_color());
+    let ramp = two_axes.ramp;
+    let ink = ui.visuals().text_color();
     let width = ui.available_width().min(PLANE_WIDTH);
-    let place = plane(ui, (&display_name(named.field), width), two_axes, filter, lookups);
+    let place = plane(ui, &display_name(named.field), width, two_axes, filter, lookups);
     let histograms = |axis| lookups.survey.map_or_else(Vec::new, |survey| survey.along(axis, ramp, lookups.system));
     let marks: Vec<_> = lookups.probe.into_iter().flat_map(|probe| ramp.lookups(probe)).collect();
     let samples = |axis: usize, histograms: &[Histogram]| {
@@ -346,7 +348,7 @@ fn two_axis_ramp(
         ui.weak(two_axes.axes);
         ramp_stops::editor(ui, session, named, &across, &samples(1, &histograms(1))).flatten()
     } else {
-        histogram(ui, (two_axes.histogram, width), &across.0);
+        histogram(ui, two_axes.histogram, width, &across.0);
         ui.weak(two_axes.axes);
         None
     };
@@ -357,7 +359,7 @@ fn two_axis_ramp(
 }
 
 /// Draws the title of a ramp and the choice of its image.
-fn choose(ui: &mut Ui, session: &mut Session, (title, tooltip): (&str, &str), path: &str, name: &str) {
+fn choose(ui: &mut Ui, session: &mut Session, title: &str, tooltip: &str, path: &str, name: &str) {
     let label = ui.strong(title).on_hover_text(tooltip);
     let mut chosen = name.to_owned();
     gallery(ui, &session.thumbnails, ImageRole::Ramp, &mut chosen, path).labelled_by(label.id);
@@ -418,7 +420,7 @@ fn picture(ui: &Ui, rect: Rect, cells: UVec2, color: impl Fn(glam::Vec2) -> glam
 }
 
 /// Draws histograms on top of each other.
-fn histogram(ui: &mut Ui, (name, width): (&str, f32), histograms: &[Bins]) {
+fn histogram(ui: &mut Ui, name: &str, width: f32, histograms: &[Bins]) {
     if histograms.is_empty() {
         return;
     }
@@ -440,7 +442,8 @@ fn legend(ui: &mut Ui, session: &Session, histograms: &[Histogram]) {
 /// Draws a ramp with two axes, the second upwards, and the sampled places over it.
 fn plane(
     ui: &mut Ui,
-    (name, width): (&str, f32),
+    name: &str,
+    width: f32,
     two_axes: &TwoAxes<'_>,
     filter: RampFilter,
     lookups: &Lookups<'_>,
@@ -452,7 +455,8 @@ fn plane(
     let cell = rect.size() / SIDE as f32;
     let density = lookups.survey.map_or_else(Vec::new, |survey| survey.over_both_axes(ramp, lookups.system));
     for (index, density) in density.iter().enumerate().filter(|(_, density)| **density > 0.0) {
-        let (column, row) = ((index % SIDE) as f32, (index / SIDE) as f32);
+        let column = (index % SIDE) as f32;
+        let row = (index / SIDE) as f32;
         let below = sample_ramp_2d(image, filter, (glam::Vec2::new(column, row) + 0.5) / SIDE as f32);
         let color = if luminance(below) < MIDDLE_GRAY { SAMPLED_OVER_DARK } else { SAMPLED_OVER_LIGHT };
         let corner = rect.min + Vec2::new(column, (SIDE - 1) as f32 - row) * cell;

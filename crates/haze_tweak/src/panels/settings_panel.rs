@@ -9,10 +9,9 @@ use haze_preset::Preset;
 use super::rows::key_mark::KeyMarks;
 use super::rows::setting_rows::{FieldStep, RowContext, is_at};
 use super::rows::{RowRequest, setting_rows, soft_fade_plot};
-use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel, sun_panel};
+use super::{lights_panel, look_panel, narrow, ramps_panel, sprite_panel, sun_panel, systems_panel};
 use crate::document::display_names::display_name;
 use crate::session::Session;
-use crate::session::messages::truncate_middle;
 use crate::session::setting_search::SMOKE_TAB_GROUPS;
 use crate::session::view_options::Tab;
 
@@ -39,7 +38,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         super::performance_panel::panel(ui, session);
         return None;
     }
-    system_row(ui, session);
+    systems_panel::panel(ui, session);
     ui.separator();
     session.inspect.ramp_place = None;
     session.thumbnails.follow(session.document.path(), session.assets.as_deref());
@@ -77,22 +76,6 @@ fn tab_row(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// Draws the choice of the system, and selects the system of a setting that was searched for.
-fn system_row(ui: &mut Ui, session: &mut Session) {
-    let systems = session.document.preset.systems.len();
-    session.view.system = session.view.system.min(systems.saturating_sub(1));
-    if let Some(index) = session.search.found.as_ref().and_then(|(path, _)| system_of(path)) {
-        session.view.system = index;
-    }
-    if systems > 1 && session.view.tab != Tab::Light {
-        ui.horizontal_wrapped(|ui| {
-            for (index, system) in session.document.preset.systems.iter().enumerate() {
-                ui.selectable_value(&mut session.view.system, index, truncate_middle(&system.name, 30));
-            }
-        });
-    }
-}
-
 /// Draws a tab of rows of settings, and runs their requests. Returns the path of a field if a sheet of its values is
 /// requested.
 fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
@@ -126,7 +109,7 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
         Tab::Light => {
             sun_panel::panel(ui, &mut context, preset, &mut shown, smoke_shown.bounds().center());
             ui.separator();
-            lights_panel::panel(ui, &mut context, preset, &mut shown, (&smoke_shown, session.view.size));
+            lights_panel::panel(ui, &mut context, preset, &mut shown, &smoke_shown, session.view.size);
             ui.separator();
             surroundings(ui, &mut context, preset, &backdrop);
         }
@@ -153,11 +136,6 @@ fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
         }
     }
     sheet
-}
-
-/// Returns the index of the system that a setting belongs to: 1 for `systems[1].settings.boost`.
-fn system_of(path: &str) -> Option<usize> {
-    path.strip_prefix("systems[")?.split_once(']')?.0.parse().ok()
 }
 
 /// Draws a collapsible part of the preset. Returns true if it is open.
@@ -226,7 +204,7 @@ fn smoke(
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
     section(ui, context, &[at, ("emitter", None)], true, &mut system.emitter);
-    section(ui, context, &[at, ("cache", None)], false, &mut system.cache);
+    section(ui, context, &[at, ("particle_files", None)], false, &mut system.particle_files);
     for note in unused {
         ui.label(egui::RichText::new(note).weak());
     }
@@ -246,7 +224,7 @@ fn smoke(
 }
 
 /// Groups of settings that only programmers need.
-const FOR_PROGRAMMERS: [&str; 3] = ["path", "blend_mode", "accumulate"];
+const FOR_PROGRAMMERS: [&str; 4] = ["path", "blend_mode", "accumulate", "debug"];
 
 fn advanced(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
@@ -368,12 +346,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("a.csv"), "x,y,z,nx\n0,1,0,0\n").unwrap();
         let path = folder.path().join("my.json");
-        let system = r#"{"name": "s", "cache": {"path": "a.csv"}}"#;
+        let system = r#"{"name": "s", "particle_files": {"path": "a.csv"}}"#;
         std::fs::write(&path, format!(r#"{{"version": 1, "name": "x", "systems": [{system}]}}"#)).unwrap();
         let mut harness = window(path.to_str().unwrap(), Vec2::new(1000.0, 640.0), Theme::Dark);
         harness.get_by_label("Smoke").click();
         harness.run_steps(4);
-        let note = "systems[0].cache.path: a.csv: nx: not read; expected names that docs/particles.md lists";
+        let note = "systems[0].particle_files.path: a.csv: nx: not read; expected names that docs/particles.md lists";
         assert!(harness.query_by_label(note).is_some());
     }
 
@@ -386,7 +364,8 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let saved = harness.state().session.document.preset.clone();
         let is_marked = |harness: &Harness<'_, Window>, name| harness.query_by_label(name).is_some();
-        let (exposure, buoyancy) = ("Copy Exposure from image B", "Copy Rise from image B");
+        let exposure = "Copy Exposure from image B";
+        let buoyancy = "Copy Rise from image B";
         let preset = &mut harness.state_mut().session.document.preset;
         preset.camera.exposure = 3.0;
         preset.systems[0].emitter.buoyancy += 1.0;

@@ -19,10 +19,11 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         ui.weak("This preset has no smoke.");
         return;
     };
-    let (names, settings) = (system.material.clone(), system.settings);
+    let names = system.material.clone();
+    let settings = system.settings;
     let area = egui::ScrollArea::vertical().id_salt(session.view.tab).auto_shrink(false);
     let top = |ui: &mut Ui, session: &mut Session| {
-        flipbook_view::panel(ui, (&mut session.view.sprite, &mut session.flipbook), &material, &settings);
+        flipbook_view::panel(ui, &mut session.view.sprite, &mut session.flipbook, &material, &settings);
         ui.separator();
         ui.horizontal(|ui| {
             ui.strong(truncate_middle(&names.sprite, 40));

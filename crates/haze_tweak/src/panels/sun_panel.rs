@@ -36,7 +36,8 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
         return;
     };
     let Some(sun) = preset.lights.get(index) else { return };
-    let (body, before) = (body_of(sun), to_angles(sun.direction));
+    let body = body_of(sun);
+    let before = to_angles(sun.direction);
     let mut wanted = (body, before);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -66,7 +67,7 @@ pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, sho
         };
         let refused = &mut context.refused;
         let request = row.show(ui, |ui, label| {
-            value_control::number(ui, label, value, (&range, None), "degrees", refused);
+            value_control::number(ui, label, value, &range, None, "degrees", refused);
         });
         context.requests.extend(request.map(|request| (request, path.clone())));
     };
@@ -138,7 +139,8 @@ mod tests {
         let before = preset(&harness);
         click(&mut harness, "Sunset");
         let sunset = preset(&harness);
-        let (sun, environment) = (sunset.lights[0], &sunset.environment);
+        let sun = sunset.lights[0];
+        let environment = &sunset.environment;
         assert!((to_angles(sun.direction).elevation - 3.0).abs() < 0.01 && sun.color.y < 0.5, "{sun:?}");
         assert!((to_angles(sun.direction).azimuth - to_angles(before.lights[0].direction).azimuth).abs() < 0.1);
         assert!(environment.horizon.x > environment.horizon.z, "{environment:?}");

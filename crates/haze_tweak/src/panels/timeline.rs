@@ -35,7 +35,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             .fixed_decimals(2)
             .suffix(" s");
         ui.add(scrub).on_hover_text("Time since the smoke began");
-        let (mut start, mut end) = (*playback.range.start(), *playback.range.end());
+        let mut start = *playback.range.start();
+        let mut end = *playback.range.end();
         let drag = |value| {
             egui::DragValue::new(value).speed(0.05).range(-1000.0..=f64::from(MAX_TIME)).fixed_decimals(1).suffix(" s")
         };
@@ -70,15 +71,15 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
 
 /// Draws the button that stops the sprite animation of every system.
 fn freeze(ui: &mut Ui, preset: &mut Preset, size: UVec2) {
-    let path = |index| format!("systems[{index}].settings.sprite.freeze_animation");
+    let path = |index| format!("systems[{index}].settings.debug.freeze_animation");
     let idle: Option<Vec<_>> =
         (0..preset.systems.len()).map(|index| no_effect_reason(preset, &path(index), size)).collect();
     let idle = idle.map(|reasons| reasons.first().copied().unwrap_or("this preset has no smoke"));
-    let is_frozen = preset.systems.iter().any(|system| system.settings.sprite.freeze_animation);
+    let is_frozen = preset.systems.iter().any(|system| system.settings.debug.freeze_animation);
     let button = ui.add_enabled(idle.is_none(), egui::Button::selectable(is_frozen, "Freeze"));
     let button = button.on_hover_text("Freezes the animation of the sprites, not their motion. Saved with the preset.");
     if button.on_disabled_hover_text(idle.unwrap_or_default()).clicked() {
         let systems = preset.systems.iter_mut();
-        systems.for_each(|system| system.settings.sprite.freeze_animation = !is_frozen);
+        systems.for_each(|system| system.settings.debug.freeze_animation = !is_frozen);
     }
 }

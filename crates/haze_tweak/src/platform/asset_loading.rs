@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
+use haze::MaterialAssets;
 use haze::shader::Sources;
-use haze::{Error, MaterialAssets};
 use haze_author::backdrop::Backdrop;
 use haze_author::particle_files::{ParticleFrames, load_particle_files};
 use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
 use haze_core::settings::BackdropKind;
 use haze_demo::shot::Shot;
 use haze_preset::{AssetFolders, ImageSource, MaterialSources, Preset, image_file_path};
@@ -27,23 +28,24 @@ pub struct LoadedAssets {
 
 /// Loads all files that the preset at a path names.
 pub fn all(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<LoadedAssets, Error> {
-    let (materials, particles) = (pictures(preset, path, folders)?, particles(preset, path, folders)?);
+    let materials = pictures(preset, path, folders)?;
+    let particles = particles(preset, path, folders)?;
     Ok(LoadedAssets { materials, particles, backdrop: backdrop(preset, path, folders)? })
 }
 
 /// Loads the images of every system.
 pub fn pictures(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
-    preset.load_materials_from(path, folders)
+    Ok(preset.load_materials_from(path, folders)?)
 }
 
 /// Loads the particles of every system that has particle files.
 pub fn particles(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<Option<ParticleFrames>>, Error> {
-    load_particle_files(preset, path, folders)
+    Ok(load_particle_files(preset, path, folders)?)
 }
 
 /// Loads scene and sky. A page loads none.
 pub fn backdrop(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Backdrop, Error> {
-    Backdrop::load(preset, path, folders)
+    Ok(Backdrop::load(preset, path, folders)?)
 }
 
 /// Loads a scene or a sky. A page loads none.
@@ -55,7 +57,7 @@ pub fn backdrop_file(kind: BackdropKind, path: &Path) -> Result<Backdrop, Error>
 
 /// Loads the images of one material.
 pub fn material(names: &MaterialSources, folder: &Path) -> Result<MaterialAssets, Error> {
-    names.load(ImageSource::folder(folder))
+    Ok(names.load(ImageSource::folder(folder))?)
 }
 
 /// Returns the path of an image, or the path where it is expected; empty if it is built in.
@@ -65,15 +67,15 @@ pub fn place_of(name: &str, folders: &AssetFolders) -> PathBuf {
 }
 
 pub fn ramp(path: &Path) -> Result<Ramp, Error> {
-    Ramp::load(path)
+    Ok(Ramp::load(path)?)
 }
 
 pub fn ramp_recipe(path: &Path) -> Result<RampRecipe, Error> {
-    RampRecipe::load(path)
+    Ok(RampRecipe::load(path)?)
 }
 
 pub fn sprite_recipe(path: &Path) -> Result<SpriteRecipe, Error> {
-    SpriteRecipe::load(path)
+    Ok(SpriteRecipe::load(path)?)
 }
 
 /// Loads a preset, built-in or from a file, with all that it names.
@@ -83,5 +85,5 @@ pub fn shot(path: &Path, folders: &AssetFolders, size: UVec2) -> Result<Shot, Er
 
 /// Loads the shaders of a folder.
 pub fn shaders(folder: &Path) -> Result<Sources, Error> {
-    Sources::from_folder(folder)
+    Ok(Sources::from_folder(folder)?)
 }

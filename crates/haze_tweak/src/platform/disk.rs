@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use eframe::egui;
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 use haze_preset::FileIdentity;
 
 use haze_export::file_kind::files_to_open;
@@ -13,7 +13,7 @@ pub use crate::file_watcher::{Stamp, Watcher};
 
 /// Creates a folder and its parents.
 pub fn make_folder(path: &Path) -> Result<(), Error> {
-    fs::create_dir_all(path).map_err(|error| Error::Io { path: path.into(), error })
+    fs::create_dir_all(path).map_err(|error| Error::from(AssetError::Io { path: path.into(), error }))
 }
 
 /// Removes a file. Errors are ignored.

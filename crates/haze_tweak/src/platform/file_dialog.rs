@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use haze_preset::backdrop_endings;
+
 use super::clock::{Duration, Instant};
 pub use super::dialog_answer::{Answer, Purpose, backdrop_title};
 use super::worker::Worker;
@@ -62,7 +64,7 @@ impl Dialogs {
         let (kind, endings) = match (purpose, near.extension().and_then(std::ffi::OsStr::to_str)) {
             (Purpose::Open | Purpose::SaveAs, _) => ("Presets", vec!["json"]),
             (Purpose::Export, ending) => ("Images", ending.into_iter().collect()),
-            (Purpose::Backdrop(kind), _) => (backdrop_title(kind), kind.endings().to_vec()),
+            (Purpose::Backdrop(kind), _) => (backdrop_title(kind), backdrop_endings(kind).to_vec()),
         };
         let mut dialog = rfd::AsyncFileDialog::new();
         if !endings.is_empty() {

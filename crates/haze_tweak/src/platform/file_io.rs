@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use haze::Error;
 use haze_author::backdrop::MAX_BACKDROP_FILE_BYTES;
 use haze_author::particle_files;
 use haze_core::assets::image::MAX_BYTES;
 pub use haze_core::assets::image::{read_color_png, read_png};
 use haze_core::assets::{bounded_read, json};
+use haze_core::error::Error;
 pub use haze_preset::{CompressionEffort, write_baked_png, write_png, write_state_file};
 use haze_preset::{Preset, write_file};
 
@@ -18,37 +18,37 @@ pub use super::disk::{
 
 /// Reads a preset, and the text that it was read from.
 pub fn read_preset(name_or_path: &Path) -> Result<(Preset, String), Error> {
-    Preset::load_with_source(name_or_path)
+    Ok(Preset::load_with_source(name_or_path)?)
 }
 
 /// Reads the text of a JSON file.
 pub fn read_text(path: &Path) -> Result<String, Error> {
-    json::read(path, json::MAX_BYTES)
+    Ok(json::read(path, json::MAX_BYTES)?)
 }
 
 /// Reads the bytes of an image file.
 pub fn read_picture(path: &Path) -> Result<Vec<u8>, Error> {
-    bounded_read::read(path, "PNG picture", MAX_BYTES)
+    Ok(bounded_read::read(path, "PNG picture", MAX_BYTES)?)
 }
 
 /// Reads the bytes of a recipe file.
 pub fn read_recipe(path: &Path) -> Result<Vec<u8>, Error> {
-    bounded_read::read(path, "recipe", json::MAX_BYTES)
+    Ok(bounded_read::read(path, "recipe", json::MAX_BYTES)?)
 }
 
 /// Reads the bytes of a particle file.
 pub fn read_particles(path: &Path) -> Result<Vec<u8>, Error> {
-    bounded_read::read(path, "CSV or PLY file", particle_files::MAX_FILE_BYTES)
+    Ok(bounded_read::read(path, "CSV or PLY file", particle_files::MAX_FILE_BYTES)?)
 }
 
 /// Reads the bytes of a scene, of a file beside it, or of a sky.
 pub fn read_backdrop(path: &Path) -> Result<Vec<u8>, Error> {
-    bounded_read::read(path, "scene or sky", MAX_BACKDROP_FILE_BYTES)
+    Ok(bounded_read::read(path, "scene or sky", MAX_BACKDROP_FILE_BYTES)?)
 }
 
 /// Writes a complete file, or leaves the old one.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    write_file(path, bytes)
+    Ok(write_file(path, bytes)?)
 }
 
 /// Returns a free name for a copy of a built-in image: `NAME_mine.png`, or else the first free one of `NAME_mine_2.png`

@@ -3,8 +3,8 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use haze::Error;
 use haze_core::assets::json;
+use haze_core::error::{AssetError, Error};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -17,9 +17,9 @@ fn field_path(folder: &Path, name: &str) -> PathBuf {
 /// Returns the value stored under a name, or the default; with the error if the file is not valid.
 pub fn read<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, Option<Error>) {
     let path = field_path(folder, name);
-    match file_io::read_text(&path).and_then(|text| json::parse(&path, &text)) {
+    match file_io::read_text(&path).and_then(|text| Ok(json::parse(&path, &text)?)) {
         Ok(value) => (value, None),
-        Err(Error::Io { error, .. }) if error.kind() == ErrorKind::NotFound => (T::default(), None),
+        Err(Error::Asset(AssetError::Io { error, .. })) if error.kind() == ErrorKind::NotFound => (T::default(), None),
         Err(error) => (T::default(), Some(error)),
     }
 }
@@ -29,8 +29,8 @@ pub fn write<T: Serialize>(folder: &Path, name: &str, value: &T) -> Result<(), E
     let path = field_path(folder, name);
     file_io::make_folder(folder)?;
     match serde_json::to_string_pretty(value) {
-        Ok(text) => file_io::write_state_file(&path, (text + "\n").as_bytes()),
-        Err(error) => Err(Error::Io { path, error: error.into() }),
+        Ok(text) => Ok(file_io::write_state_file(&path, (text + "\n").as_bytes())?),
+        Err(error) => Err(Error::from(AssetError::Io { path, error: error.into() })),
     }
 }
 

@@ -25,10 +25,19 @@ pub mod web;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod worker;
 
+use haze_core::error::Error;
 #[cfg(target_arch = "wasm32")]
 use web::disk;
 #[cfg(target_arch = "wasm32")]
 pub use web::{file_dialog, lock_file, worker};
+
+/// Writes an error that the window may not be able to show: to standard error, or to the console of the browser.
+pub fn print_error(error: &Error) {
+    #[cfg(not(target_arch = "wasm32"))]
+    haze_export::output::print_error(error);
+    #[cfg(target_arch = "wasm32")]
+    web_sys::console::error_1(&error.to_string().into());
+}
 
 /// The program runs on a page: it has no threads, must not wait for the graphics device, and sees only files that the user
 /// gives it.

@@ -16,7 +16,9 @@ impl RepaintHandle {
 
     pub fn call(&self) {
         let context = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        context.iter().for_each(egui::Context::request_repaint);
+        if let Some(context) = context {
+            context.request_repaint();
+        }
     }
 }
 
@@ -31,7 +33,8 @@ mod tests {
             (0..3).for_each(|_| context.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear());
             context
         };
-        let (wake, [first, second]) = (RepaintHandle::default(), [still(), still()]);
+        let wake = RepaintHandle::default();
+        let [first, second] = [still(), still()];
         wake.follow(&first);
         let its = wake.clone();
         wake.follow(&second);

@@ -4,7 +4,7 @@ use haze_core::settings::RenderPath;
 use haze_demo::shot::Shot;
 use haze_preset::{Camera, Preset};
 
-use super::light_view::LightView;
+use super::view_options::ViewOptions;
 use crate::viewport_renderer::compared_side::ComparedSide;
 
 /// Variant that the image is compared with.
@@ -97,11 +97,11 @@ impl CompareWith {
         }
     }
 
-    /// Returns the shot of the second image, with the camera, time and visible lights of the first.
-    pub fn shot(&self, first: &Shot, saved: &Preset, lights: &LightView) -> Shot {
+    /// Returns the shot of the second image, with the camera, time, visible lights and visible systems of the first.
+    pub fn shot(&self, first: &Shot, saved: &Preset, view: &ViewOptions) -> Shot {
         let mut shot = first.clone();
         if let Some(settings) = self.settings(saved) {
-            shot.preset = with_view_of(settings, &first.preset, lights);
+            shot.preset = with_view_of(settings, &first.preset, view);
         }
         let systems = shot.preset.systems.iter_mut();
         match self {
@@ -117,12 +117,13 @@ impl CompareWith {
     }
 }
 
-/// Returns `preset` at the time of `other` with its camera, and with the same lights muted and turned. The exposure stays that
-/// of `preset`.
-fn with_view_of(preset: &Preset, other: &Preset, lights: &LightView) -> Preset {
-    let preset = preset.evaluate(other.time);
+/// Returns `preset` at the time of `other` with its camera, and with the same lights and systems muted, and lights turned. The
+/// exposure stays that of `preset`.
+fn with_view_of(preset: &Preset, other: &Preset, view: &ViewOptions) -> Preset {
+    let mut preset = preset.evaluate(other.time);
+    view.systems.apply(&mut preset, view.systems.has_solo(&other.systems));
     let camera = Camera { exposure: preset.camera.exposure, ..other.camera };
-    Preset { camera, time: other.time, lights: lights.shown_of_preset(&preset.lights), ..preset }
+    Preset { camera, time: other.time, lights: view.lights.shown_of_preset(&preset.lights), ..preset }
 }
 
 #[cfg(test)]
@@ -137,20 +138,24 @@ mod tests {
         first.preset.camera.fov = 70.0;
         first.preset.time = 3.0;
         first.preset.systems[0].settings.boost = 1.0;
-        let mut lights = LightView::default();
-        lights.follow(&first.preset.lights);
-        lights.mute_solo(0).unwrap().is_muted = true;
-        first.preset.lights = lights.shown(&first.preset.lights);
-        let shot = |against: CompareWith| against.shot(&first, &saved, &lights).preset;
-        let (as_saved, whole) = (shot(CompareWith::Saved), shot(CompareWith::FullResolution));
+        let mut view = ViewOptions::default();
+        view.lights.follow(&first.preset.lights);
+        view.lights.mute_solo(0).unwrap().is_muted = true;
+        first.preset.lights = view.lights.shown(&first.preset.lights);
+        let shot = |against: CompareWith| against.shot(&first, &saved, &view).preset;
+        let as_saved = shot(CompareWith::Saved);
+        let whole = shot(CompareWith::FullResolution);
         assert_eq!((as_saved.camera, as_saved.systems.clone()), (first.preset.camera, saved.systems.clone()));
         assert_eq!((&as_saved.lights, &whole.lights), (&first.preset.lights, &first.preset.lights));
         assert_eq!(as_saved.time.to_bits(), first.preset.time.to_bits());
-        assert_eq!(whole.systems[0].settings.accumulate.scale, 1);
+        assert_eq!(whole.systems[0].settings.accumulate.downscale, 1);
         whole.validate().unwrap();
         let mut back = whole;
         back.systems[0].settings.accumulate = saved.systems[0].settings.accumulate;
         assert_eq!(back, first.preset);
         assert!(shot(CompareWith::Forward).systems[0].settings.is_forward());
+        view.systems.mute_solo(&first.preset.systems, 0).is_muted = true;
+        let muted = CompareWith::Saved.shot(&first, &saved, &view).preset;
+        assert!(muted.systems[0].emitter.rate <= 0.0);
     }
 }

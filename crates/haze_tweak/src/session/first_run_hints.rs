@@ -104,9 +104,11 @@ impl FirstRunHints {
         if self.open.is_empty() {
             return;
         }
-        let (camera, systems) = (preset.camera.position, &preset.systems);
+        let camera = preset.camera.position;
+        let systems = &preset.systems;
         let last = self.last.get_or_insert_with(|| (camera, systems.clone()));
-        let (has_moved, has_set) = (last.0 != camera, last.1 != *systems);
+        let has_moved = last.0 != camera;
+        let has_set = last.1 != *systems;
         last.0 = camera;
         if has_set {
             last.1.clone_from(systems);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use eframe::egui::{Response, Vec2};
 use glam::{UVec2, Vec3};
-use haze_core::formula::tonemap::tonemapped;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_reference::Probe;
 
 use super::ramp_survey::{RampPlace, RampSurvey};
@@ -38,8 +38,8 @@ pub struct PixelValues {
     pub probe: Probe,
     /// Share of the pixel that an object in front covers at its outline, 0 to 1. The probe is of the rest.
     pub front_share: f32,
-    /// Factor on the light before tonemapping.
-    pub exposure: f32,
+    /// From its light to the color on the screen.
+    pub transform: DisplayTransform,
 }
 
 impl Inspection {
@@ -63,6 +63,6 @@ impl Inspection {
 }
 
 /// Returns tonemapped light as an sRGB code.
-pub fn srgb_code(light: Vec3, exposure: f32) -> [u8; 3] {
-    tonemapped(light, exposure).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
+pub fn srgb_code(light: Vec3, transform: DisplayTransform) -> [u8; 3] {
+    transform.code(light).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

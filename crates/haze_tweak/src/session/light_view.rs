@@ -59,12 +59,12 @@ struct LightEntry {
     mute_solo: MuteSolo,
 }
 
-/// Mute and solo flags of a light.
+/// Mute and solo flags of a light or a system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MuteSolo {
-    /// The light is left out of the image.
+    /// It is left out of the image.
     pub is_muted: bool,
-    /// If any light is solo, only solo lights are in the image.
+    /// If any is solo, only those are in the image.
     pub is_solo: bool,
 }
 
@@ -72,7 +72,8 @@ impl LightView {
     /// Follows changes of the list of lights, by undo or by another preset.
     pub fn follow(&mut self, lights: &[Light]) {
         let entry = |&light| LightEntry { light, mute_solo: MuteSolo::default() };
-        let (old, new) = (self.entries.len(), lights.len());
+        let old = self.entries.len();
+        let new = lights.len();
         if old != new {
             // Lights that are equal at either end of the list keep their state.
             let pairs = self.entries.iter().zip(lights);
@@ -185,8 +186,8 @@ impl LightView {
     /// Inserts a copy of a light after it, with its keyframes, and selects the copy. The copy of a key light has no role.
     pub fn duplicate(&mut self, preset: &mut Preset, index: usize) {
         if let Some(&light) = preset.lights.get(index) {
-            let (role, count) =
-                (if light.role == LightRole::Key { LightRole::None } else { light.role }, preset.lights.len());
+            let role = if light.role == LightRole::Key { LightRole::None } else { light.role };
+            let count = preset.lights.len();
             self.insert(preset, index + 1, Light { role, ..light });
             if preset.lights.len() > count {
                 copy_light_tracks(&mut preset.animation, index, index + 1);
@@ -293,7 +294,9 @@ mod tests {
     #[test]
     fn names_tell_kind_and_index_of_the_lights_in_the_image() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
-        (all[0].kind, all[2].kind, all[2].role) = (LightKind::Directional, LightKind::Spot, LightRole::Rim);
+        all[0].kind = LightKind::Directional;
+        all[2].kind = LightKind::Spot;
+        all[2].role = LightRole::Rim;
         let mut shown = LightView::default();
         shown.follow(&all);
         assert_eq!(shown.shown_names(&all), ["Sun 1", "Point 2", "Rim (Spot 3)"]);
@@ -367,7 +370,8 @@ mod tests {
 
     #[test]
     fn no_more_lights_are_added_than_a_frame_takes() {
-        let (mut all, mut shown) = (preset(&[]), LightView::default());
+        let mut all = preset(&[]);
+        let mut shown = LightView::default();
         for _ in 0..MAX_LIGHTS + 2 {
             shown.insert(&mut all, 0, Light::default());
         }

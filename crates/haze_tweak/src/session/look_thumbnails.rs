@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 use glam::UVec2;
-use haze::Error;
 use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
 use haze_preset::{AssetFolders, builtin};
@@ -83,7 +83,8 @@ impl LookThumbnails {
         }
         let shot = Shot { size: thumbnail_size(shot.size), ..shot.clone() };
         // The ramp of the field at the time of the first rendering, so that equal smoke shares all images.
-        let (system, field) = (shown.system, shown.field);
+        let system = shown.system;
+        let field = shown.field;
         let of = |shot: &Shot| ramp_of(shot, system, field);
         let Some(neutral) = shown.rendered.as_ref().and_then(of).or_else(|| of(&shot)) else { return };
         let key = with_ramp(&shot, system, field, "", neutral);
@@ -111,7 +112,9 @@ impl LookThumbnails {
         shown.tickets.drain(..).for_each(|ticket| ticket.cancel());
         if let Some(worker) = &self.worker {
             for entry in &shown.entries {
-                let (name, shot, folders) = (entry.name.clone(), shot.clone(), folders.clone());
+                let name = entry.name.clone();
+                let shot = shot.clone();
+                let folders = folders.clone();
                 shown.tickets.push(worker.submit_async(async move |_| {
                     let picture = draw(&shot, system, field, &name, &folders).await;
                     (name, picture.ok())
@@ -126,14 +129,15 @@ impl LookThumbnails {
 /// Loads a ramp, built in or from a file.
 fn ramp(name: &str, folders: &AssetFolders) -> Result<Ramp, Error> {
     match builtin::find(builtin::RAMPS, name) {
-        Some(builtin) => builtin.ramp(),
+        Some(builtin) => Ok(builtin.ramp()?),
         None => asset_loading::ramp(&asset_loading::place_of(name, folders)),
     }
 }
 
 /// Returns the ramp in a field.
 fn ramp_of(shot: &Shot, system: usize, field: &str) -> Option<Ramp> {
-    let (found, mut assets) = (shot.preset.systems.get(system)?, shot.materials.get(system)?.clone());
+    let found = shot.preset.systems.get(system)?;
+    let mut assets = shot.materials.get(system)?.clone();
     let slots = ramp_slots(&found.material, &mut assets);
     slots.into_iter().find(|slot| slot.0 == field).map(|slot| slot.2.clone())
 }

@@ -29,7 +29,8 @@ const MAX_CHARACTERS: usize = 600;
 pub fn truncate_middle(text: &str, most: usize) -> String {
     let mut line: Vec<_> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if line.len() > most {
-        let (head, tail) = (most * 2 / 3, most / 3);
+        let head = most * 2 / 3;
+        let tail = most / 3;
         line.splice(head..line.len() - tail, ['…']);
     }
     line.into_iter().collect()

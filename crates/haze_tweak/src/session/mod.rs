@@ -17,6 +17,8 @@ pub mod slider_range;
 pub mod smoke_geometry;
 pub mod sprite_preview;
 pub mod sprite_view;
+mod system_edits;
+pub mod system_view;
 pub mod track_view;
 pub mod view_options;
 
@@ -26,9 +28,10 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use glam::UVec2;
 use haze::shader::Sources;
-use haze::{Error, Light, MaterialAssets};
+use haze::{Light, MaterialAssets};
 use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::{Tooltips, no_effect_reason};
+use haze_core::error::Error;
 use haze_core::settings::{BackdropKind, DebugView, FieldValue, field_values};
 use haze_demo::shot::Shot;
 use haze_preset::{AssetFolders, Preset};
@@ -59,6 +62,7 @@ use playback::Playback;
 use setting_search::SettingSearch;
 use smoke_geometry::SmokeGeometry;
 use sprite_preview::SpritePreview;
+use system_view::SystemView;
 use view_options::{Tab, ViewOptions};
 
 pub struct Session {
@@ -154,7 +158,8 @@ impl Session {
 
     /// Shows a document. Images are looked up beside it and in `assets`.
     pub fn show(document: Document, assets: Option<PathBuf>) -> Result<Self, Error> {
-        let (preset, source) = (&document.preset, document.path());
+        let preset = &document.preset;
+        let source = document.path();
         let folders = AssetFolders::for_preset_file(source).with_shared(assets.clone());
         let LoadedAssets { materials, particles, backdrop } = asset_loading::all(preset, source, &folders)?;
         Ok(Self {
@@ -196,7 +201,8 @@ impl Session {
     /// Attaches the session to another window. GPU resources of the previous device are dropped.
     pub fn attach_window(&mut self, context: &egui::Context) {
         self.repaint.follow(context);
-        (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
+        self.thumbnails = PictureThumbnails::default();
+        self.flipbook = None;
         self.looks = LookThumbnails::default();
     }
 
@@ -214,10 +220,10 @@ impl Session {
 
     /// Returns the shot of the present view.
     pub fn shot(&self, size: UVec2) -> Shot {
-        self.shot_of(self.preset_now(), size)
+        self.shot_of(self.shown_preset(), size)
     }
 
-    /// Returns the shot of the present view with its tracks, for images at other times.
+    /// Returns the shot of the present view with its tracks and all systems, for exports.
     pub fn animated_shot(&self, size: UVec2) -> Shot {
         self.shot_of(Preset { time: self.playback.time, ..self.document.preset.clone() }, size)
     }
@@ -229,12 +235,14 @@ impl Session {
 
     /// Returns the smoke that is shown, measured unless `known` has it already.
     pub fn measure<'a>(&self, known: &'a mut SmokeGeometry) -> &'a SmokeGeometry {
-        known.at(&self.preset_now(), self.particle_frames(), self.playback.time)
+        known.at(&self.shown_preset(), self.particle_frames(), self.playback.time)
     }
 
     fn shot_of(&self, mut preset: Preset, size: UVec2) -> Shot {
         self.view.lights.apply(&mut preset);
-        let (materials, caches, backdrop) = (self.materials(), self.particle_frames(), self.backdrop.of(&preset));
+        let materials = self.materials();
+        let caches = self.particle_frames();
+        let backdrop = self.backdrop.of(&preset);
         Shot { preset, size, debug_view: self.view.debug_view, materials, caches, backdrop, shown_scalar: None }
     }
 
@@ -351,7 +359,8 @@ impl Session {
         self.follow_ramps(is_held);
         self.follow_sprites(is_held);
         self.document.track(is_held);
-        let (saved, preset) = (self.saved(), &self.document.preset);
+        let saved = self.saved();
+        let preset = &self.document.preset;
         if (&self.changed.saved, &self.changed.preset) != (saved, preset) {
             let paths = changed_fields(saved, preset).into_iter().collect();
             self.changed = Changed { paths, saved: saved.clone(), preset: preset.clone() };
@@ -410,7 +419,8 @@ impl Session {
 
     /// Adds a keyframe of a setting at the time of the playback, or deletes the one that is there.
     pub fn toggle_key(&mut self, setting: &str) {
-        let (preset, time) = (&mut self.document.preset, self.playback.key_time());
+        let preset = &mut self.document.preset;
+        let time = self.playback.key_time();
         match keyframes::track(preset, setting).and_then(|track| keyframes::key_at(track, time)) {
             Some(index) => keyframes::remove_key(preset, setting, index),
             None => {
@@ -464,7 +474,10 @@ impl Session {
         self.backdrop = LoadedBackdrop::new(&document.preset, backdrop);
         self.backdrop_folders.clear();
         self.playback = Playback::of(&document.preset);
-        (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
+        self.compare = CompareState::default();
+        self.view.system = 0;
+        self.is_changed_on_disk = false;
+        self.view.systems = SystemView::default();
         self.ramps = RampEdits::default();
         self.copy_request = None;
         self.looks.close();

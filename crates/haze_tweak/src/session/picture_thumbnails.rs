@@ -6,11 +6,10 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use glam::{UVec3, Vec3, Vec4Swizzles};
-use haze::Error;
 use haze_core::assets::image::{decode_color_png, decode_png};
 use haze_core::assets::noise;
 use haze_core::assets::sprite::Sprite;
-use haze_core::error::builtin_path;
+use haze_core::error::{Error, builtin_path};
 use haze_core::settings::ImageRole;
 use haze_preset::builtin::{self, Builtin};
 use image::imageops::{self, FilterType};
@@ -160,7 +159,8 @@ fn puff(sprite: &Sprite) -> ColorImage {
     // The smallest mip level that is at least as high as the thumbnail.
     let is_large = |level: &u32| sprite.level_size(*level) as usize >= SIZE[1];
     let level = (0..sprite.level_count()).rev().find(is_large).unwrap_or(0);
-    let (side, left) = (sprite.level_size(level) as usize, (SIZE[0] - SIZE[1]) / 2);
+    let side = sprite.level_size(level) as usize;
+    let left = (SIZE[0] - SIZE[1]) / 2;
     drawn(|[x, y]| {
         if !(left..left + SIZE[1]).contains(&x) {
             return Color32::TRANSPARENT;

@@ -56,7 +56,8 @@ impl Playback {
     }
 
     fn move_by(&mut self, seconds: f64) {
-        let (start, end) = (*self.range.start(), *self.range.end());
+        let start = *self.range.start();
+        let end = *self.range.end();
         self.time += seconds;
         if self.is_looping && end > start && !self.range.contains(&self.time) {
             self.time = start + (self.time - start).rem_euclid(end - start);

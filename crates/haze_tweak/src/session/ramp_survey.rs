@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{UVec2, Vec2};
-use haze::Error;
+use haze_core::error::Error;
 use haze_demo::capture::ProbeInputs;
 use haze_reference::{LightProbe, SystemProbe};
 
@@ -242,7 +242,8 @@ mod tests {
 
     /// Two pixels of smoke of unequal coverage, under lights 1 and 4, and a pixel of another system.
     fn survey() -> RampSurvey {
-        let (left, right) = (Vec2::new(0.1, 0.3), Vec2::new(0.9, 0.6));
+        let left = Vec2::new(0.1, 0.3);
+        let right = Vec2::new(0.9, 0.6);
         let lights = vec![light(4, left, None), light(1, right, Some(Vec2::new(0.2, 0.7)))];
         let samples = vec![
             (UVec2::new(1, 0), smoke(0.25, None, vec![light(4, left, None)])),

@@ -5,7 +5,7 @@ use haze_core::settings::{field_path, for_each_field};
 use haze_preset::Preset;
 
 use super::light_view::LightView;
-use super::look_controls::{ControlTarget, LOOK_CONTROLS};
+use super::look_controls::{ControlTarget, LOOK_SECTIONS};
 use super::view_options::Tab;
 use crate::document::display_names::display_name;
 use crate::document::light_defaults::light_name;
@@ -60,7 +60,7 @@ pub struct SearchResult {
 }
 
 /// Words that no setting has, or few, and words of the settings that come nearest.
-const SYNONYMS: [(&str, &[&str]); 22] = [
+const SYNONYMS: [(&str, &[&str]); 26] = [
     ("alpha", &["opacity", "thickness"]),
     ("animation", &["frame", "flipbook"]),
     ("blur", &["softness", "scale"]),
@@ -68,11 +68,14 @@ const SYNONYMS: [(&str, &[&str]); 22] = [
     ("color", &["color"]),
     ("count", &["rate"]),
     ("density", &["thickness"]),
+    ("detail", &["grain"]),
     ("fog", &["thickness", "scatter"]),
     ("gravity", &["buoyancy", "rise"]),
-    ("hue", &["color"]),
+    ("hue", &["color", "tonemap"]),
     ("lamp", &["kind"]),
+    ("life", &["age"]),
     ("opacity", &["thickness"]),
+    ("over", &["age"]),
     ("quality", &["scale"]),
     ("resolution", &["scale"]),
     ("rotation", &["spin"]),
@@ -82,6 +85,7 @@ const SYNONYMS: [(&str, &[&str]); 22] = [
     ("temperature", &["heat", "color"]),
     ("texture", &["sprite"]),
     ("transparency", &["opacity", "thickness"]),
+    ("vortex", &["ring", "orbit", "turbulence"]),
     ("zoom", &["fov"]),
 ];
 
@@ -137,7 +141,8 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &
     let has_many = preset.systems.len() > 1;
     let mut found = Vec::new();
     for (index, system) in preset.systems.iter().enumerate() {
-        for control in LOOK_CONTROLS {
+        let sections = LOOK_SECTIONS.iter().filter(|section| section.is_shown(system, index, |_| false));
+        for control in sections.flat_map(|section| section.controls) {
             let Some(path) = control.path(index, lights.key_light(preset, index)) else { continue };
             let (is_made, tooltip) = match control.target {
                 ControlTarget::Macro(made) => (true, made.tooltip),
@@ -157,10 +162,12 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &
         let path = field_path(steps);
         // The preset's own name and description are on no tab.
         let Some((name, groups)) = steps.split_last().filter(|(_, groups)| !groups.is_empty()) else { return };
-        let (own, place) = (display_name(name.0), place_of(preset, groups));
+        let own = display_name(name.0);
+        let place = place_of(preset, groups);
         let tooltip = tooltips.field(&plain(&path)).unwrap_or_default();
         if let Some(rank) = query.rank(&own, &place, &path, tooltip) {
-            let (name, tab) = (format!("{place}: {own}"), tab_of(&path));
+            let name = format!("{place}: {own}");
+            let tab = tab_of(&path);
             found.push((rank, SearchResult { path, name, tooltip: tooltip.into(), tab }));
         }
     });
@@ -206,7 +213,7 @@ fn tab_of(path: &str) -> Tab {
     let is_in = |part: &&str| path.contains(&format!(".{part}."));
     if !path.starts_with("systems") {
         Tab::Light
-    } else if ["emitter", "cache", "material"].iter().chain(&SMOKE_TAB_GROUPS).any(is_in) {
+    } else if ["emitter", "particle_files", "material"].iter().chain(&SMOKE_TAB_GROUPS).any(is_in) {
         Tab::Smoke
     } else {
         Tab::Advanced
@@ -251,6 +258,12 @@ mod tests {
             ("brightness", "camera.exposure"),
             ("gravity", "emitter.buoyancy"),
             ("color", "color"),
+            ("detail", "grain.tiles"),
+            ("color over life", "sprite.age_color"),
+            ("bloom", "camera.bloom"),
+            ("tone", "camera.tonemap"),
+            ("hue", "camera.tonemap"),
+            ("vortex", "ring_speed"),
         ] {
             let preset = Preset::load("column").unwrap();
             let found = matches(&preset, &Tooltips::of::<Preset>(), &LightView::default(), text);

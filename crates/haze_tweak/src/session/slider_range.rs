@@ -13,7 +13,8 @@ pub type UsualRange = Option<(f32, f32)>;
 
 /// Returns the range of a number's slider, and true if it is too wide to be linear. Angles are always linear.
 pub fn slider_range(range: &RangeInclusive<f32>, unit: &str, value: f32) -> (RangeInclusive<f32>, bool) {
-    let (low, high) = (*range.start(), *range.end());
+    let low = *range.start();
+    let high = *range.end();
     let shown_high = if high > UNBOUNDED_END { UNBOUNDED_END.max(value.abs() * 2.0).min(high) } else { high };
     let shown_low = if low < -UNBOUNDED_END { -UNBOUNDED_END.max(value.abs() * 2.0) } else { low };
     let is_wide = shown_high - shown_low > MAX_LINEAR_WIDTH || low > 0.0 && high > MAX_LINEAR_RATIO * low;

@@ -111,12 +111,14 @@ fn point_behind(boxes: &[Bounds], point: Vec3, way: Vec3) -> Vec3 {
 
 /// Returns the distance along a ray at which it leaves a box, metres; `None` if it misses the box.
 fn exit_distance(bounds: &Bounds, point: Vec3, way: Vec3) -> Option<f32> {
-    let (mut from, mut to) = (0.0_f32, f32::INFINITY);
+    let mut from = 0.0_f32;
+    let mut to = f32::INFINITY;
     for axis in 0..3 {
         // Avoids a division by 0 for a ray parallel to a side.
         let slope = if way[axis].abs() < 1.0e-6 { 1.0e-6 } else { way[axis] };
         let ends = [bounds.min[axis], bounds.max[axis]].map(|end| (end - point[axis]) / slope);
-        (from, to) = (from.max(ends[0].min(ends[1])), to.min(ends[0].max(ends[1])));
+        from = from.max(ends[0].min(ends[1]));
+        to = to.min(ends[0].max(ends[1]));
     }
     (from <= to).then_some(to)
 }
@@ -149,7 +151,8 @@ mod tests {
         // Beyond another box behind it, but not beyond one beside it.
         let mut light = Light::default();
         let moved = |by: Vec3| Bounds { min: BOX.min + by, max: BOX.max + by };
-        let (eye, point) = (Vec3::new(0.0, 2.0, 9.0), Vec3::new(0.0, 2.0, 0.0));
+        let eye = Vec3::new(0.0, 2.0, 9.0);
+        let point = Vec3::new(0.0, 2.0, 0.0);
         let mut put = |by: Vec3| {
             place_behind(&mut light, eye, point, &[BOX, moved(by)]);
             light.position.z
@@ -180,7 +183,8 @@ mod tests {
             systems: systems.map(<[_]>::to_vec).into(),
             ..SmokeGeometry::default()
         };
-        let (camera, size) = (Camera::default(), UVec2::new(160, 90));
+        let camera = Camera::default();
+        let size = UVec2::new(160, 90);
         assert!(smoke([&near, &far]).visible_center(&camera, size).distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-4);
         let none = smoke([&far, &[]]);
         assert_eq!(none.visible_center(&camera, size), none.bounds().center());

@@ -81,7 +81,8 @@ fn code(material: &MaterialAssets, view: &View, uv: Vec2) -> Vec3 {
     });
     let lod = sprite_lod(sprite.size() as f32, view.side as f32);
     let texel = sample_sprite(sprite, uv, frames, detail.yz() * view.motion, lod);
-    let (normal, amount) = (texel.xyz(), texel.w);
+    let normal = texel.xyz();
+    let amount = texel.w;
     match view.channel {
         SpriteChannel::Lit => {
             let normal = normal_from_accumulation(NormalEncoding::Signed, NormalDecode::Exact, normal, 1.0);

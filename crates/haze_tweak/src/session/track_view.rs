@@ -15,6 +15,7 @@ pub struct TrackView {
 impl TrackView {
     /// Selects the track of a setting, and opens the list.
     pub fn select(&mut self, setting: &str) {
-        (self.selected, self.is_closed) = (Some(setting.into()), false);
+        self.selected = Some(setting.into());
+        self.is_closed = false;
     }
 }

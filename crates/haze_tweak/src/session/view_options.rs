@@ -5,6 +5,7 @@ use haze_core::settings::DebugView;
 
 use super::light_view::LightView;
 use super::sprite_view::SpriteView;
+use super::system_view::SystemView;
 use super::track_view::TrackView;
 
 /// View options. They are not part of the preset.
@@ -22,6 +23,7 @@ pub struct ViewOptions {
     pub tab: Tab,
     /// Index of the system whose settings are shown.
     pub system: usize,
+    pub systems: SystemView,
     pub lights: LightView,
     pub overlays: Overlays,
     pub sprite: SpriteView,
@@ -50,6 +52,7 @@ impl Default for ViewOptions {
             help: false,
             tab: Tab::Look,
             system: 0,
+            systems: SystemView::default(),
             lights: LightView::default(),
             overlays: Overlays::default(),
             sprite: SpriteView::default(),

@@ -54,7 +54,8 @@ pub fn fly(camera: &mut Camera, way: Vec3) {
 /// Frames a box in an image of an aspect ratio, without turning the camera.
 pub fn frame(camera: &mut Camera, bounds: &Bounds, aspect: f32) {
     let tangent = (0.5 * camera.fov.to_radians()).tan();
-    let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+    let center = bounds.center();
+    let half = 0.5 * (bounds.max - bounds.min);
     let ahead = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
     let (right, up) = sides(ahead);
     // Distance from the box's center to the camera at which a corner is just in view.
@@ -113,7 +114,8 @@ mod tests {
 
     #[test]
     fn a_pan_moves_camera_and_target_and_a_dolly_keeps_its_point_in_place() {
-        let (mut camera, before) = (Camera::default(), Camera::default());
+        let mut camera = Camera::default();
+        let before = Camera::default();
         pan(&mut camera, Vec2::new(0.25, 0.0));
         // The image follows the pointer to the right, so the camera moves left.
         assert!(camera.position.x < before.position.x && camera.target.x < before.target.x);

@@ -140,7 +140,8 @@ impl LightGizmo {
                     1.0,
                     faint,
                 );
-                let (right, up) = (projection.right * light.radius, projection.up * light.radius);
+                let right = projection.right * light.radius;
+                let up = projection.up * light.radius;
                 circle(outlined, projection, light.position, right, up, 1.5, self.color(Handle::Radius, PLAIN));
                 if kind == LightKind::Spot {
                     self.draw_cone(outlined, light, projection);

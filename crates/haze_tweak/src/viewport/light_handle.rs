@@ -55,7 +55,8 @@ pub fn handles(light: &Light, projection: &ScreenProjection) -> Vec<(Handle, Sha
     if light.kind == LightKind::Directional {
         return vec![(Handle::Aim, Shape::Knob(middle))];
     }
-    let (at, metre) = (light.position, projection.metres_per_point(light.position));
+    let at = light.position;
+    let metre = projection.metres_per_point(light.position);
     let view = (at - projection.eye).normalize_or(projection.ahead);
     for (axis, unit) in UNITS.into_iter().enumerate() {
         let reach = |length: f32| projection.project(at + unit * (length * metre));
@@ -66,7 +67,8 @@ pub fn handles(light: &Light, projection: &ScreenProjection) -> Vec<(Handle, Sha
         }
     }
     for (axis, unit) in UNITS.into_iter().enumerate() {
-        let (u, v) = (UNITS[(axis + 1) % 3], UNITS[(axis + 2) % 3]);
+        let u = UNITS[(axis + 1) % 3];
+        let v = UNITS[(axis + 2) % 3];
         let corner = |a: usize, b: usize| projection.project(at + (u * PLANE[a] + v * PLANE[b]) * metre);
         if let (Some(a), Some(b), Some(c), Some(d)) = (corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1))
             && unit.dot(view).abs() > SLIM
@@ -105,7 +107,8 @@ impl Shape {
             }
             Self::Quad(corners) => {
                 let turn = |i: usize| {
-                    let (from, to) = (corners[i], corners[(i + 1) % 4]);
+                    let from = corners[i];
+                    let to = corners[(i + 1) % 4];
                     (to - from).rot90().dot(at - from) > 0.0
                 };
                 (1..4).all(|i| turn(i) == turn(0))

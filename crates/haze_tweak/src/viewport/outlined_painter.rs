@@ -28,7 +28,8 @@ impl OutlinedPainter<'_> {
     }
 
     pub fn arrow_head(&self, tip: Pos2, along: Vec2, color: Color32) {
-        let (ahead, side) = (along.normalized(), along.normalized().rot90());
+        let ahead = along.normalized();
+        let side = along.normalized().rot90();
         let corners = vec![tip + 6.0 * ahead, tip - 6.0 * ahead + 5.0 * side, tip - 6.0 * ahead - 5.0 * side];
         self.0.add(Shape::convex_polygon(corners, color, Stroke::new(1.0, RIM)));
     }

@@ -56,7 +56,8 @@ pub fn draw(
 
 /// Returns the twelve edges of a box.
 fn edges(bounds: &Bounds) -> impl Iterator<Item = [Vec3; 2]> {
-    let (min, max) = (bounds.min, bounds.max);
+    let min = bounds.min;
+    let max = bounds.max;
     let corner = move |index: usize| {
         Vec3::from([0, 1, 2].map(|axis| if index & (1 << axis) == 0 { min[axis] } else { max[axis] }))
     };
@@ -68,7 +69,8 @@ fn edges(bounds: &Bounds) -> impl Iterator<Item = [Vec3; 2]> {
 /// center.
 fn section(bounds: &Bounds, projection: &ScreenProjection, depth: f32) -> Vec<Pos2> {
     let cut = |[from, to]: [Vec3; 2]| {
-        let (a, b) = (projection.depth(from) - depth, projection.depth(to) - depth);
+        let a = projection.depth(from) - depth;
+        let b = projection.depth(to) - depth;
         (a * b < 0.0).then(|| from.lerp(to, a / (a - b))).and_then(|at| projection.project(at))
     };
     let mut corners: Vec<_> = edges(bounds).filter_map(cut).collect();
@@ -111,7 +113,8 @@ fn grid(painter: &Painter, rect: Rect, texels: &TargetTexels, color: Color32) {
     let texel = pixel * texels.scale as f32;
     let every = (MIN_GRID_SPACING / texel).ceil().max(1.0) as u32;
     let place = |x: i32, y: i32| pos2(rect.left() + x as f32 * texel, rect.top() + y as f32 * texel);
-    let (start, end) = (texels.origin, texels.origin + texels.size.as_ivec2());
+    let start = texels.origin;
+    let end = texels.origin + texels.size.as_ivec2();
     let shown = Rect::from_two_pos(place(start.x, start.y), place(end.x, end.y));
     let line = Stroke::new(1.0, color.gamma_multiply(0.3));
     for column in (0..=texels.size.x).step_by(every as usize) {

@@ -5,11 +5,12 @@ use std::f32::consts::TAU;
 
 use eframe::egui::{self, Align2, Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use glam::{UVec2, Vec3, vec3};
-use haze::{Error, Light, LightKind, MaterialAssets};
+use haze::{Light, LightKind, MaterialAssets};
 use haze_author::path_trace::{MEDIA, Medium, PathTrace};
 use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::BakedSixWay;
+use haze_core::error::{AssetError, Error};
 use haze_core::settings::{Backlight, Settings};
 use haze_export::puff_sheet::{ComparedImages, image_pairs};
 use haze_export::sprite_by_name::{default_sprite, sprite_recipe};
@@ -94,7 +95,8 @@ impl PathTracedPuff {
     pub fn show(&mut self, ui: &mut Ui, rect: Rect, session: &Session) {
         let Some(turn) = session.view.lights.turn else { return };
         let preset = &session.document.preset;
-        let (index, materials) = (session.view.system, session.loaded_materials.of(preset));
+        let index = session.view.system;
+        let materials = session.loaded_materials.of(preset);
         let Some((system, material)) = preset.systems.get(index).zip(materials.get(index)) else { return };
         let leading = session.view.lights.selected.or(session.view.lights.key_light(preset, index)).unwrap_or(0);
         let Some(light) = preset.lights.get(leading).or(preset.lights.first()) else { return };
@@ -131,7 +133,8 @@ impl PathTracedPuff {
                 self.failed = Some(error.to_string());
                 return;
             }
-            (self.compared, self.failed) = (None, None);
+            self.compared = None;
+            self.failed = None;
         }
         match self.worker.as_ref().and_then(Worker::poll) {
             Some(Some(Ok(traced))) => self.traced = Some((wanted, traced)),
@@ -157,7 +160,8 @@ impl PathTracedPuff {
             None => {
                 let wake = session.repaint.clone();
                 let worker = Worker::new("puff", move || wake.call());
-                self.worker.insert(worker.map_err(|error| Error::Io { path: "a thread".into(), error })?)
+                self.worker
+                    .insert(worker.map_err(|error| Error::from(AssetError::Io { path: "a thread".into(), error }))?)
             }
         };
         let (medium, is_six_way) = wanted;
@@ -202,7 +206,8 @@ impl Compared {
     fn show(&self, ui: &mut Ui, angle: f32) {
         let count = LIGHTS as usize;
         let place = angle / 360.0 * LIGHTS as f32;
-        let (first, share) = (place as usize % count, place.fract());
+        let first = place as usize % count;
+        let share = place.fract();
         let second = (first + 1) % count;
         ui.horizontal(|ui| {
             for (row, name) in
@@ -234,7 +239,8 @@ impl Compared {
 
 /// Returns the texture coordinates of a light's puff on the sheet. A margin of half a texel excludes its neighbours.
 fn part(light: usize, row: usize) -> Rect {
-    let (size, side) = (UVec2::new(LIGHTS, 2).as_vec2(), PATH_TRACE.size as f32);
+    let size = UVec2::new(LIGHTS, 2).as_vec2();
+    let side = PATH_TRACE.size as f32;
     let at = |x: f32, y: f32| pos2((light as f32 + x) / size.x, (row as f32 + y) / size.y);
     let margin = 0.5 / side;
     Rect::from_min_max(at(margin, margin), at(1.0 - margin, 1.0 - margin))

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use haze_core::formula::color::luminance;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_reference::{LightProbe, ShadowProbe, SystemProbe};
 
 use crate::session::Session;
@@ -21,7 +22,8 @@ const WIDE: [f32; 2] = [540.0, 720.0];
 
 /// Draws the values while the inspector is on, on the side away from the pointer.
 pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
-    let (inspect, compare) = (&session.inspect, &session.compare);
+    let inspect = &session.inspect;
+    let compare = &session.compare;
     let Some(place) = inspect.place().filter(|_| inspect.is_on && !inspect.is_painting) else { return };
     let side = compare.side(place.x);
     let is_made = side == ComparedSide::Second && compare.against == Some(CompareWith::Reference);
@@ -68,7 +70,7 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
 }
 
 fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, size: Vec2) {
-    let PixelValues { pixel, side, names, probe, front_share, exposure } = values;
+    let PixelValues { pixel, side, names, probe, front_share, transform } = values;
     let keep = if session.inspect.pinned.is_some() { "Pinned" } else { "Click to pin" };
     ui.horizontal(|ui| {
         ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
@@ -97,7 +99,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, size: Vec2) {
                 "The edge of an object in front covers {covered:.0} %\nof this pixel: values of what is behind it"
             ));
         }
-        Some(color) => picture(ui, color, *exposure),
+        Some(color) => picture(ui, color, *transform),
         None => {
             ui.weak("The forward path lights each sprite\nseparately: no values to inspect");
         }
@@ -198,13 +200,13 @@ fn gaps(ui: &Ui) -> Vec2 {
 }
 
 /// Shows the image value before and after tonemapping.
-fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
+fn picture(ui: &mut Ui, light: Vec4, transform: DisplayTransform) {
     egui::Grid::new("picture").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
         ui.label("Image, linear");
         color(ui, light.xyz());
         ui.end_row();
         ui.label("Displayed, sRGB");
-        let [r, g, b] = srgb_code(light.xyz(), exposure);
+        let [r, g, b] = srgb_code(light.xyz(), transform);
         ui.horizontal(|ui| {
             swatch(ui, Color32::from_rgb(r, g, b));
             ui.label(format!("{r} {g} {b}"));
@@ -234,7 +236,8 @@ fn swatch(ui: &mut Ui, color: Color32) {
 /// Draws a ball with the normal on it.
 fn ball(ui: &mut Ui, normal: Vec3) {
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(34.0), Sense::hover());
-    let (middle, radius) = (rect.center(), 15.0);
+    let middle = rect.center();
+    let radius = 15.0;
     let painter = ui.painter();
     // Dark at the edge, bright at the center.
     for step in 0..6_u8 {

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Ui};
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::Error;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_demo::capture::{Capture, ProbeInputs};
 use haze_demo::shot::Shot;
 
@@ -60,8 +61,10 @@ impl ProbeJob {
             // An answer from before would be shown for the pixel that is inspected next.
             self.worker.cancel_all();
             self.is_pending = false;
-            (self.captured, self.requested) = (None, None);
-            (session.inspect.pixel_values, session.inspect.survey) = (None, None);
+            self.captured = None;
+            self.requested = None;
+            session.inspect.pixel_values = None;
+            session.inspect.survey = None;
             return;
         }
         if !renderer.can_capture() {
@@ -105,7 +108,8 @@ impl ProbeJob {
                     let captured = captured.clone();
                     self.worker.submit(move |_| Ok(Answer::RampSurvey(RampSurvey::of(&captured.inputs)?)));
                 }
-                (self.captured, self.requested) = (Some(captured), None);
+                self.captured = Some(captured);
+                self.requested = None;
             }
             Answer::PixelValues(values) => inspect.pixel_values = Some(values),
             Answer::RampSurvey(survey) => inspect.survey = Some(Arc::new(survey)),
@@ -130,6 +134,7 @@ impl ProbeJob {
         self.worker.submit(move |_| {
             let probe = captured.inputs.probe(&[pixel])?.remove(0);
             let preset = &captured.inputs.shot().preset;
+            let camera = preset.camera;
             let names = preset.systems.iter().map(|system| system.name.clone()).collect();
             Ok(Answer::PixelValues(PixelValues {
                 pixel,
@@ -137,10 +142,11 @@ impl ProbeJob {
                 names,
                 probe,
                 front_share: captured.inputs.front_share(pixel),
-                exposure: preset.camera.exposure.exp2(),
+                transform: DisplayTransform { exposure: camera.exposure.exp2(), tonemap: camera.tonemap },
             }))
         });
-        (self.requested, self.is_pending) = (Some(pixel), true);
+        self.requested = Some(pixel);
+        self.is_pending = true;
     }
 }
 

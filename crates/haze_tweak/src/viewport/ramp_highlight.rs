@@ -29,7 +29,8 @@ pub fn paint(ui: &Ui, viewport: Rect, inspect: &Inspection, system: usize) {
 
 /// Returns the seconds since the pointer came to a place; `None` without one.
 fn seconds_at(ui: &Ui, place: Option<RampPlace>) -> Option<f64> {
-    let (id, now) = (Id::unique("highlighted ramp place"), ui.input(|input| input.time));
+    let id = Id::unique("highlighted ramp place");
+    let now = ui.input(|input| input.time);
     ui.data_mut(|data| {
         let Some(place) = place else {
             data.remove::<(RampPlace, f64)>(id);

@@ -72,7 +72,8 @@ mod tests {
 
     #[test]
     fn a_ray_meets_a_plane_unless_it_is_behind_the_camera() {
-        let (point, normal) = (vec3(0.0, 1.0, 0.0), vec3(0.3, 1.0, -0.4).normalize());
+        let point = vec3(0.0, 1.0, 0.0);
+        let normal = vec3(0.3, 1.0, -0.4).normalize();
         let met = point + normal.cross(vec3(0.2, 0.0, 1.0)) * 1.7;
         assert!(towards(met).on_plane(point, normal).unwrap().distance(met) < 1e-4);
         let away = Ray { origin: vec3(0.0, 3.0, 0.0), direction: Vec3::Y };
@@ -82,9 +83,11 @@ mod tests {
 
     #[test]
     fn a_ray_meets_either_side_of_a_sphere_and_a_miss_gives_its_rim() {
-        let (center, radius) = (vec3(1.0, 1.0, 0.0), 2.0);
+        let center = vec3(1.0, 1.0, 0.0);
+        let radius = 2.0;
         let ray = towards(center + vec3(0.5, 0.2, 0.0));
-        let (front, back) = (ray.on_sphere(center, radius, true), ray.on_sphere(center, radius, false));
+        let front = ray.on_sphere(center, radius, true);
+        let back = ray.on_sphere(center, radius, false);
         for met in [front, back] {
             assert!((met.distance(center) - radius).abs() < 1e-5);
             assert!((met - ray.origin).normalize().distance(ray.direction) < 1e-5);

@@ -120,8 +120,8 @@ mod tests {
     #[test]
     fn lines_are_clipped_at_the_near_plane() {
         let projection = ScreenProjection::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(200.0, 100.0)));
-        let (behind, ahead) =
-            (projection.eye - projection.ahead + projection.right, projection.eye + projection.ahead * 4.0);
+        let behind = projection.eye - projection.ahead + projection.right;
+        let ahead = projection.eye + projection.ahead * 4.0;
         assert_eq!((projection.project(behind), projection.segment(behind, behind - projection.ahead)), (None, None));
         let [cut, end] = projection.segment(behind, ahead).unwrap();
         assert!(end.distance(projection.rect.center()) < 1e-3 && cut.x > end.x && cut.x.is_finite());

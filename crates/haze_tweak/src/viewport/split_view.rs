@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Sense, Ui};
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::exposure;
+use haze_demo::tonemap_pass::display_transform;
 
 use crate::session::Session;
 use crate::session::comparison::CompareWith;
@@ -14,13 +14,13 @@ use crate::viewport_renderer::cpu_render_job::CpuRenderState;
 pub fn comparison_image(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<ComparisonImage> {
     let against = session.compare.against.clone()?;
     if against != CompareWith::Reference {
-        return Some(ComparisonImage::Shot(Box::new(against.shot(shot, session.saved(), &session.view.lights))));
+        return Some(ComparisonImage::Shot(Box::new(against.shot(shot, session.saved(), &session.view))));
     }
     let wake = session.repaint.clone();
     match session.cpu_render_job.poll_or_start(shot, move || wake.call()) {
         CpuRenderState::Ready(picture) => {
             session.messages.clear("reference");
-            return Some(ComparisonImage::Image(picture, exposure(shot)));
+            return Some(ComparisonImage::Image(picture, display_transform(shot)));
         }
         CpuRenderState::Later(wait) => ui.ctx().request_repaint_after(wait),
         CpuRenderState::Failed(error) => session.messages.error("reference", error),

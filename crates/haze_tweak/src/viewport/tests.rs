@@ -54,7 +54,8 @@ fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2
 /// the events as for a display.
 fn flick(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2]) {
     let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
-    let (first, last) = (places[0], places[places.len() - 1]);
+    let first = places[0];
+    let last = places[places.len() - 1];
     harness.hover_at(first);
     harness.step();
     let moves = places[1..].iter().map(|&place| Event::PointerMoved(place));
@@ -199,14 +200,16 @@ fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
     harness.get_by_label("Move Light behind Smoke").click();
     harness.run();
     let is_behind = |harness: &Harness<'_, Window>| {
-        let (projection, place) = (projection(harness), light(harness).position);
+        let projection = projection(harness);
+        let place = light(harness).position;
         assert!(projection.depth(place) > projection.depth(top), "{place}");
         projection.project(place).unwrap()
     };
     assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
     // So close that the center of all smoke is outside the image.
     let camera = &mut harness.state_mut().session.document.preset.camera;
-    (camera.position, camera.target) = (top + Vec3::new(0.0, -0.1, 1.2), top);
+    camera.position = top + Vec3::new(0.0, -0.1, 1.2);
+    camera.target = top;
     harness.run();
     harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
     harness.run();
@@ -259,7 +262,8 @@ fn overlays_are_drawn_while_they_are_on() {
             picture(&mut harness);
             picture(&mut harness)
         };
-        let (on, off) = (click(), click());
+        let on = click();
+        let off = click();
         let changed = |other: &image::RgbaImage| {
             let pixels = plain.enumerate_pixels().zip(other.pixels());
             let in_view =

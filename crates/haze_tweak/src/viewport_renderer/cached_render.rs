@@ -5,7 +5,7 @@ use std::time::Duration;
 use eframe::egui::epaint::ViewportInPixels;
 use eframe::wgpu;
 use glam::{UVec2, Vec2};
-use haze::Error;
+use haze_core::error::Error;
 use haze_core::settings::{DebugView, DepthSource};
 use haze_demo::headless::WAIT_LIMIT;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};

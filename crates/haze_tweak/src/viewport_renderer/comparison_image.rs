@@ -5,8 +5,9 @@ use std::sync::Arc;
 use eframe::wgpu;
 use glam::Vec4;
 use haze_core::assets::image::Image;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::exposure;
+use haze_demo::tonemap_pass::display_transform;
 
 use super::cached_render::{Target, reduced};
 
@@ -14,8 +15,8 @@ use super::cached_render::{Target, reduced};
 #[derive(Clone)]
 pub enum ComparisonImage {
     Shot(Box<Shot>),
-    /// Image rendered elsewhere, and its exposure factor.
-    Image(Arc<Image<Vec4>>, f32),
+    /// Image rendered elsewhere, and how it is shown.
+    Image(Arc<Image<Vec4>>, DisplayTransform),
 }
 
 /// Texture of an image that was rendered elsewhere.
@@ -29,14 +30,14 @@ impl ComparisonImage {
     pub fn reduced(&self, divisor: u32) -> Self {
         match self {
             Self::Shot(shot) => Self::Shot(Box::new(reduced(shot, divisor))),
-            Self::Image(picture, exposure) => Self::Image(picture.clone(), *exposure),
+            Self::Image(picture, transform) => Self::Image(picture.clone(), *transform),
         }
     }
 
-    pub fn exposure(&self) -> f32 {
+    pub fn transform(&self) -> DisplayTransform {
         match self {
-            Self::Shot(shot) => exposure(shot),
-            Self::Image(_, exposure) => *exposure,
+            Self::Shot(shot) => display_transform(shot),
+            Self::Image(_, transform) => *transform,
         }
     }
 }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::Vec4;
-use haze::Error;
 use haze_core::assets::image::Image;
+use haze_core::error::{AssetError, Error};
 use haze_demo::shot::Shot;
 
 use crate::platform::clock::{self, Duration, Instant};
@@ -44,7 +44,8 @@ impl CpuRenderJob {
         let now = clock::now();
         if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.has_same_image(shot)) {
             self.wanted = Some((shot.clone(), now));
-            (self.image, self.took) = (None, None);
+            self.image = None;
+            self.took = None;
             if let Some(ticket) = self.ticket.take() {
                 ticket.cancel();
             }
@@ -62,7 +63,9 @@ impl CpuRenderJob {
                 Some(worker) => worker,
                 None => match Worker::new("reference", wake) {
                     Ok(worker) => self.worker.insert(worker),
-                    Err(error) => return CpuRenderState::Failed(Error::Io { path: "a thread".into(), error }),
+                    Err(error) => {
+                        return CpuRenderState::Failed(Error::from(AssetError::Io { path: "a thread".into(), error }));
+                    }
                 },
             };
             let shot = shot.clone();
@@ -75,7 +78,8 @@ impl CpuRenderJob {
             None => CpuRenderState::Soon,
             Some(Some(Ok((picture, took)))) => {
                 let image = Arc::new(picture);
-                (self.image, self.took) = (Some(image.clone()), Some(took));
+                self.image = Some(image.clone());
+                self.took = Some(took);
                 CpuRenderState::Ready(image)
             }
             Some(Some(Err(error))) => CpuRenderState::Failed(error),

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::{egui, wgpu};
-use haze::Error;
+use haze_core::error::Error;
 
 /// State of a device. Clones share it.
 #[derive(Clone, Default)]
@@ -23,14 +23,19 @@ impl DeviceHealth {
     /// Registers callbacks on a device. Each event requests a repaint of the context.
     pub fn watch(device: &wgpu::Device, context: &egui::Context) -> Self {
         let health = Self::default();
-        let (lost, frame) = (health.clone(), context.clone());
+        let lost = health.clone();
+        let frame = context.clone();
         device.set_device_lost_callback(move |_, _| {
             lost.0.is_lost.store(true, Ordering::SeqCst);
             frame.request_repaint();
         });
-        let (failed, frame) = (health.clone(), context.clone());
+        let failed = health.clone();
+        let frame = context.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            failed.lock().get_or_insert(one_line_error(&error));
+            let mut first = failed.lock();
+            if first.is_none() {
+                *first = Some(one_line_error(&error));
+            }
             frame.request_repaint();
         }));
         health

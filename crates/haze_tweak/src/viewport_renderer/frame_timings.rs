@@ -64,7 +64,8 @@ impl FrameTimings {
         let is_on = is_seen || self.is_held;
         renderer.measure(is_on);
         if !is_on {
-            (self.scale_budget, self.waiting) = (None, 0);
+            self.scale_budget = None;
+            self.waiting = 0;
             self.frame_times.clear();
             renderer.show_scale(None);
             return false;
@@ -94,7 +95,7 @@ impl FrameTimings {
     }
 
     fn hold_budget(&mut self, renderer: &ViewportRenderer, times: Option<&SmokeTimes>, preset: &Preset) {
-        let of_preset = preset.systems.first().map_or(1, |system| system.settings.accumulate.scale);
+        let of_preset = preset.systems.first().map_or(1, |system| system.settings.accumulate.downscale);
         let scale_budget = self.scale_budget.get_or_insert_with(|| ScaleBudget::new(self.budget, of_preset));
         scale_budget.budget = self.budget;
         let Some(ms) = times.map(SmokeTimes::sum_ms) else { return };

@@ -16,7 +16,7 @@ pub mod viewport_frame;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use eframe::{egui, wgpu};
-use haze::Error;
+use haze_core::error::Error;
 use haze_demo::capture::Capture;
 use haze_demo::image_metrics::Comparison;
 use haze_demo::offscreen_renderer::OffscreenContext;
@@ -67,7 +67,8 @@ impl ViewportRenderer {
         }
         let tonemap_pass = TonemapPass::new(&render.device, render.target_format);
         let state = Arc::new(Mutex::new(RendererState::new(context, tonemap_pass)?));
-        let (adapter, egui) = (Arc::new(render.adapter.get_info()), window.egui_ctx.clone());
+        let adapter = Arc::new(render.adapter.get_info());
+        let egui = window.egui_ctx.clone();
         let time_source = TimeSource::of(&adapter, render.device.features());
         Ok(Self { state, adapter, health, egui, time_source })
     }

@@ -1,14 +1,16 @@
 //! Images of the window, and when each is drawn again.
 
 use eframe::wgpu;
-use glam::{IVec2, UVec2, Vec2};
-use haze::{Error, FrameCounts, LightingChoice, Overdraw, PathChoice, ScaleChoice, Timing};
+use glam::{IVec2, UVec2};
+use haze::{FrameCounts, LightingChoice, Overdraw, PathChoice, ScaleChoice, Timing};
+use haze_core::error::Error;
+use haze_core::formula::tonemap::DisplayTransform;
 use haze_core::settings::DebugView;
 use haze_demo::capture::Capture;
 use haze_demo::image_metrics::Comparison;
 use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenMemory};
 use haze_demo::shot::Shot;
-use haze_demo::tonemap_pass::{TonemapBindGroup, TonemapPass, TonemapUniform, exposure};
+use haze_demo::tonemap_pass::{TonemapBindGroup, TonemapPass, TonemapUniform, display_transform};
 
 use super::cached_render::{CachedRender, Target, reduced, set_scale};
 use super::compared_side::ComparedSide;
@@ -91,7 +93,7 @@ pub struct RendererState {
     pub comparison: Option<Comparison>,
     is_compared: bool,
     /// Exposure factors of the two images.
-    exposures: Vec2,
+    transforms: [DisplayTransform; 2],
     /// Number of times that the image and the second one were drawn.
     renders: u64,
     comparison_renders: u64,
@@ -109,7 +111,8 @@ const MIN_STRIP_INTERVAL: Duration = Duration::from_millis(400);
 
 impl RendererState {
     pub fn new(context: OffscreenContext, tonemap_pass: TonemapPass) -> Result<Self, Error> {
-        let (main, strip) = (CachedRender::new(&context)?, CachedRender::new(&context)?);
+        let main = CachedRender::new(&context)?;
+        let strip = CachedRender::new(&context)?;
         Ok(Self {
             context,
             tonemap_pass,
@@ -128,7 +131,7 @@ impl RendererState {
             wants_comparison: false,
             comparison: None,
             is_compared: false,
-            exposures: Vec2::ZERO,
+            transforms: [DisplayTransform::DATA; 2],
             renders: 0,
             comparison_renders: 0,
             time_source: None,
@@ -139,8 +142,13 @@ impl RendererState {
     }
 
     pub fn replace_context(&mut self, context: OffscreenContext) -> Result<(), Error> {
-        let (main, strip) = (CachedRender::new(&context)?, CachedRender::new(&context)?);
-        (self.main, self.strip, self.other, self.pair, self.captured) = (main, strip, None, None, None);
+        let main = CachedRender::new(&context)?;
+        let strip = CachedRender::new(&context)?;
+        self.main = main;
+        self.strip = strip;
+        self.other = None;
+        self.pair = None;
+        self.captured = None;
         self.context = context;
         self.main.is_wall_timed = self.is_wall_timed();
         self.main.offscreen.set_timing(self.timing.as_ref())?;
@@ -151,7 +159,10 @@ impl RendererState {
     pub fn forget(&mut self) {
         let all = [Some(&mut self.main), self.other.as_mut(), Some(&mut self.strip)];
         all.into_iter().flatten().for_each(CachedRender::forget);
-        (self.capture, self.captured, self.comparison, self.is_compared) = (None, None, None, false);
+        self.capture = None;
+        self.captured = None;
+        self.comparison = None;
+        self.is_compared = false;
     }
 
     pub fn error(&self) -> Option<String> {
@@ -234,13 +245,18 @@ impl RendererState {
     pub fn record_viewport(&mut self, target: &mut Target<'_>, frame: &ViewportFrame) {
         let ViewportFrame { shot, other, split, difference } = frame;
         let divisor = self.motion.resolution.divisor();
-        let (mut shot, other) = (reduced(shot, divisor), &other.as_ref().map(|other| other.reduced(divisor)));
-        self.scale.iter().for_each(|scale| set_scale(&mut shot.preset, *scale));
+        let mut shot = reduced(shot, divisor);
+        let other = &other.as_ref().map(|other| other.reduced(divisor));
+        if let Some(scale) = self.scale {
+            set_scale(&mut shot.preset, scale);
+        }
         let shot = &shot;
         let mut is_new = false;
         if !self.main.shows(shot) {
             is_new = self.main.record(target, shot, &[shot.debug_view]);
-            self.timing.iter().for_each(|timing| timing.resolve(target.encoder));
+            if let Some(timing) = &self.timing {
+                timing.resolve(target.encoder);
+            }
             self.motion.draw();
             self.renders += 1;
             self.is_compared = false;
@@ -252,20 +268,24 @@ impl RendererState {
             self.pair = Some(self.tonemap_pass.bind(target.device, &first, &second));
         }
         let width = target.place.width_px as f32;
+        let transform = display_transform(shot);
+        let transforms = [transform, other.as_ref().map_or(transform, ComparisonImage::transform)];
         let shown = TonemapUniform {
-            exposure: Vec2::new(exposure(shot), other.as_ref().map_or(exposure(shot), ComparisonImage::exposure)),
             split: if other.is_some() { split * width } else { width },
             difference: if other.is_some() { *difference } else { 0.0 },
-            ..target.shown()
+            ..target.shown().with_transforms(transforms)
         };
-        self.pair.iter().for_each(|pair| self.tonemap_pass.prepare(target.queue, pair, &shown));
-        self.is_compared &= shown.exposure == self.exposures;
-        self.exposures = shown.exposure;
+        if let Some(pair) = &self.pair {
+            self.tonemap_pass.prepare(target.queue, pair, &shown);
+        }
+        self.is_compared &= transforms == self.transforms;
+        self.transforms = transforms;
         let stands_still = !self.motion.is_moving() && self.comparison.is_none() && !self.is_compared;
         if self.wants_comparison && stands_still && self.second_is_there() {
             let depth = self.main.offscreen.linear_depth();
-            let (device, encoder) = (target.device, &mut *target.encoder);
-            self.comparison = Comparison::record(device, encoder, [&first, &second], shown.exposure, depth);
+            let device = target.device;
+            let encoder = &mut *target.encoder;
+            self.comparison = Comparison::record(device, encoder, [&first, &second], transforms, depth);
             self.is_compared = true;
         }
     }
@@ -280,7 +300,7 @@ impl RendererState {
             (ComparedSide::Second, ..) => return,
         };
         let is_copied = |(of, copied): &(ComparedSide, Shot)| {
-            *of == side && copied.has_same_image(shot) && exposure(copied).to_bits() == exposure(shot).to_bits()
+            *of == side && copied.has_same_image(shot) && display_transform(copied) == display_transform(shot)
         };
         if !self.captured.as_ref().is_some_and(is_copied) {
             self.captured = Some((side, shot.clone()));
@@ -312,7 +332,9 @@ impl RendererState {
                 }
                 if let Some(cached) = self.other.as_mut().filter(|cached| !cached.shows(shot)) {
                     is_new = cached.record(target, shot, &[shot.debug_view]);
-                    self.timing_of_second.iter().for_each(|timing| timing.resolve(target.encoder));
+                    if let Some(timing) = &self.timing_of_second {
+                        timing.resolve(target.encoder);
+                    }
                     self.comparison_renders += 1;
                     self.is_compared = false;
                 }
@@ -358,7 +380,7 @@ impl RendererState {
         let Some(picture) = self.strip.offscreen.picture(view) else { return };
         let tonemap_bindings = self.strip.tonemap_bindings[view as usize]
             .get_or_insert_with(|| self.tonemap_pass.bind(target.device, picture, picture));
-        let shown = TonemapUniform { exposure: Vec2::splat(exposure(shot)), ..target.shown() };
+        let shown = target.shown().with_transforms([display_transform(shot); 2]);
         self.tonemap_pass.prepare(target.queue, tonemap_bindings, &shown);
     }
 }

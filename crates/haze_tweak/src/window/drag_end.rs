@@ -13,7 +13,8 @@ pub fn split_events_at_buttons(later: &mut Vec<Event>, events: &mut Vec<Event>) 
 
 /// Returns the number of events that one frame takes.
 fn first_part(events: &[Event]) -> usize {
-    let (mut is_pressed, mut has_moved) = (false, false);
+    let mut is_pressed = false;
+    let mut has_moved = false;
     for (index, event) in events.iter().enumerate() {
         match event {
             Event::PointerButton { pressed: false, .. } => return if has_moved { index } else { index + 1 },
@@ -38,7 +39,8 @@ mod tests {
 
     /// Returns the events of each frame.
     fn frames(mut events: Vec<Event>) -> Vec<Vec<Event>> {
-        let (mut frames, mut later) = (Vec::new(), Vec::new());
+        let mut frames = Vec::new();
+        let mut later = Vec::new();
         loop {
             split_events_at_buttons(&mut later, &mut events);
             frames.push(std::mem::take(&mut events));
@@ -50,7 +52,8 @@ mod tests {
 
     #[test]
     fn press_movement_and_release_come_in_frames_of_their_own() {
-        let (on, off) = (pos2(10.0, 5.0), pos2(-300.0, 5.0));
+        let on = pos2(10.0, 5.0);
+        let off = pos2(-300.0, 5.0);
         let moved = Event::PointerMoved;
         let all =
             [moved(on), button(on, true), moved(off), moved(on), button(on, false), moved(off), button(off, true)];
@@ -64,7 +67,8 @@ mod tests {
         assert_eq!(frames(click.clone()), [click]);
         let click = vec![button(at, true), Event::Copy, button(at, false)];
         assert_eq!(frames(click.clone()), [click]);
-        let (mut later, mut events) = (vec![button(at, false)], vec![Event::PointerMoved(at)]);
+        let mut later = vec![button(at, false)];
+        let mut events = vec![Event::PointerMoved(at)];
         split_events_at_buttons(&mut later, &mut events);
         assert_eq!((events, later), (vec![button(at, false)], vec![Event::PointerMoved(at)]));
     }

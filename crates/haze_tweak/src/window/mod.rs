@@ -16,7 +16,7 @@ mod title_bar;
 use std::path::Path;
 
 use eframe::egui::{self, Ui};
-use haze::Error;
+use haze_core::error::Error;
 use haze_core::settings::DebugView;
 
 use crate::files::export_job::{ExportJob, ExportKind};
@@ -28,7 +28,7 @@ use crate::files::shared_look;
 use crate::files::window_screenshot::Screenshot;
 use crate::panels;
 use crate::panels::debug_view_strip::{debug_view_strip, filled_height, next_debug_view};
-use crate::platform::{IS_PAGE, clock, file_io};
+use crate::platform::{IS_PAGE, clock, file_io, print_error};
 use crate::session::Session;
 use crate::session::action::{ACTIONS, Action};
 use crate::session::first_run_hints::WindowPart;
@@ -77,7 +77,7 @@ pub struct Start {
 
 impl Window {
     /// # Errors
-    /// [`Error::Io`] if the system cannot start another thread.
+    /// [`AssetError::Io`](haze_core::error::AssetError::Io) if the system cannot start another thread.
     pub fn new(renderer: ViewportRenderer, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, persistence, layout, has_dialogs } = start;
         session.attach_window(renderer.egui());
@@ -187,9 +187,9 @@ impl Window {
                 }
                 Err(error) => session.messages.error("file", error),
             },
-            Action::Screenshot => self.export_job.order(ExportKind::Image, session),
-            Action::Seeds => self.export_job.order(ExportKind::Seeds, session),
-            Action::EngineFlipbook => self.export_job.order(ExportKind::EngineFlipbook, session),
+            Action::Screenshot => self.export_job.start(ExportKind::Image, session),
+            Action::Seeds => self.export_job.start(ExportKind::Seeds, session),
+            Action::EngineFlipbook => self.export_job.start(ExportKind::EngineFlipbook, session),
             Action::Export => self.export_job.is_open = !self.export_job.is_open,
             Action::Paste => context.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Undo => session.undo(),
@@ -269,7 +269,7 @@ impl Window {
         if let Some(path) = sheet_of {
             let is_seed = path.ends_with(".emitter.seed");
             let product = if is_seed { ExportKind::Seeds } else { ExportKind::Values(path) };
-            self.export_job.order(product, &mut self.session);
+            self.export_job.start(product, &mut self.session);
         }
     }
 
@@ -302,7 +302,9 @@ impl Window {
         {
             self.has_browser = false;
             self.thumbnails.stop();
-            chosen.into_iter().for_each(|path| self.file_actions.open(path, &self.session));
+            if let Some(path) = chosen {
+                self.file_actions.open(path, &self.session);
+            }
         }
     }
 
@@ -338,6 +340,8 @@ impl Window {
             None => self.session.messages.clear("picture"),
         }
         if let Some(error) = self.renderer.health().take_error() {
+            // An error in the commands of a frame can leave the window without a picture, and without this message.
+            print_error(&error);
             self.session.messages.error("device", error);
         }
         if self.session.playback.is_playing {

@@ -1,8 +1,7 @@
 //! Opens the window, and opens it again with the same session when the graphics device is lost.
 
 use eframe::{egui, egui_wgpu};
-use haze::Error;
-use haze_core::error::one_line;
+use haze_core::error::{Error, one_line};
 use haze_demo::headless::check_address_space;
 
 use super::device::setup;
@@ -115,7 +114,9 @@ impl eframe::App for WindowApp<'_> {
 
     fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
         if !self.health.is_lost() {
-            self.window.iter_mut().for_each(|window| window.logic(context, frame));
+            if let Some(window) = &mut self.window {
+                window.logic(context, frame);
+            }
         } else if !std::mem::replace(&mut self.kept.is_lost, true) {
             self.kept.memory = Some(context.memory(Clone::clone));
             self.kept.place = context.input(|input| place(input.viewport()));
@@ -128,7 +129,9 @@ impl eframe::App for WindowApp<'_> {
         if self.kept.is_lost {
             return;
         }
-        self.window.iter_mut().for_each(|window| window.ui(ui, frame));
+        if let Some(window) = &mut self.window {
+            window.ui(ui, frame);
+        }
         self.kept.frames += 1;
         if self.kept.destroy_in.contains(&self.kept.frames) {
             destroy_device(ui);
@@ -137,8 +140,10 @@ impl eframe::App for WindowApp<'_> {
 
     fn on_exit(&mut self) {
         // After a device loss the session continues in another window.
-        if !self.kept.is_lost {
-            self.window.iter_mut().for_each(eframe::App::on_exit);
+        if !self.kept.is_lost
+            && let Some(window) = &mut self.window
+        {
+            window.on_exit();
         }
     }
 }

@@ -64,7 +64,8 @@ async fn open_in(canvas: HtmlCanvasElement, kept: Rc<KeptState>) -> Result<(), S
             context.egui_ctx.memory_mut(|new| *new = memory);
         }
         if let Some(render) = &context.wgpu_render_state {
-            let (device, queue) = (render.device.clone(), render.queue.clone());
+            let device = render.device.clone();
+            let queue = render.queue.clone();
             set_gpu(PageGpu { device, queue, context: renderer.context() });
         }
         let health = renderer.health().clone();

@@ -36,7 +36,8 @@ mod tests {
 
     #[test]
     fn retries_for_a_lost_surface_are_limited_in_rate() {
-        let (answer, start) = (paced_surface_handler(), Instant::now());
+        let answer = paced_surface_handler();
+        let start = Instant::now();
         for _ in 0..5 {
             assert!(matches!(answer(&CurrentSurfaceTexture::Lost), SurfaceErrorAction::RecreateSurface));
             assert!(matches!(answer(&CurrentSurfaceTexture::Outdated), SurfaceErrorAction::Reconfigure));

@@ -7,8 +7,8 @@ use eframe::egui::{self, Vec2};
 use eframe::egui_wgpu;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, HarnessBuilder};
-use haze::Error;
 use haze::wgpu::Backends;
+use haze_core::error::Error;
 use haze_demo::offscreen_renderer::OffscreenContext;
 use image::RgbaImage;
 
@@ -125,7 +125,8 @@ pub fn picture(harness: &mut Harness<'_, Window>) -> RgbaImage {
 
 /// Returns the mean brightness of a part of an image, 0 to 255.
 pub fn brightness(picture: &RgbaImage, part: egui::Rect) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
+    let mut sum = 0.0;
+    let mut count = 0.0;
     for y in part.top() as u32..part.bottom() as u32 {
         for x in part.left() as u32..part.right() as u32 {
             let [r, g, b, _] = picture.get_pixel(x, y).0;

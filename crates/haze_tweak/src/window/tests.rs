@@ -150,7 +150,7 @@ fn values_of_the_compared_preset_can_be_copied() {
 fn sprite_animation_can_be_frozen_next_to_the_clock() {
     let mut harness = column();
     let is_frozen = |harness: &Harness<'_, Window>| {
-        harness.state().session.document.preset.systems.iter().all(|system| system.settings.sprite.freeze_animation)
+        harness.state().session.document.preset.systems.iter().all(|system| system.settings.debug.freeze_animation)
     };
     for expected in [true, false] {
         harness.get_by_label("Freeze").click();

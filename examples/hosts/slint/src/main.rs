@@ -63,7 +63,8 @@ fn main() -> Result<(), Failure> {
     settings.device_required_limits = wgpu::Limits::default();
     slint::BackendSelector::new().require_wgpu_30(WGPUConfiguration::Automatic(settings)).select()?;
     let app = AppWindow::new()?;
-    let (window, host) = (app.as_weak(), RefCell::new(None));
+    let window = app.as_weak();
+    let host = RefCell::new(None);
     app.window().set_rendering_notifier(move |state, api| {
         let Some(app) = window.upgrade() else { return };
         let drawn = match (state, api) {

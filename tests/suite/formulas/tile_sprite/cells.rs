@@ -22,7 +22,7 @@ pub fn formulas() -> Vec<Formula> {
     vec![
         Formula {
             name: "filled_cells",
-            file: "lib/tile_sprite.wgsl",
+            file: "tile_project.wgsl",
             wgsl: "let c = filled_cells(flipbook_frames(x(0), 3.0), x(1)); y_word(0, c.x); y_word(2, c.y);",
             reference: |x| {
                 let frames = sprite::flipbook_frames(x[0], 3.0);
@@ -84,6 +84,26 @@ pub fn formulas() -> Vec<Formula> {
                 ("min(last.y + 1u, 4u)", "min(last.y, 4u)"),
                 ("max(last.y, 3u) - 3u", "max(last.y, 4u) - 4u"),
                 ("& ~bytes_below(min(first.y, 4u))", ""),
+            ],
+        },
+        Formula {
+            name: "is_full_between",
+            file: "lib/tile_sprite.wgsl",
+            // Most cells are filled.
+            wgsl: with_cells!(
+                "let low = vec2f(x(4), x(5)); \
+                 y(0, f32(is_full_between(~cells, low, low + vec2f(x(6), x(7)))));"
+            ),
+            reference: |x| {
+                let low = v2(&x[4..]);
+                flag(tile_sprite::is_full_between(!cells(x), low, low + v2(&x[6..])))
+            },
+            cases: random(400, &[HALF, HALF, HALF, HALF, (-0.1, 1.0), (-0.1, 1.0), (0.0, 0.2), (0.0, 0.2)]),
+            tolerance: 0.0,
+            mutants: &[
+                ("all(low >= vec2f(0.0)) && all(high", "all(high"),
+                ("all(high < vec2f(1.0)) && !is", "!is"),
+                ("!is_filled_between(~cells", "is_filled_between(cells"),
             ],
         },
         Formula {

@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 
-use super::{Backdrop, SceneMesh, load_scene};
+use super::{Backdrop, SceneMesh, load_scene, ray};
 use haze_preset::{Preset, Track};
 
 /// A card of side 1 around the origin, in a file whose parts a test changes.
@@ -80,7 +80,7 @@ impl File {
 
 /// True if a ray along -z meets a surface.
 fn is_hit(scene: &SceneMesh, x: f32, y: f32) -> bool {
-    scene.nearest((Vec3::new(x, y, 5.0), Vec3::NEG_Z), (0.0, 10.0)).is_some()
+    scene.nearest(ray(Vec3::new(x, y, 5.0), Vec3::NEG_Z), 0.0..=10.0).is_some()
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn copies_in_one_place_are_shown_once() {
         visited.set(visited.get() + 1);
         scene.ray_triangle(index)
     };
-    let hit = scene.bvh.nearest((Vec3::new(0.1, 0.1, 5.0), Vec3::NEG_Z), (0.0, 10.0), triangle, |_| true);
+    let hit = scene.bvh.nearest(ray(Vec3::new(0.1, 0.1, 5.0), Vec3::NEG_Z), 0.0..=10.0, triangle, |_| true);
     assert!(hit.is_some() && visited.get() <= 2, "{}", visited.get());
 }
 
@@ -206,7 +206,7 @@ fn alpha_of_vertices_cuts_out_and_casts_no_shadow() {
         material.extend(cutoff.as_object().unwrap().clone());
         let scene = file.load().unwrap();
         let seen = [-0.4, -0.1, 0.1, 0.4].map(|x| is_hit(&scene, x, 0.2));
-        let blocked = [-0.4, -0.1, 0.1, 0.4].map(|x| scene.is_blocked((Vec3::new(x, 0.2, 5.0), Vec3::NEG_Z), 10.0));
+        let blocked = [-0.4, -0.1, 0.1, 0.4].map(|x| scene.is_blocked(ray(Vec3::new(x, 0.2, 5.0), Vec3::NEG_Z), 10.0));
         assert_eq!(seen, blocked);
         seen
     };

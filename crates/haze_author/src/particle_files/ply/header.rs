@@ -101,8 +101,10 @@ impl Element {
 impl Header {
     /// Parses the header and checks that the declared counts fit in the file.
     pub fn parse(content: &[u8]) -> Result<Self, ParseError> {
-        let (mut format, mut elements) = (None, Vec::<Element>::new());
-        let (mut length, mut properties) = (0, 0);
+        let mut format = None;
+        let mut elements = Vec::<Element>::new();
+        let mut length = 0;
+        let mut properties = 0;
         for number in 1.. {
             let rest = &content[length..content.len().min(MAX_HEADER_BYTES)];
             let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {

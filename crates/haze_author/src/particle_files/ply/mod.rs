@@ -17,7 +17,8 @@ pub fn read(content: &[u8], max_particles: usize) -> Result<FileFrame, ParseErro
     let Some(at) = header.elements.iter().position(|element| element.name == "vertex") else {
         return Err(ParseError::WholeFile("no element vertex in the header; expected particles as vertices".into()));
     };
-    let (before, vertices) = (&header.elements[..at], &header.elements[at]);
+    let before = &header.elements[..at];
+    let vertices = &header.elements[at];
     if vertices.count > max_particles {
         let reason = format!("{} vertices; expected at most {max_particles} particles in a frame", vertices.count);
         return Err(ParseError::WholeFile(reason));
@@ -25,7 +26,8 @@ pub fn read(content: &[u8], max_particles: usize) -> Result<FileFrame, ParseErro
     refuse_splat(vertices).map_err(ParseError::WholeFile)?;
     let declared: Vec<_> = vertices.properties.iter().map(declared).collect();
     let columns = ColumnMap::new(&declared).map_err(ParseError::WholeFile)?;
-    let (body, provided) = (&content[header.length..], columns.provided);
+    let body = &content[header.length..];
+    let provided = columns.provided;
     let particles = match header.format {
         Format::Ascii => ascii::read(body, header.lines, before, vertices, &columns)?,
         Format::Binary { is_big_endian } => {

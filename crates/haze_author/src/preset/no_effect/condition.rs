@@ -39,7 +39,7 @@ pub fn curve_ignores_power(system: &PresetSystem, _: UVec2) -> bool {
 /// True if the checkerboard replaces everything of a sprite. Depth sprites still read depth from it.
 pub fn shows_checkerboard_only(system: &PresetSystem, _: UVec2) -> bool {
     let is_read = technique(system).is_volumetric() || technique(system).is_depth_sprite();
-    system.settings.sprite.debug_sprite && !is_read
+    system.settings.debug.checkerboard && !is_read
 }
 
 pub fn reads_no_detail(system: &PresetSystem, _: UVec2) -> bool {
@@ -70,7 +70,8 @@ pub fn uses_painted_motif(system: &PresetSystem) -> bool {
 
 pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
     let settings = &system.settings;
-    let (is_forward, is_lit) = (settings.is_forward(), settings.diffuse.intensity > 0.0);
+    let is_forward = settings.is_forward();
+    let is_lit = settings.diffuse.intensity > 0.0;
     let by_normal =
         is_lit && !settings.is_six_way() && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
     let by_amount = settings.soft_scatter.intensity > 0.0 && settings.soft_scatter.mode == SoftScatterMode::Ramp;

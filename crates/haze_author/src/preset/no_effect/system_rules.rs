@@ -16,20 +16,20 @@ use super::rule::{NoEffectRule, rule};
 
 /// The first row that holds gives the reason.
 pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
-    rule("the particles come from files", |s, _| s.cache.is_used(), &["emitter"]),
+    rule("the particles come from files", |s, _| s.particle_files.is_used(), &["emitter"]),
     rule(
         "only with particle files",
-        |s, _| !s.cache.is_used(),
+        |s, _| !s.particle_files.is_used(),
         &[
-            "cache.units",
-            "cache.up",
-            "cache.position",
-            "cache.fps",
-            "cache.start",
-            "cache.after",
-            "cache.default_radius",
-            "cache.default_amount",
-            "cache.flipbook_rate",
+            "particle_files.units",
+            "particle_files.up",
+            "particle_files.position",
+            "particle_files.fps",
+            "particle_files.start",
+            "particle_files.after",
+            "particle_files.default_radius",
+            "particle_files.default_amount",
+            "particle_files.flipbook_rate",
         ],
     ),
     rule("forward only", |s, _| !s.settings.is_forward(), &["settings.blend_mode"]),
@@ -43,7 +43,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.accumulate.order",
             "settings.accumulate.depth_weight",
             "settings.accumulate.layers",
-            "settings.accumulate.scale",
+            "settings.accumulate.downscale",
             "settings.accumulate.scale_mode",
             "settings.accumulate.max_error",
             "settings.accumulate.max_side",
@@ -64,7 +64,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         |s, _| technique(s) != Technique::SphericalBillboard,
         &["settings.spherical_billboard"],
     ),
-    rule("only with technique density", |s, _| technique(s) != Technique::Density, &["settings.density"]),
+    rule("only with technique density", |s, _| technique(s) != Technique::Density, &["settings.exponential"]),
     rule(
         "only with technique volumetric_hard or volumetric_soft",
         |s, _| !technique(s).is_volumetric(),
@@ -75,7 +75,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         |s, _| !technique(s).is_volumetric() && s.settings.grain_octaves() == 0,
         &["material.noise"],
     ),
-    rule("a checkerboard has no grain", |s, _| s.settings.sprite.debug_sprite, &["settings.grain"]),
+    rule("a checkerboard has no grain", |s, _| s.settings.debug.checkerboard, &["settings.grain"]),
     rule(
         "only with an erosion, a dissolve or a bump of the grain above 0",
         |s, _| Grain { erosion: 0.0, dissolve: 0.0, bump: 0.0, ..s.settings.grain } == s.settings.grain,
@@ -87,7 +87,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &[
             "settings.sprite.animation",
             "settings.sprite.motion",
-            "settings.sprite.debug_sprite",
+            "settings.debug.checkerboard",
             "settings.grain",
             "settings.lighting",
             "settings.diffuse.six_way_color",
@@ -101,7 +101,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "emitter.spin",
             "emitter.rotation_spread",
             "emitter.frame_rate",
-            "cache.flipbook_rate",
+            "particle_files.flipbook_rate",
         ],
     ),
     rule(
@@ -149,7 +149,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             let accumulate = &s.settings.accumulate;
             (accumulate.scale_mode, accumulate.depth_source) == (ScaleMode::Auto, DepthSource::Reduced)
         },
-        &["settings.accumulate.scale"],
+        &["settings.accumulate.downscale"],
     ),
     rule(
         "only with scale_mode auto",
@@ -157,7 +157,7 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &["settings.accumulate.max_error"],
     ),
     rule(
-        "only at a scale above 1",
+        "only at a downscale above 1",
         is_at_full_resolution,
         &[
             "settings.accumulate.depth_downsample",
@@ -166,8 +166,8 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         ],
     ),
     rule(
-        "sprite.debug_sprite shows a checkerboard instead",
-        |s, _| s.settings.sprite.debug_sprite,
+        "debug.checkerboard shows a checkerboard instead",
+        |s, _| s.settings.debug.checkerboard,
         &[
             "settings.sprite.motion",
             "settings.lighting",
@@ -198,13 +198,13 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
         &["settings.diffuse.six_way_color", "settings.diffuse.six_way_anisotropy", "material.six_way"],
     ),
     rule(
-        "sprite.debug_sprite shows one checkerboard for all frames",
+        "debug.checkerboard shows one checkerboard for all frames",
         shows_checkerboard_only,
         &[
             "settings.sprite.animation",
-            "settings.sprite.freeze_animation",
+            "settings.debug.freeze_animation",
             "emitter.frame_rate",
-            "cache.flipbook_rate",
+            "particle_files.flipbook_rate",
             "material.sprite",
             "material.detail",
             "material.columns",
@@ -216,7 +216,12 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "the sprite has one frame",
         has_one_frame,
-        &["settings.sprite.animation", "settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
+        &[
+            "settings.sprite.animation",
+            "settings.debug.freeze_animation",
+            "emitter.frame_rate",
+            "particle_files.flipbook_rate",
+        ],
     ),
     rule(
         "only with an animation that blends: flipbook, volume",
@@ -226,14 +231,14 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
     rule(
         "only with animation flipbook or nearest",
         plays_no_flipbook,
-        &["settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
+        &["settings.debug.freeze_animation", "emitter.frame_rate", "particle_files.flipbook_rate"],
     ),
     rule(
-        "sprite.freeze_animation holds it",
-        |s, _| s.settings.sprite.freeze_animation,
-        &["settings.volumetric.scroll_speed", "emitter.frame_rate", "cache.flipbook_rate"],
+        "debug.freeze_animation holds it",
+        |s, _| s.settings.debug.freeze_animation,
+        &["settings.volumetric.scroll_speed", "emitter.frame_rate", "particle_files.flipbook_rate"],
     ),
-    rule("nothing moves: frame_rate and scroll_speed are 0", has_no_animation, &["settings.sprite.freeze_animation"]),
+    rule("nothing moves: frame_rate and scroll_speed are 0", has_no_animation, &["settings.debug.freeze_animation"]),
     rule(
         "only at an intensity of fire above 0",
         |s, _| !s.settings.burns(),
@@ -307,10 +312,14 @@ pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
             "settings.shadow.density",
             "settings.shadow.lights",
             "settings.shadow.resolution",
-            "settings.shadow.by_depth",
             "settings.shadow.scene",
             "material.shadow_ramp",
         ],
+    ),
+    rule(
+        "with path forward only at a shadow.strength above 0",
+        |s, _| s.settings.is_forward() && !s.settings.receives_shadow(),
+        &["settings.shadow.by_depth"],
     ),
     rule(
         "diffuse.mode painted_motif takes its light from the motif",

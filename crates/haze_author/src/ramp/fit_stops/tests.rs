@@ -10,7 +10,8 @@ fn fit_and_bake(name: &str, picture: &DynamicImage) -> (RampFit, f32) {
     let baked = fitted.recipe.bake().unwrap().into_rgb16();
     let picture = picture.to_rgb16();
     let off = (0..picture.height()).flat_map(|y| (0..picture.width()).map(move |x| (x, y))).map(|(x, y)| {
-        let (a, b) = (picture.get_pixel(x, y).0, baked.get_pixel(x, y * baked.height() / picture.height()).0);
+        let a = picture.get_pixel(x, y).0;
+        let b = baked.get_pixel(x, y * baked.height() / picture.height()).0;
         a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap()
     });
     let off = f32::from(off.max().unwrap()) / 257.0;

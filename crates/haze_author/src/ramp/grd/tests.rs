@@ -121,7 +121,8 @@ fn colors_of_each_kind_are_read() {
 
 #[test]
 fn midpoints_bend_colors_and_alpha_on_their_own() {
-    let (black, white) = (rgb([0.0; 3]), rgb([255.0; 3]));
+    let black = rgb([0.0; 3]);
+    let white = rgb([255.0; 3]);
     let colors = [stop(black, 0, 25), stop(white.clone(), 4096, 50)];
     let NotedGradient { gradient, .. } = found(&file(&[of_colors(&colors)]), None);
     near(&gradient, 0.25, [127.5; 3]);

@@ -81,7 +81,8 @@ fn rows_are_interpolated_like_stops_along_a_row() {
 #[test]
 fn the_largest_baked_image_can_be_read() {
     let mut large = recipe(&[(0.0, "#102030")]);
-    (large.width, large.height) = (4096, 4096);
+    large.width = 4096;
+    large.height = 4096;
     let error = large.validate().unwrap_err().to_string();
     assert_eq!(error, "height: 4096 is not valid; expected 1 to 2730 texels");
     large.height = 2730;
@@ -192,9 +193,11 @@ fn the_place_formula_and_the_times_gradient_vary_along_both_axes() {
 #[test]
 fn eight_bits_are_dithered_and_exact_colors_stay() {
     let slope = RampRecipe { bits: 8, width: 1024, ..recipe(&[(0.0, "#101010"), (1.0, "#141414")]) };
-    let (fine, coarse) = (RampRecipe { bits: 16, ..slope.clone() }.bake().unwrap(), slope.bake().unwrap());
+    let fine = RampRecipe { bits: 16, ..slope.clone() }.bake().unwrap();
+    let coarse = slope.bake().unwrap();
     assert_eq!((fine.color().bits_per_pixel(), coarse.color().bits_per_pixel()), (48, 24));
-    let (fine, coarse) = (fine.to_rgb16(), coarse.to_rgb8());
+    let fine = fine.to_rgb16();
+    let coarse = coarse.to_rgb8();
     for start in (0..1024).step_by(32) {
         let mean = |value: &dyn Fn(u32) -> f32| (start..start + 32).map(value).sum::<f32>() / 32.0;
         let exact = mean(&|x| f32::from(fine.get_pixel(x, 0).0[1]) / 257.0);

@@ -51,11 +51,13 @@ impl Puff {
     /// so relative errors of dark and bright sides count alike.
     pub fn fit(&self, shape: FitShape) -> FittedRamps {
         let FitShape { stops, rows, backlight } = shape;
-        let (stops, rows) = (stops.max(2) as usize, rows.max(1) as usize);
+        let stops = stops.max(2) as usize;
+        let rows = rows.max(1) as usize;
         let ramps = if backlight { 2 } else { 1 };
         let place = |ramp: usize, row: usize, stop: usize| (ramp * rows + row) * stops + stop;
         let terms = |texel: &Texel, light: Vec3| {
-            let (at, against) = (texel.coordinate(light), backlight_weight(light, Vec3::Z));
+            let at = texel.coordinate(light);
+            let against = backlight_weight(light, Vec3::Z);
             let of_ramp = if backlight { [1.0 - against, against] } else { [1.0, 0.0] };
             let mut terms = Vec::with_capacity(8);
             for (ramp, of_ramp) in of_ramp.into_iter().enumerate().take(ramps) {

@@ -40,7 +40,8 @@ const FULL_LIGHT: f64 = 100.0;
 /// lights count alike. Returns the ramp, and its value in full light relative to its brightest: smoke of a bright medium is
 /// brighter among other smoke than alone.
 pub fn fit_shadow_ramp(lights: &[ShadedLight], shape: ShadowShape) -> (RampRecipe, f32) {
-    let (stops, rows) = (shape.stops.max(2) as usize, shape.rows.max(1) as usize);
+    let stops = shape.stops.max(2) as usize;
+    let rows = shape.rows.max(1) as usize;
     let place = |row: usize, stop: usize| row * stops + stop;
     // The smoke's own color multiplies the ramp, so the channels have matrices of their own.
     let channels = [0, 1, 2].map(|channel| {

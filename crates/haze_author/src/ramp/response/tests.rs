@@ -21,7 +21,8 @@ fn baked(recipe: &RampRecipe) -> Ramp {
 /// Fits ramps of a shape, bakes them and returns their response.
 fn fitted(puff: &Puff, shape: FitShape) -> Response {
     let FittedRamps { diffuse, backlight, exposure } = puff.fit(shape);
-    let (diffuse, backlight) = (baked(&diffuse), backlight.as_ref().map(baked));
+    let diffuse = baked(&diffuse);
+    let backlight = backlight.as_ref().map(baked);
     let response = puff.response(DiffuseRamps { diffuse: &diffuse, backlight: backlight.as_ref() });
     // They differ slightly: the fit weighs squared errors of all pixels, the best exposure only relative brightness.
     assert!((response.exposure / exposure - 1.0).abs() < 0.06, "{} {exposure}", response.exposure);

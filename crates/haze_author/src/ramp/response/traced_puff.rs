@@ -82,7 +82,8 @@ impl Puff {
         let traced = path_trace.run(&recipe.volume(0.0), medium, &lights, progress)?;
         let texel = |(index, texel): (usize, &image::Rgba<u8>)| {
             let [x, y, z, _] = texel.0.map(|channel| f32::from(channel) / 255.0 * 2.0 - 1.0);
-            let (normal, coverage) = (Vec3::new(x, y, z).normalize_or(Vec3::Z), traced.coverage.texels[index]);
+            let normal = Vec3::new(x, y, z).normalize_or(Vec3::Z);
+            let coverage = traced.coverage.texels[index];
             (coverage > 0.0).then_some(Texel { index, normal, coverage })
         };
         let texels = recipe.bake_frame(0.0).picture.texels.iter().enumerate().filter_map(texel).collect();
@@ -114,7 +115,8 @@ impl Puff {
                 let [r, g, b, _] = maps.picture.get_pixel(at.x, y).0.map(|channel| f32::from(channel) / 255.0);
                 six_way_from_texel(Vec3::new(r, g, b))
             };
-            let (positive, negative) = (half(at.y), half(at.y + size.y));
+            let positive = half(at.y);
+            let negative = half(at.y + size.y);
             let response = six_way_response(positive, negative, self.lights[light], maps.anisotropy);
             picture.texels[texel.index] = maps.color * (response * texel.coverage);
         }

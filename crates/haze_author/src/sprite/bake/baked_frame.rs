@@ -13,13 +13,26 @@ pub struct BakedFrame {
     pub picture: Image<Rgba<u8>>,
     /// Offset of the visible surface towards the viewer, -1..1 half sides.
     pub offset: Image<f32>,
+    /// Means of three more numbers of the voxels over what is visible.
+    pub carried: Image<Vec3>,
+}
+
+/// One texel of a frame, in the order of [`BakedFrame`]'s images.
+#[derive(Clone, Copy)]
+pub(super) struct MarchedTexel {
+    pub texel: Rgba<u8>,
+    pub offset: f32,
+    pub carried: Vec3,
 }
 
 impl BakedFrame {
-    pub(super) fn new(size: u32, texels: impl IntoIterator<Item = (Rgba<u8>, f32)>) -> Self {
-        let (picture, offset) = texels.into_iter().unzip();
+    pub(super) fn new(size: u32, texels: &[MarchedTexel]) -> Self {
         let size = UVec2::splat(size);
-        Self { picture: Image { size, texels: picture }, offset: Image { size, texels: offset } }
+        Self {
+            picture: Image { size, texels: texels.iter().map(|marched| marched.texel).collect() },
+            offset: Image { size, texels: texels.iter().map(|marched| marched.offset).collect() },
+            carried: Image { size, texels: texels.iter().map(|marched| marched.carried).collect() },
+        }
     }
 }
 
@@ -29,11 +42,12 @@ pub(super) struct RayAccumulator {
     pub transmittance: f32,
     normal: Vec3,
     offset: f32,
+    carried: Vec3,
 }
 
 impl RayAccumulator {
     pub fn new() -> Self {
-        Self { transmittance: 1.0, normal: Vec3::ZERO, offset: 0.0 }
+        Self { transmittance: 1.0, normal: Vec3::ZERO, offset: 0.0, carried: Vec3::ZERO }
     }
 
     /// True if anything further along the ray is invisible.
@@ -41,15 +55,16 @@ impl RayAccumulator {
         self.transmittance < 1.0 / 512.0
     }
 
-    pub fn accumulate(&mut self, amount: f32, normal: Vec3, offset: f32) {
+    pub fn accumulate(&mut self, amount: f32, normal: Vec3, offset: f32, carried: Vec3) {
         self.normal += normal * (self.transmittance * amount);
         self.offset += offset * self.transmittance * amount;
+        self.carried += carried * (self.transmittance * amount);
         self.transmittance *= 1.0 - amount;
     }
 
     /// Returns the texel, and its visible offset towards the viewer in half sides. `place` is the texel's position,
     /// -1..1.
-    pub fn texel(&self, at: UVec2, size: u32, place: Vec2) -> (Rgba<u8>, f32) {
+    pub fn texel(&self, at: UVec2, size: u32, place: Vec2) -> MarchedTexel {
         let border = at.min_element() == 0 || at.max_element() == size - 1;
         let amount = if border { 0.0 } else { 1.0 - self.transmittance };
         // Clear texels get an outward normal, since texture filters blend them in at the edge.
@@ -57,6 +72,7 @@ impl RayAccumulator {
         let encoded = self.normal.normalize_or(outwards.normalize()) * 0.5 + 0.5;
         let channel = |value: f32| (saturate(value) * 255.0).round() as u8;
         let texel = Rgba([channel(encoded.x), channel(encoded.y), channel(encoded.z), channel(amount)]);
-        (texel, self.offset / (1.0 - self.transmittance).max(1.0e-6))
+        let visible = (1.0 - self.transmittance).max(1.0e-6);
+        MarchedTexel { texel, offset: self.offset / visible, carried: self.carried / visible }
     }
 }

@@ -31,7 +31,8 @@ pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Metaball> {
             let hash = pcg3d(UVec3::new(index, salt, recipe.seed));
             Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z))
         };
-        let (place, shape) = (random(1), random(2));
+        let place = random(1);
+        let shape = random(2);
         let z = place.x * 2.0 - 1.0;
         let xy = cos_sin(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
         let distance = recipe.spread * place.z.sqrt();

@@ -95,7 +95,8 @@ fn balls_by_box(voxels: VoxelGrid, balls: &[Metaball], margin: f32) -> Vec<Vec<M
     let boxes = voxels.boxes();
     let near = |index: u32| {
         let first = UVec3::new(index % boxes.x, index / boxes.x % boxes.y, index / (boxes.x * boxes.y)) * LANES as u32;
-        let (a, b) = (voxels.voxel_center(first), voxels.voxel_center(first + (LANES as u32 - 1)));
+        let a = voxels.voxel_center(first);
+        let b = voxels.voxel_center(first + (LANES as u32 - 1));
         let reach = (a - b).length() * 0.5 + margin;
         let middle = (a + b) * 0.5;
         let reaches = |ball: &&Metaball| ball.offset(middle).length() < reach + 1.0 / ball.inverse_radius;

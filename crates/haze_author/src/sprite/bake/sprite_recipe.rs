@@ -5,7 +5,7 @@ use std::path::Path;
 use haze_core::assets::image::MAX_SIDE;
 use haze_core::assets::json;
 use haze_core::assets::sprite::SpriteLayout;
-use haze_core::error::{Error, builtin_path};
+use haze_core::error::{AssetError, builtin_path};
 use haze_core::settings::{FieldHeading, FieldVisitor, Fields, validate};
 use haze_preset::builtin::Builtin;
 
@@ -138,8 +138,8 @@ impl SpriteRecipe {
     /// Loads a `*.sprite.json`.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
-    pub fn load(path: &Path) -> Result<Self, Error> {
+    /// [`AssetError::Io`], [`AssetError::Text`] or [`AssetError::JsonField`].
+    pub fn load(path: &Path) -> Result<Self, AssetError> {
         json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
     }
 
@@ -157,8 +157,8 @@ impl SpriteRecipe {
     /// Reads the recipe of a built-in sprite.
     ///
     /// # Errors
-    /// [`Error::Json`] if `builtin` is not a sprite.
-    pub fn of_builtin(builtin: &Builtin) -> Result<Self, Error> {
+    /// [`AssetError::Text`] if `builtin` is not a sprite.
+    pub fn of_builtin(builtin: &Builtin) -> Result<Self, AssetError> {
         json::parse(&builtin_path(builtin.name), builtin.recipe)
     }
 

@@ -2,22 +2,19 @@
 //! once, and slowly varying data on a coarse grid. Uses only `deterministic_math.rs` and plain arithmetic, so bakes are
 //! bit-identical on every machine.
 
-use glam::{IVec2, UVec2, UVec3, Vec3};
+use glam::{UVec2, UVec3, Vec3};
 use haze_core::assets::image::Image;
 use haze_core::formula::saturate;
-use image::Rgba;
 
 use super::baked_frame::BakedFrame;
 use super::cluster::Metaball;
 use super::erosion::Erosion;
 use super::loop_state::{LoopState, VoxelColumn};
-use super::march::march;
+use super::march::{Surface, march_volume};
 use super::sprite_recipe::SpriteRecipe;
 use super::voxel_grid::{LANES, VoxelGrid};
 use crate::deterministic_math::fast_exp_neg;
 use crate::path_trace::DensityVolume;
-
-const CLEAR: Rgba<u8> = Rgba([128, 128, 255, 0]);
 
 /// Data that all frames of a sprite share.
 pub(super) struct VolumeBaker<'a> {
@@ -34,10 +31,14 @@ impl Metaball {
         let scale = inverse_radius * inverse_radius;
         let is_line = axis != Vec3::ZERO;
         for lane in 0..LANES {
-            let (mut x, mut y, mut z) = (px[lane] - center.x, py[lane] - center.y, pz[lane] - center.z);
+            let mut x = px[lane] - center.x;
+            let mut y = py[lane] - center.y;
+            let mut z = pz[lane] - center.z;
             if is_line {
                 let along = ((x * axis.x + y * axis.y + z * axis.z) * inverse_axis).clamp(-1.0, 1.0);
-                (x, y, z) = (x - axis.x * along, y - axis.y * along, z - axis.z * along);
+                x -= axis.x * along;
+                y -= axis.y * along;
+                z -= axis.z * along;
             }
             let inside = (1.0 - (x * x + y * y + z * z) * scale).max(0.0);
             field[lane] += inside * inside * inside;
@@ -65,24 +66,8 @@ impl<'a> VolumeBaker<'a> {
     }
 
     pub fn frame(&self, time: f32) -> BakedFrame {
-        let size = self.recipe.size;
-        let volume = self.volume(time);
-        let mut marched = Image::new(UVec2::splat(size), (CLEAR, 0.0));
-        marched.for_bands(|first, band| {
-            for (y, line) in (first..).zip(band.chunks_mut(size as usize)) {
-                march(self.recipe, &volume, y, line);
-            }
-        });
-        // Texels without visible neighbours all get the same value, which compresses well.
-        let is_clear = |at: IVec2| marched.load(at).0.0[3] == 0;
-        let is_far = |at: IVec2| is_clear(at) && (-1..=1).all(|y| (-1..=1).all(|x| is_clear(at + IVec2::new(x, y))));
-        let mut texels = Image::new(marched.size, (CLEAR, 0.0));
-        texels.for_each(|at, texel| {
-            if !is_far(at.as_ivec2()) {
-                *texel = marched.load(at.as_ivec2());
-            }
-        });
-        BakedFrame::new(size, texels.texels)
+        let surface = Surface { extinction: self.recipe.extinction, bump: self.recipe.bump };
+        march_volume(surface, &self.volume(time), |_| Vec3::ZERO)
     }
 
     /// Computes the densities of one row of voxels: 0 outside, about 1 inside.
@@ -102,14 +87,17 @@ impl<'a> VolumeBaker<'a> {
             }
             let start = index * LANES;
             let columns = &moment.columns[start..start + run.len()];
-            let (mut window, mut field) = ([0.0; LANES], [0.0; LANES]);
+            let mut window = [0.0; LANES];
+            let mut field = [0.0; LANES];
             for (window, column) in window.iter_mut().zip(columns) {
                 *window = saturate((0.97 - middle.with_x(column.x).length()) * 6.0);
             }
             if window.iter().all(|&window| window <= 0.0) {
                 continue;
             }
-            let (mut px, mut py, mut pz) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            let mut px = [0.0; LANES];
+            let mut py = [0.0; LANES];
+            let mut pz = [0.0; LANES];
             for (lane, &VoxelColumn { x, node, share }) in columns.iter().enumerate() {
                 let all = displacements[node].all.lerp(displacements[node + 1].all, share);
                 [px[lane], py[lane], pz[lane]] = (middle.with_x(x) + all).to_array();

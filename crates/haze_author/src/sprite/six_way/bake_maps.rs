@@ -10,9 +10,9 @@ use super::image_as_bytes;
 use super::packing::encode_texel;
 use super::trace::{SixWayMix, TracedSixWay};
 use crate::deterministic_math::exp;
-use crate::path_trace::{Medium, PathTrace};
-use crate::sprite::bake::SpriteRecipe;
+use crate::path_trace::{DensityVolume, Medium, PathTrace};
 use crate::sprite::bake::near_lossless::quantise_frame;
+use crate::sprite::bake::{SheetLayout, SpriteRecipe};
 
 /// Baked six-way maps, with settings that go with them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -46,40 +46,56 @@ impl SpriteRecipe {
     ) -> Result<BakedSixWay, E> {
         let size = (self.size / 2).max(8);
         let filled = Self { size, extinction: medium.density, ..self.clone() };
-        let (mut mix, mut frames) = (None::<SixWayMix>, Vec::new());
-        for frame in 0..self.frame_count() {
-            let path_trace = PathTrace { size, samples, seed: frame };
-            let volume = filled.volume(frame as f32);
-            let traced = TracedSixWay::trace(&volume, medium, &path_trace, mix.as_ref(), |path| progress(frame, path))?;
-            let shape = self.bake_frame(frame as f32).picture;
-            let light = upsample_along_normals(&traced, &shape);
-            mix.get_or_insert(traced.mix);
-            frames.push((shape, light));
-        }
-        let white = white_level(&frames);
-        let halves = frames.iter().flat_map(|(shape, light)| {
-            [false, true].map(|below| {
-                let mut half = Image::new(shape.size, Rgba([0; 4]));
-                half.for_each(|at, pixel| {
-                    let SixWay { positive, negative } = light.load(at.as_ivec2());
-                    let alpha = shape.load(at.as_ivec2()).0[3];
-                    *pixel = encode_texel(if below { negative } else { positive } / white, alpha);
-                });
-                quantise_frame(&mut half, self.tolerance);
-                half
-            })
-        });
-        let halves: Vec<_> = halves.collect();
-        let picture = RgbaImage::from_fn(self.size * self.columns, 2 * self.size * self.rows, |x, y| {
-            let row = y / self.size;
-            let frame = row % self.rows * self.columns + x / self.size;
-            let half = &halves[(2 * frame + row / self.rows) as usize];
-            half.load(UVec2::new(x % self.size, y % self.size).as_ivec2())
-        });
-        let (color, anisotropy) = mix.map_or((Vec3::ONE, 0.0), |mix| (mix.color, mix.anisotropy));
-        let brightest = color.max_element();
-        Ok(BakedSixWay { picture, intensity: white * brightest, color: color / brightest, anisotropy })
+        let frame = |frame: u32| (filled.volume(frame as f32), self.bake_frame(frame as f32).picture);
+        bake_six_way(self.sheet(), medium, samples, frame, progress)
     }
+}
+
+/// Bakes the six-way maps of a sheet. `frame` returns the density of a frame, at the resolution of the light, and its
+/// sprite. Otherwise as [`SpriteRecipe::bake_six_way`].
+///
+/// # Errors
+/// The error of `progress`.
+pub fn bake_six_way<E>(
+    sheet: SheetLayout,
+    medium: &Medium,
+    samples: u32,
+    frame: impl Fn(u32) -> (DensityVolume, Image<Rgba<u8>>),
+    progress: impl Fn(u32, u32) -> Result<(), E>,
+) -> Result<BakedSixWay, E> {
+    let mut mix = None::<SixWayMix>;
+    let mut frames = Vec::new();
+    for index in 0..sheet.frame_count() {
+        let (volume, shape) = frame(index);
+        let path_trace = PathTrace { size: volume.size.x, samples, seed: index };
+        let traced = TracedSixWay::trace(&volume, medium, &path_trace, mix.as_ref(), |path| progress(index, path))?;
+        let light = upsample_along_normals(&traced, &shape);
+        mix.get_or_insert(traced.mix);
+        frames.push((shape, light));
+    }
+    let white = white_level(&frames);
+    let halves = frames.iter().flat_map(|(shape, light)| {
+        [false, true].map(|below| {
+            let mut half = Image::new(shape.size, Rgba([0; 4]));
+            half.for_each(|at, pixel| {
+                let SixWay { positive, negative } = light.load(at.as_ivec2());
+                let alpha = shape.load(at.as_ivec2()).0[3];
+                *pixel = encode_texel(if below { negative } else { positive } / white, alpha);
+            });
+            quantise_frame(&mut half, sheet.tolerance);
+            half
+        })
+    });
+    let halves: Vec<_> = halves.collect();
+    let picture = RgbaImage::from_fn(sheet.size * sheet.columns, 2 * sheet.size * sheet.rows, |x, y| {
+        let row = y / sheet.size;
+        let frame = row % sheet.rows * sheet.columns + x / sheet.size;
+        let half = &halves[(2 * frame + row / sheet.rows) as usize];
+        half.load(UVec2::new(x % sheet.size, y % sheet.size).as_ivec2())
+    });
+    let (color, anisotropy) = mix.map_or((Vec3::ONE, 0.0), |mix| (mix.color, mix.anisotropy));
+    let brightest = color.max_element();
+    Ok(BakedSixWay { picture, intensity: white * brightest, color: color / brightest, anisotropy })
 }
 
 /// Returns the light to store as white: all visible texels except the fraction [`CLIPPED_FRACTION`] are darker.
@@ -100,14 +116,16 @@ const SLOPE: f32 = 0.35;
 /// Upsamples light to the sprite's size with a cross-bilateral filter on normals. It smooths the noise of the path
 /// tracer and preserves the shape.
 fn upsample_along_normals(traced: &TracedSixWay, shape: &Image<Rgba<u8>>) -> Image<SixWay> {
-    let (fine, coarse) = (shape.size, traced.light.size);
+    let fine = shape.size;
+    let coarse = traced.light.size;
     let normals = coarse_normals(shape, coarse);
     let mut light = Image::new(fine, SixWay::default());
     light.for_each(|at, texel| {
         let place = (at.as_vec2() + 0.5) * coarse.as_vec2() / fine.as_vec2() - 0.5;
         let middle = place.round().as_ivec2();
         let normal = normal_of(shape.load(at.as_ivec2()));
-        let (mut sum, mut weights) = (SixWay::default(), 0.0);
+        let mut sum = SixWay::default();
+        let mut weights = 0.0;
         for y in -REACH..=REACH {
             for x in -REACH..=REACH {
                 let tap = (middle + IVec2::new(x, y)).clamp(IVec2::ZERO, coarse.as_ivec2() - 1);
@@ -115,7 +133,8 @@ fn upsample_along_normals(traced: &TracedSixWay, shape: &Image<Rgba<u8>>) -> Ima
                 let slope = (normals.load(tap) - normal).length_squared() / (SLOPE * SLOPE);
                 let weight = exp(-0.5 * (distance + slope)) * traced.coverage.load(tap).max(1.0e-6);
                 let SixWay { positive, negative } = traced.light.load(tap);
-                (sum.positive, sum.negative) = (sum.positive + positive * weight, sum.negative + negative * weight);
+                sum.positive += positive * weight;
+                sum.negative += negative * weight;
                 weights += weight;
             }
         }

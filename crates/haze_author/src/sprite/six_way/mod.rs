@@ -10,7 +10,7 @@ mod image_as_bytes;
 mod packing;
 mod trace;
 
-pub use bake_maps::BakedSixWay;
+pub use bake_maps::{BakedSixWay, bake_six_way};
 pub use haze_core::assets::sprite::six_way_layout;
 pub use packing::{Packing, pack, unpack};
 pub use trace::{SixWayMix, TracedSixWay};

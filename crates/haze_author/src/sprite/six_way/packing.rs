@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::Vec3;
 use image::{Rgba, RgbaImage};
 
-use haze_core::error::Error;
+use haze_core::error::AssetError;
 use haze_core::formula::six_way::{SixWay, six_way_from_texel};
 use haze_core::settings::choice;
 
@@ -30,7 +30,8 @@ impl Packing {
 
     /// Unpacks the six sides from two texels.
     pub fn six_way(self, first: Vec3, second: Vec3) -> SixWay {
-        let (a, b) = (first, second);
+        let a = first;
+        let b = second;
         match self {
             Self::Unity => SixWay { positive: Vec3::new(a.x, a.y, b.z), negative: Vec3::new(b.x, b.y, a.z) },
             Self::RltBbf => SixWay { positive: Vec3::new(a.x, a.z, b.z), negative: Vec3::new(a.y, b.x, b.y) },
@@ -60,13 +61,14 @@ pub fn pack(first: &RgbaImage, second: &RgbaImage, packing: Packing) -> RgbaImag
 /// sprite does not burn.
 ///
 /// # Errors
-/// [`Error::Image`] if the sheet's height is odd or 0.
-pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaImage; 2], Error> {
-    let (width, height) = (sheet.width(), sheet.height() / 2);
+/// [`AssetError::Image`] if the sheet's height is odd or 0.
+pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaImage; 2], AssetError> {
+    let width = sheet.width();
+    let height = sheet.height() / 2;
     if !sheet.height().is_multiple_of(2) || height == 0 {
         let reason =
             format!("{width}x{} pixels; expected six-way maps, of two halves below each other", sheet.height());
-        return Err(Error::Image { path: path.into(), reason });
+        return Err(AssetError::Image { path: path.into(), reason });
     }
     Ok([0, 1].map(|map| {
         RgbaImage::from_fn(width, height, |x, y| {
@@ -122,7 +124,8 @@ mod tests {
 
     #[test]
     fn sides_are_in_the_channels_that_other_tools_use() {
-        let (a, b) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0));
+        let a = Vec3::new(1.0, 2.0, 3.0);
+        let b = Vec3::new(4.0, 5.0, 6.0);
         let unity = SixWay { positive: Vec3::new(1.0, 2.0, 6.0), negative: Vec3::new(4.0, 5.0, 3.0) };
         let rlt_bbf = SixWay { positive: Vec3::new(1.0, 3.0, 6.0), negative: Vec3::new(2.0, 4.0, 5.0) };
         for (packing, light) in [(Packing::Unity, unity), (Packing::RltBbf, rlt_bbf)] {

@@ -114,7 +114,8 @@ impl SixWayFit {
         let mut rows = [[0.0; 6]; 6];
         let mut right: [Vec<f64>; 6] = std::array::from_fn(|_| vec![0.0; lights.len()]);
         for (light, (way, brightness)) in lights.iter().zip(brightness).enumerate() {
-            let (terms, weight) = (terms(way), 1.0 / (brightness * brightness));
+            let terms = terms(way);
+            let weight = 1.0 / (brightness * brightness);
             for i in 0..6 {
                 (0..6).for_each(|j| rows[i][j] += terms[i] * terms[j] * weight);
                 right[i][light] = terms[i] * weight;
@@ -137,7 +138,8 @@ fn solve(mut rows: [[f64; 6]; 6], mut right: [Vec<f64>; 6]) -> [Vec<f64>; 6] {
     for i in 0..6 {
         let scale = 1.0 / rows[i][i];
         rows[i].iter_mut().chain(&mut right[i]).for_each(|value| *value *= scale);
-        let (row, known) = (rows[i], right[i].clone());
+        let row = rows[i];
+        let known = right[i].clone();
         for j in (0..6).filter(|&j| j != i) {
             let factor = rows[j][i];
             rows[j].iter_mut().zip(row).for_each(|(value, of_row)| *value -= factor * of_row);

@@ -4,14 +4,14 @@ use std::ops::RangeInclusive;
 
 use clap::Args;
 use glam::UVec2;
-use haze::Error;
+use haze_core::error::Error;
 use pollster::block_on;
 
 use haze_export::engine::Engine;
-use haze_export::flipbook_export::{Emission, FILES, FlipbookExport, FlipbookOptions};
+use haze_export::flipbook_export::{FILES, FlipbookExport, FlipbookOptions};
 use haze_export::frame_range::{parse_frames, parse_rate, parse_sheet};
 use haze_export::image_export::{ExportProgress, Frames};
-use haze_export::image_format::{Alpha, ImageFormat};
+use haze_export::image_format::{Alpha, Emission, ImageFormat};
 use haze_export::options::{ShotArguments, whole_number};
 use haze_export::output::{OutputFolder, check_folder, print_error, print_line};
 

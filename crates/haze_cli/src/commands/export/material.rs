@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::{Error, FieldError};
-use haze_preset::Preset;
+use haze::FieldError;
+use haze_core::error::Error;
+use haze_preset::system_list;
 
 use haze_export::engine::Engine;
 use haze_export::inputs::image_paths;
@@ -42,12 +43,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     preset.validate()?;
     let preset = preset.evaluate(preset.time);
-    let index = system.as_ref().map_or(Ok(0), |name| system_index(&preset, name))?;
+    let index = system.as_ref().map_or(Ok(0), |name| system_list::find(&preset, "--system", name))?;
     let materials = preset.load_materials_from(&name, &folders)?;
     let Some((system, images)) = preset.systems.get(index).zip(materials.get(index)) else {
         return Err(FieldError::new("PRESET", path.display(), "a preset with a system").into());
     };
-    let export = MaterialExport::new(&preset.name, (index, system), images, *engine)?;
+    let export = MaterialExport::new(&preset.name, index, system, images, *engine)?;
     let pictures = image_paths(&folders, &preset);
     let _made = OutputFolder::make("--output", output)?;
     let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([path.as_path()]));
@@ -58,14 +59,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     export.write(output)?;
     export.files().try_for_each(|name| print_line!("{}", output.join(name).display()))
-}
-
-/// Finds a system by its name, or by its number.
-fn system_index(preset: &Preset, name: &str) -> Result<usize, FieldError> {
-    let by_name = preset.systems.iter().position(|system| system.name == name);
-    let by_number = || name.parse().ok().filter(|index| *index < preset.systems.len());
-    by_name.or_else(by_number).ok_or_else(|| {
-        let names: Vec<_> = preset.systems.iter().map(|system| format!("{:?}", system.name)).collect();
-        FieldError::new("--system", format!("{name:?}"), format!("one of {}", names.join(", ")))
-    })
 }

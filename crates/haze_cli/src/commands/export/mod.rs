@@ -4,7 +4,7 @@ mod flipbook;
 mod material;
 
 use clap::{Args, Subcommand};
-use haze::Error;
+use haze_core::error::Error;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -4,12 +4,12 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use haze::Error;
 use haze_author::finding::Finding;
 use haze_author::ramp::lint::{BANDING, lint_ramp};
 use haze_author::ramp::response::{DiffuseRamps, Puff};
 use haze_core::assets::image::color_conversion_notes;
 use haze_core::assets::ramp::{Ramp, RampRole};
+use haze_core::error::{AssetError, Error};
 use haze_export::file_kind::explain_wrong_kind;
 use haze_export::options::choices;
 use haze_export::output::{Failures, one_line};
@@ -47,11 +47,10 @@ pub fn run(Arguments { ramps, role, truth, backlight }: &Arguments) -> Result<()
 /// Prints how far ramps are from path-traced smoke.
 fn print_truth_error(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Result<(), Error> {
     let load = |path: &Path| Ok::<_, Error>(Ramp::from_image(&load_ramp_image(path)?.0));
-    let (ramps, backlight) = (
-        ramps.iter().map(|path| Ok((path, load(path)?))).collect::<Result<Vec<_>, Error>>()?,
-        backlight.map(load).transpose()?,
-    );
-    let (recipe, quality) = (sprite_recipe(&default_sprite())?, PathTraceArguments::default());
+    let ramps = ramps.iter().map(|path| Ok((path, load(path)?))).collect::<Result<Vec<_>, Error>>()?;
+    let backlight = backlight.map(load).transpose()?;
+    let recipe = sprite_recipe(&default_sprite())?;
+    let quality = PathTraceArguments::default();
     let path_trace = quality.path_trace();
     let puff = quality
         .with_progress(medium, |progress| Puff::trace(&recipe, &medium_by_name(medium), &path_trace, progress))?;
@@ -65,7 +64,8 @@ fn print_truth_error(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) 
 
 /// Returns the commands that replace a PNG of visible steps by a smooth one.
 fn import_and_bake(path: &Path) -> String {
-    let (picture, recipe) = (one_line(path.display()), path.with_extension("ramp.json"));
+    let picture = one_line(path.display());
+    let recipe = path.with_extension("ramp.json");
     let recipe = one_line(recipe.display());
     format!("`haze ramp import {picture} -o {recipe}`, then `haze ramp bake --overwrite {recipe}`")
 }
@@ -88,7 +88,7 @@ fn findings(path: &Path, role: Option<RampRole>) -> Result<Vec<Finding>, Error> 
             banding.for_each(|finding| finding.description += &format!(": {cure}"));
         }
         // A color space that is refused has been noted already.
-        Err(Error::Image { .. }) if !findings.is_empty() => {}
+        Err(Error::Asset(AssetError::Image { .. })) if !findings.is_empty() => {}
         Err(error) => return Err(explain_wrong_kind(error, path, "ramp", "a PNG or a *.ramp.json file")),
     }
     Ok(findings)

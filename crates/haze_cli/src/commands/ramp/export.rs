@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::Error;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::export_gradient::export_gradient;
+use haze_core::error::Error;
 use haze_export::output::{FileChecks, print_line};
 use haze_preset::write_file;
 

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::Error;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
 use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
 use haze_export::options::whole_number;
 use haze_export::output::{FileChecks, print_line};
 use haze_export::puff_sheet::{ComparedImages, comparison_sheet};
@@ -55,7 +55,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     if let Some(sheet) = sheet {
         files.check_output("--sheet", sheet, "png")?;
     }
-    let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
+    let recipe = sprite_recipe(sprite)?;
+    let of = medium.medium()?;
+    let path_trace = quality.path_trace();
     let puff = quality.with_progress(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
     let fitted = puff.fit(FitShape { stops: *stops, rows: *rows, backlight: backlight.is_some() });
     let FittedRamps { diffuse, backlight: against, exposure } = &fitted;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::Error;
 use haze_author::ramp::response::{FitShape, Puff, Response, ShadowShape, fit_shadow_ramp};
 use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
 use haze_core::settings::Lighting;
 use haze_demo::puff_cloud::{CloudShape, PuffKind, ring_of_lights};
 use haze_export::options::{choices, whole_number};
@@ -47,7 +47,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     check_recipe_output(&mut files, output)?;
     files.check_output("--output", &image_path(output), "png")?;
     check_not_painted(&image_path(output), PaintedPng::Keep)?;
-    let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
+    let recipe = sprite_recipe(sprite)?;
+    let of = medium.medium()?;
+    let path_trace = quality.path_trace();
     let puff = quality.with_progress(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
     let fitted = puff.fit(FitShape::default());
     let ramp = |recipe: &haze_author::ramp::RampRecipe| Ok::<_, Error>(Ramp::from_image(&recipe.bake()?));
@@ -75,7 +77,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
             let response = Response::new(&cloud.drawn(&ring_of_lights(), material)?, truth);
             Ok::<_, Error>(100.0 * response.error)
         };
-        let (plain, shaded) = (error(&material)?, error(&material.with_shadow(&shadow))?);
+        let plain = error(&material)?;
+        let shaded = error(&material.with_shadow(&shadow))?;
         print_line!("{}: brightness {shaded:.1} % off, {plain:.1} % without shadow", shape.name())?;
     }
     print_line!(

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::Error;
 use haze_author::ramp::fit_stops::MAX_ERROR_RANGE;
 use haze_author::ramp::import_gradient::{ImportedGradient, import_gradient};
+use haze_core::error::Error;
 use haze_export::options::number;
 use haze_export::output::{FileChecks, print_error, print_line};
 use haze_export::progress::with_progress;
@@ -35,7 +35,9 @@ pub fn run(Arguments { file, output, error, gradient }: &Arguments) -> Result<()
     let ImportedGradient { fit: fitted, note } = with_progress(format!("haze: fitting {}", file.display()), || {
         import_gradient(file, *error, gradient.as_deref())
     })?;
-    note.iter().for_each(print_error);
+    if let Some(note) = note {
+        print_error(note);
+    }
     write_recipe(output, &fitted.recipe)?;
     let rows = fitted.recipe.rows.len();
     let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();

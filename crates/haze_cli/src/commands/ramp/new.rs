@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use glam::{UVec2, Vec2, Vec3};
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::ramp::lint::lint_ramp;
 use haze_author::ramp::template::{TEMPLATES, Template};
 use haze_core::assets::ramp::{Ramp, RampRole};
+use haze_core::error::Error;
 use haze_core::formula::texture::Texture2d as _;
 use haze_export::options::choices;
 use haze_export::output::{FileChecks, print_line};
@@ -127,7 +128,8 @@ fn interpolated_code(ramp: &Ramp, u: f32, v: f32) -> Vec3 {
     let size = ramp.dimensions();
     let steps = (size - 1).as_vec2().max(Vec2::ONE);
     let at = Vec2::new(u, v) * steps;
-    let (low, share) = (at.floor(), at.fract());
+    let low = at.floor();
+    let share = at.fract();
     let code = |x: f32, y: f32| srgb_code_at(ramp, ((low.x + x) / steps.x).min(1.0), ((low.y + y) / steps.y).min(1.0));
     let row = |y: f32| code(0.0, y).lerp(code(1.0, y), share.x);
     row(0.0).lerp(row(1.0), share.y)
@@ -135,7 +137,8 @@ fn interpolated_code(ramp: &Ramp, u: f32, v: f32) -> Vec3 {
 
 /// Returns the coverage of white text, blurred by a Gaussian first along rows, then along columns.
 fn blurred(text: &RgbImage) -> Vec<f32> {
-    let (width, height) = (text.width() as usize, text.height() as usize);
+    let width = text.width() as usize;
+    let height = text.height() as usize;
     let reach = (3.0 * TEXT_BLUR).ceil() as isize;
     let weights: Vec<f32> = (-reach..=reach).map(|at| (-0.5 * (at as f32 / TEXT_BLUR).powi(2)).exp()).collect();
     let sum: f32 = weights.iter().sum();

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::ramp::RampRecipe;
 use haze_author::ramp::import_gradient::GRADIENT_ENDINGS;
 use haze_core::assets::image::read_color_png;
+use haze_core::error::Error;
 use haze_preset::write_file;
 use image::DynamicImage;
 
@@ -47,5 +48,5 @@ pub fn check_recipe_output(files: &mut FileChecks, output: &Path) -> Result<(), 
 
 /// Writes a recipe as JSON.
 pub fn write_recipe(output: &Path, recipe: &RampRecipe) -> Result<(), Error> {
-    write_file(output, recipe.to_json().as_bytes())
+    Ok(write_file(output, recipe.to_json().as_bytes())?)
 }

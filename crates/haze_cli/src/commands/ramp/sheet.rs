@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::UVec2;
-use haze::{Error, FieldError, MaterialAssets};
+use haze::{FieldError, MaterialAssets};
 use haze_core::assets::ramp::{Ramp, RampRole};
+use haze_core::error::{AssetError, Error};
 use haze_core::settings::{Backlight, CoverageMode, DiffuseMode, RenderPath, SoftScatterMode};
 use haze_demo::shot::Shot;
 use haze_export::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
@@ -134,7 +135,7 @@ fn ramp_files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     if folder.is_file() {
         return Err(FieldError::new("--ramps", folder.display(), "a folder").into());
     }
-    let failed = |error| Error::Io { path: folder.into(), error };
+    let failed = |error| Error::from(AssetError::Io { path: folder.into(), error });
     let entries: Result<Vec<_>, _> = fs::read_dir(folder).map_err(failed)?.collect();
     let mut files: Vec<_> = entries.map_err(failed)?.into_iter().map(|entry| entry.path()).collect();
     files.retain(|path| has_extension(path, "png") || is_recipe(path) && !image_path(path).exists());
@@ -146,7 +147,7 @@ impl Cell {
     fn ramp(&self) -> Result<Ramp, Error> {
         match &self.source {
             Source::File(path) => Ok(Ramp::from_image(&load_ramp_image(path)?.0)),
-            Source::Builtin(builtin) => builtin.ramp(),
+            Source::Builtin(builtin) => Ok(builtin.ramp()?),
         }
     }
 }

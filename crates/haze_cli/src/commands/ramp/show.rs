@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::{UVec2, Vec3};
-use haze::Error;
 use haze_author::ramp::RampRecipe;
 use haze_core::assets::ramp::Ramp;
+use haze_core::error::Error;
 use haze_core::formula::color::{linear_from_srgb, luminance, srgb_from_linear};
 use haze_export::contact_sheet::BACKGROUND;
 use haze_export::output::{FileChecks, one_line, print_line, write_text};
@@ -125,7 +125,7 @@ fn ramp_with_curves(ramp: &Ramp) -> RgbImage {
         curve("luminance", [225, 225, 220], brightness),
     ];
     let axis = if ramp.size().y > 1 { "across, at the middle of the other axis" } else { "across" };
-    let below = plot(SIZE + UVec2::new((LEFT + RIGHT) as u32, 60), (0.0, 1.0), axis, &curves);
+    let below = plot(SIZE + UVec2::new((LEFT + RIGHT) as u32, 60), 0.0, 1.0, axis, &curves);
     let up = if ramp.size().y > 1 { SIZE.y } else { SIZE.y / 4 };
     let strip = ramp_image(ramp, UVec2::new(SIZE.x, up));
     let mut picture = RgbImage::from_pixel(below.width(), up + below.height() + 16, BACKGROUND);

@@ -8,7 +8,7 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use clap::Args;
-use haze::Error;
+use haze_core::error::{AssetError, Error};
 use haze_export::interrupt;
 use haze_export::output::{Failures, FileChecks, print_error};
 use haze_export::recipe_files::image_path;
@@ -44,7 +44,9 @@ pub fn run(Arguments { recipes }: &Arguments) -> Result<(), Failures> {
     while !interrupt::is_requested() {
         watcher.watch_unread(watched_recipes(recipes));
         let _ = woken.recv_timeout(CHECK_INTERVAL);
-        watcher.take_message().iter().for_each(print_error);
+        if let Some(message) = watcher.take_message() {
+            print_error(message);
+        }
         for path in watcher.poll() {
             // When a recipe is seen for the first time, an image newer than it is up to date or was painted over.
             if !known.insert(path.clone()) || !is_newer(&image_path(&path), &path) {
@@ -56,7 +58,7 @@ pub fn run(Arguments { recipes }: &Arguments) -> Result<(), Failures> {
 }
 
 fn io_error(path: &Path, error: std::io::Error) -> Error {
-    Error::Io { path: path.into(), error }
+    Error::from(AssetError::Io { path: path.into(), error })
 }
 
 /// Returns the recipes to watch now.

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use haze::Error;
 use haze_author::finding::Finding;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::lint::lint_sprite;
 use haze_core::assets::image::read_png;
 use haze_core::assets::sprite::SpriteLayout;
+use haze_core::error::Error;
 use haze_export::file_kind::explain_wrong_kind;
 use haze_export::options::whole_number;
 use haze_export::output::Failures;
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 }
 
 fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) -> Result<Vec<Finding>, Error> {
-    let picture = read_png(path).map_err(|error| explain_wrong_kind(error, path, "image", "a PNG"))?.to_rgba8();
+    let picture = read_png(path).map_err(|error| explain_wrong_kind(error.into(), path, "image", "a PNG"))?.to_rgba8();
     let recipe = path.with_extension("sprite.json");
     let beside = if (columns, rows) == (&None, &None) && recipe.is_file() {
         SpriteRecipe::load(&recipe)?.layout()
@@ -45,5 +45,5 @@ fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) ->
     };
     let layout =
         SpriteLayout { columns: columns.unwrap_or(beside.columns), rows: rows.unwrap_or(beside.rows), y_down: *y_down };
-    lint_sprite(path, &picture, layout)
+    Ok(lint_sprite(path, &picture, layout)?)
 }

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::Error;
 use haze_author::sprite::six_way::{Packing, unpack};
 use haze_core::assets::image::read_png;
+use haze_core::error::Error;
 use haze_preset::{CompressionEffort, write_png};
 
 use haze_export::options::choices;

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::UVec2;
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::finding::Finding;
 use haze_author::sprite::import_sprite::{ImportSource, ImportedSprite, arrange_sheet, import_sprite};
 use haze_author::sprite::lint::lint_sprite;
 use haze_author::sprite::y_direction::MIN_CONFIDENCE;
 use haze_core::assets::image::read_png;
 use haze_core::assets::sprite::SpriteLayout;
+use haze_core::error::{AssetError, Error};
 use haze_preset::{CompressionEffort, write_png};
 
 use haze_export::options::{choices, number, whole_number};
@@ -75,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         import_sprite(path, &sheets, *source, layout, *y_down, *strength)?;
     let findings = lint_sprite(output, &picture, layout)?;
     if let Some(reason) = refusal(*source, not_normals, &findings) {
-        return Err(Error::Image { path: path.into(), reason });
+        return Err(Error::from(AssetError::Image { path: path.into(), reason }));
     }
     write_png(output, &picture.into(), CompressionEffort::Small)?;
     print_line!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;

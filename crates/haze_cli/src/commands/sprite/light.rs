@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use haze::Error;
 use haze_author::path_trace::PathTrace;
 use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
 use haze_author::sprite::bake::SpriteRecipe;
+use haze_core::error::Error;
 use haze_core::formula::color::luminance;
 use haze_export::output::{FileChecks, print_line};
 use haze_export::puff_sheet::{ComparedImages, comparison_sheet, traced_sheet};
@@ -43,7 +43,9 @@ pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Argu
     if let Some(volume) = volume {
         files.check_output("--volume", volume, "vol")?;
     }
-    let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
+    let recipe = sprite_recipe(sprite)?;
+    let of = medium.medium()?;
+    let path_trace = quality.path_trace();
     let puff = quality.with_progress(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
     if let Some(path) = volume {
         let recipe = SpriteRecipe { size: path_trace.size, ..recipe };
@@ -72,7 +74,8 @@ fn compare_six_way(
     output: &Path,
 ) -> Result<(), Error> {
     let PathTrace { size, samples, .. } = quality.path_trace();
-    let (recipe, of) = (SpriteRecipe { size, columns: 1, rows: 1, tolerance: 0, ..recipe.clone() }, medium.medium()?);
+    let recipe = SpriteRecipe { size, columns: 1, rows: 1, tolerance: 0, ..recipe.clone() };
+    let of = medium.medium()?;
     let what = format!("six-way {}", medium.name());
     let maps = quality.with_progress(&what, |progress| recipe.bake_six_way(&of, samples, |_, path| progress(path)))?;
     let light = |light| puff.shown_six_way(&maps, light);

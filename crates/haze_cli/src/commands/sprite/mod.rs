@@ -5,6 +5,7 @@ mod check;
 mod export;
 mod import;
 mod light;
+mod simulate;
 mod six_way;
 
 use clap::{Args, Subcommand};
@@ -21,6 +22,9 @@ pub struct SpriteArguments {
 enum SpriteCommand {
     /// Bake every recipe to PNGs beside it: NAME.png, and for a sprite also NAME.detail.png with its depth and motion.
     Bake(bake::Arguments),
+    /// Simulate smoke and fire, and bake the frames to NAME.png, NAME.detail.png and, if it burns, NAME.heat.png. Takes
+    /// minutes.
+    Simulate(simulate::Arguments),
     /// Report visible flaws: colors instead of normals, normals of wrong length, green that points down, opaque
     /// borders, premultiplied normals, a seam in the loop. Exits with 1 if there are any.
     Check(check::Arguments),
@@ -36,6 +40,7 @@ enum SpriteCommand {
 pub fn run(arguments: &SpriteArguments) -> Result<(), Failures> {
     match &arguments.command {
         SpriteCommand::Bake(arguments) => bake::run(arguments),
+        SpriteCommand::Simulate(arguments) => simulate::run(arguments),
         SpriteCommand::Export(arguments) => export::run(arguments).map_err(Failures::from),
         SpriteCommand::Check(arguments) => check::run(arguments),
         SpriteCommand::Light(arguments) => light::run(arguments).map_err(Failures::from),

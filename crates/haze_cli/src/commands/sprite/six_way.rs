@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clap::Args;
-use haze::{Error, FieldError};
+use haze::FieldError;
+use haze_author::path_trace::Medium;
 use haze_author::sprite::six_way::BakedSixWay;
+use haze_core::error::Error;
 use haze_export::options::whole_number;
 use haze_export::output::{FileChecks, print_line};
 use haze_export::progress::with_changing_progress;
@@ -36,23 +38,32 @@ impl SixWayArguments {
     /// # Errors
     /// Names the option or the file.
     pub fn check(&self, recipes: &[PathBuf], painted: PaintedPng) -> Result<(), Error> {
-        match &self.six_way {
-            None => match self.numbers.first_given() {
-                Some(option) => {
-                    let problem = "has no effect without --six-way";
-                    Err(FieldError::from_problem(option, problem, "--six-way as well").into())
-                }
-                None => Ok(()),
-            },
-            Some(name) => {
-                self.numbers.medium_of(name)?;
-                let mut files = FileChecks::for_inputs(recipes);
-                sprites(recipes).map(|path| six_way_path(&image_path(path))).try_for_each(|output| {
-                    files.check_output("output", &output, "png")?;
-                    check_not_painted(&output, painted)
-                })
+        self.check_options()?;
+        let mut files = FileChecks::for_inputs(recipes);
+        sprites(recipes).map(image_path).filter_map(|picture| self.output(&picture)).try_for_each(|output| {
+            files.check_output("output", &output, "png")?;
+            check_not_painted(&output, painted)
+        })
+    }
+
+    /// Refuses options that are not valid, or have no effect.
+    ///
+    /// # Errors
+    /// Names the option.
+    pub fn check_options(&self) -> Result<(), Error> {
+        match (&self.six_way, self.numbers.first_given()) {
+            (Some(name), _) => self.numbers.medium_of(name).map(drop).map_err(Error::from),
+            (None, None) => Ok(()),
+            (None, Some(option)) => {
+                let problem = "has no effect without --six-way";
+                Err(FieldError::from_problem(option, problem, "--six-way as well").into())
             }
         }
+    }
+
+    /// Returns the file of the maps of a sprite, if they were asked for.
+    pub fn output(&self, picture: &Path) -> Option<PathBuf> {
+        self.six_way.is_some().then(|| six_way_path(picture))
     }
 
     /// Returns the recipes that are baked without light: with --six-way all but built-in sprites, which have no file.
@@ -66,26 +77,46 @@ impl SixWayArguments {
     /// # Errors
     /// As [`sprite_recipe`], and if a file cannot be written.
     pub fn bake_all(&self, recipes: &[PathBuf]) -> Result<(), Error> {
-        let Some(name) = &self.six_way else { return Ok(()) };
-        sprites(recipes).try_for_each(|path| self.bake(path, name))
+        if self.six_way.is_none() {
+            return Ok(());
+        }
+        sprites(recipes).try_for_each(|path| {
+            let recipe = sprite_recipe(path)?;
+            self.bake(path, &image_path(path), recipe.frame_count(), |medium, samples, progress| {
+                recipe.bake_six_way(medium, samples, progress)
+            })
+        })
     }
 
-    fn bake(&self, path: &Path, name: &str) -> Result<(), Error> {
-        let (recipe, medium) = (sprite_recipe(path)?, self.numbers.medium_of(name)?);
+    /// Bakes the maps of one sprite of `frames` frames, if they were asked for. `path` is its recipe, and `picture` its
+    /// flipbook. `bake` gets the medium, the paths per pixel, and a function to call with the frame and the number of
+    /// finished paths.
+    ///
+    /// # Errors
+    /// Those of `bake`, and if the file cannot be written.
+    pub fn bake(
+        &self,
+        path: &Path,
+        picture: &Path,
+        frames: u32,
+        bake: impl FnOnce(&Medium, u32, &dyn Fn(u32, u32) -> Result<(), Error>) -> Result<BakedSixWay, Error>,
+    ) -> Result<(), Error> {
+        let Some(name) = &self.six_way else { return Ok(()) };
+        let medium = self.numbers.medium_of(name)?;
         let done = [const { AtomicU32::new(0) }; 2];
         let what = || {
             let [frame, sample] = done.each_ref().map(|count| count.load(Ordering::Relaxed) + 1);
-            let (frames, samples) = (recipe.frame_count(), self.samples);
+            let samples = self.samples;
             format!("haze: tracing {}, frame {frame} of {frames}, path {sample} of {samples}", path.display())
         };
         let baked = with_changing_progress(what, || {
-            recipe.bake_six_way(&medium, self.samples, |frame, sample| {
+            bake(&medium, self.samples, &|frame, sample| {
                 done.iter().zip([frame, sample]).for_each(|(count, now)| count.store(now, Ordering::Relaxed));
-                Ok::<_, Error>(())
+                Ok(())
             })
         })?;
         let BakedSixWay { picture: maps, intensity, color, anisotropy } = baked;
-        let output = six_way_path(&image_path(path));
+        let output = six_way_path(picture);
         print_line!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
         write_baked_png(&output, &maps.into())?;
         print_line!(

@@ -11,7 +11,8 @@ fn example(name: &str) -> PathBuf {
 #[test]
 fn a_scene_and_a_sky_are_rendered_from_any_folder() {
     let folder = folder();
-    let (court, dusk) = (example("court.glb"), example("dusk.hdr"));
+    let court = example("court.glb");
+    let dusk = example("dusk.hdr");
     let [court, dusk] = [&court, &dusk].map(|path| path.to_str().unwrap());
     let picture = |more: &[&str]| {
         let arguments = [&["render", "--size", "48x27", "--backend", "cpu", "-o", "out.png"], more].concat();

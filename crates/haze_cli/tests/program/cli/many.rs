@@ -16,25 +16,29 @@ fn a_field_is_set_by_its_name() {
     };
     // The same field by its option, by the end of its path, and by its whole path.
     let scale = picture(&["--scale", "4"]);
-    assert_eq!(scale, picture(&["--set", "accumulate.scale=4"]));
-    assert_eq!(scale, picture(&["--set", "systems[0].settings.accumulate.scale=4"]));
-    assert_ne!(scale, picture(&["--set", "accumulate.scale=4", "--set", "scatter_color=1,0,0"]));
+    assert_eq!(scale, picture(&["--set", "accumulate.downscale=4"]));
+    assert_eq!(scale, picture(&["--set", "systems[0].settings.accumulate.downscale=4"]));
+    assert_ne!(scale, picture(&["--set", "accumulate.downscale=4", "--set", "scatter_color=1,0,0"]));
 }
 
 #[test]
 fn invalid_assignments_are_refused_before_rendering() {
     let folder = folder();
     let line = |set: &str| refusal(folder.path(), &[&SMALL[..], &["out.png", "--set", set]].concat());
-    assert!(line("accumulate.scale").contains("expected FIELD=VALUE"));
+    assert!(line("accumulate.downscale").contains("expected FIELD=VALUE"));
     assert!(
         line("accumulate.scales=1").contains("--set field: \"accumulate.scales\" is not valid"),
         "{}",
         line("a.b=1")
     );
     assert!(line("intensity=1").contains("expected one of lights.intensity, "), "{}", line("intensity=1"));
-    assert!(line("accumulate.scale=x").contains("--set accumulate.scale: \"x\" is not valid; expected a whole number"));
     assert!(
-        line("accumulate.scale=99").contains("systems[0].settings.accumulate.scale: 99 is not valid; expected 1 to 16")
+        line("accumulate.downscale=x")
+            .contains("--set accumulate.downscale: \"x\" is not valid; expected a whole number")
+    );
+    assert!(
+        line("accumulate.downscale=99")
+            .contains("systems[0].settings.accumulate.downscale: 99 is not valid; expected 1 to 16")
     );
     assert!(line("material.diffuse_ramp=gone.png").contains("systems[0].material.diffuse_ramp"));
     assert!(!folder.path().join("out.png").exists());
@@ -50,7 +54,7 @@ fn a_sheet_has_one_image_per_value() {
         haze_core::assets::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
     // Two images per row, the last cell empty.
-    let picture = sheet("accumulate.scale=1,4,16");
+    let picture = sheet("accumulate.downscale=1,4,16");
     let cell = |x: u32, y: u32| image::imageops::crop_imm(&picture, 12 + x * 60, 40 + y * 67, 48, 27).to_image();
     let cells = [cell(0, 0), cell(1, 0), cell(0, 1), cell(1, 1)];
     for (i, a) in cells.iter().enumerate() {

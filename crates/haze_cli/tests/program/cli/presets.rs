@@ -42,14 +42,14 @@ fn a_preset_finds_files_in_its_folder() {
 #[test]
 fn a_setting_without_effect_is_reported() {
     let folder = folder();
-    let output = render(folder.path(), &["corridor", "--set", "accumulate.scale=8"]);
-    let note = "haze: --set accumulate.scale has no effect: only with scale_mode fixed\n";
+    let output = render(folder.path(), &["corridor", "--set", "accumulate.downscale=8"]);
+    let note = "haze: --set accumulate.downscale has no effect: only with scale_mode fixed\n";
     assert_eq!((output.status.success(), stderr(&output).as_str()), (true, note));
-    let output = render(folder.path(), &["corridor", "--set", "accumulate.scale=8", "--set", "scale_mode=fixed"]);
+    let output = render(folder.path(), &["corridor", "--set", "accumulate.downscale=8", "--set", "scale_mode=fixed"]);
     assert_eq!((output.status.success(), stderr(&output).as_str()), (true, ""));
     let sheet = ["sheet", "corridor", "--size", "64x36", "--backend", "cpu", "-o", "a.png"];
     let vary = |field: &str| stderr(&haze(folder.path(), &[&sheet[..], &["--vary", field]].concat()));
-    assert_eq!(vary("accumulate.scale=2,4"), note.replace("--set", "--vary"));
+    assert_eq!(vary("accumulate.downscale=2,4"), note.replace("--set", "--vary"));
     assert_eq!(vary("accumulate.max_error=0.05,0.1"), "");
     // A refused command says its error alone.
     image::RgbImage::new(4, 4).save(folder.path().join("own.png")).unwrap();
@@ -80,7 +80,7 @@ fn presets_are_listed_checked_and_described() {
     let shown = text(&["preset", "show", "idle.json"]);
     let line = |field: &str| shown.lines().find(|line| line.starts_with(&format!("systems[0].{field} "))).unwrap();
     assert!(line("settings.boost").ends_with(" 2.0                    default 3.0"), "{shown}");
-    assert!(line("settings.accumulate.scale").ends_with(" 2                      default"), "{shown}");
+    assert!(line("settings.accumulate.downscale").ends_with(" 2                      default"), "{shown}");
     assert!(line("settings.blend_mode").ends_with("default \"alpha\"; no effect: forward only"), "{shown}");
     assert_eq!(text(&["preset", "show", "--changed", "idle.json"]).lines().count(), 4);
     assert!(text(&["preset", "schema"]).contains("\"soft_fade\""));

@@ -22,7 +22,8 @@ fn a_ramp_of_very_many_stops_bakes_quickly() {
             let _ =
                 write!(text, r#"{}{{"at": {}, "stops": ["#, if row > 0 { "," } else { "" }, row as f32 / rows as f32);
             for stop in 0..stops {
-                let (at, color) = (stop as f32 / stops as f32, (row * 7919 + stop * 104_729) % 0x100_0000);
+                let at = stop as f32 / stops as f32;
+                let color = (row * 7919 + stop * 104_729) % 0x100_0000;
                 let _ = write!(text, r##"{}{{"at": {at}, "color": "#{color:06x}"}}"##, if stop > 0 { "," } else { "" });
             }
             text += "]}";
@@ -77,7 +78,8 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
         assert!(line.starts_with("mine.ramp.json: ") && stated <= error, "{line}");
         stdout_of(folder.path(), &["ramp", "bake", "mine.ramp.json"]);
         let read = |path: &Path| haze_core::assets::image::read_png(path).unwrap().into_rgb16();
-        let (before, after) = (read(source.as_ref()), read(&folder.path().join("mine.png")));
+        let before = read(source.as_ref());
+        let after = read(&folder.path().join("mine.png"));
         let off = before.iter().zip(after.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
         assert!((f32::from(off) / 257.0 - stated).abs() < 0.06, "{line}: {off}");
     }

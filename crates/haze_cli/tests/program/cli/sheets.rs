@@ -20,7 +20,8 @@ fn sheet_of_debug_views_shows_every_stage() {
         let alone = haze_core::assets::image::read_png(&folder.path().join("out.png")).unwrap().to_rgb8();
         let is_at =
             |x: u32, y: u32| alone.enumerate_pixels().all(|(dx, dy, pixel)| sheet.get_pixel(x + dx, y + dy) == pixel);
-        let (right, bottom) = (sheet.width() - alone.width(), sheet.height() - alone.height());
+        let right = sheet.width() - alone.width();
+        let bottom = sheet.height() - alone.height();
         let corner = (0..=bottom).find_map(|y| (0..=right).find(|&x| is_at(x, y)).map(|x| (x, y)));
         corners.insert(corner.unwrap_or_else(|| panic!("no {} on the sheet", stage.name())));
     }

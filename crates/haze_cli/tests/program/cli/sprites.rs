@@ -234,3 +234,52 @@ fn six_way_options_and_files_that_do_not_fit_are_refused() {
         "{text}"
     );
 }
+
+const FIRE: &str = r#"{
+    "version": 1,
+    "grid": { "width": 16, "height": 24, "depth": 16, "detail": 1 },
+    "sources": [{ "position": [0, 0.4, 0], "radius": [0.2, 0.2, 0.2], "end": 0.1, "smoke": 1, "fuel": 1 }],
+    "time": { "duration": 0.4 },
+    "sheet": { "size": 32, "columns": 4, "rows": 2 }
+}"#;
+
+#[test]
+fn simulations_are_baked_to_sprites() {
+    let folder = folder();
+    fs::write(folder.path().join("fire.sim.json"), FIRE).unwrap();
+    let simulate = ["sprite", "simulate", "fire.sim.json"];
+    let text = stdout_of(folder.path(), &[&simulate[..], &["--six-way", "ash", "--samples", "2"]].concat());
+    let expected =
+        "fire.png: 128x64\nfire.detail.png: 32x16\nfire.heat.png: 128x64\nfire.six_way.png: 128x128\n  to look";
+    assert!(text.starts_with(expected), "{text}");
+    let heat = image::open(folder.path().join("fire.heat.png")).unwrap().to_luma8();
+    assert!(heat.pixels().any(|texel| texel.0[0] > 60), "nothing is hot");
+    // It plays once, so `sprite check` may find no loop, but nothing else.
+    let checked = haze(folder.path(), &["sprite", "check", "--columns", "4", "--rows", "2", "fire.png"]);
+    let findings = String::from_utf8_lossy(&checked.stdout).into_owned();
+    assert!(findings.lines().all(|line| line.contains(": good") || line.contains(": loop: ")), "{findings}");
+    let text = stdout_of(folder.path(), &[&simulate[..], &["--preview"]].concat());
+    assert_eq!(text, "fire_preview.png: 64x32\nfire_preview.detail.png: 16x8\nfire_preview.heat.png: 64x32\n");
+    // A PNG that was painted since is kept.
+    image::GrayImage::new(4, 4).save(folder.path().join("fire.heat.png")).unwrap();
+    let text = refusal(folder.path(), &simulate);
+    assert!(text.contains("fire.heat.png was painted, or changed after it was baked, and is kept"), "{text}");
+    assert_eq!(image::open(folder.path().join("fire.heat.png")).unwrap().width(), 4);
+    stdout_of(folder.path(), &[&simulate[..], &["--overwrite"]].concat());
+    assert_eq!(image::open(folder.path().join("fire.heat.png")).unwrap().width(), 128);
+}
+
+#[test]
+fn wrong_simulations_are_refused_by_field() {
+    let folder = folder();
+    fs::write(folder.path().join("a.sim.json"), FIRE.replace("[0.2, 0.2, 0.2]", "[0.2, 0.2, -1]")).unwrap();
+    let text = refusal(folder.path(), &["sprite", "simulate", "a.sim.json"]);
+    assert!(text.contains("sources[0].radius: -1 is not valid; expected 0.001 to 4 box widths"), "{text}");
+    fs::write(folder.path().join("b.sim.json"), FIRE.replace("\"duration\"", "\"length\"")).unwrap();
+    let text = refusal(folder.path(), &["sprite", "simulate", "b.sim.json"]);
+    assert!(text.contains("b.sim.json:5:") && text.contains("length"), "{text}");
+    let text = refusal(folder.path(), &["sprite", "simulate", "a.sprite.json"]);
+    assert!(text.contains("recipe: a.sprite.json is not valid; expected a *.sim.json file"), "{text}");
+    let text = refusal(folder.path(), &["sprite", "simulate", "a.sim.json", "--albedo", "1"]);
+    assert!(text.contains("--albedo: has no effect without --six-way"), "{text}");
+}

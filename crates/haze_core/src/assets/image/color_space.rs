@@ -9,7 +9,7 @@ use super::icc_profile::is_srgb;
 use super::png::{decode_with_profile, is_png, read_file};
 use super::png_chunks::{ColorTags, color_tags};
 use super::primaries::{self, BT2020, D65, DISPLAY_P3, Primaries, SRGB, differs, xyz_from_linear};
-use crate::error::{Error, display_path};
+use crate::error::{AssetError, display_path};
 use crate::formula::color::{linear_from_srgb, srgb_from_linear};
 
 /// Decodes a PNG of colors, such as a ramp or a motif. The result is sRGB and opaque.
@@ -20,13 +20,13 @@ use crate::formula::color::{linear_from_srgb, srgb_from_linear};
 /// Transparent pixels are composited over black in linear light.
 ///
 /// # Errors
-/// As [`decode_png`](super::decode_png), and [`Error::Image`] for an unsupported color space.
-pub fn decode_color_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
+/// As [`decode_png`](super::decode_png), and [`AssetError::Image`] for an unsupported color space.
+pub fn decode_color_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, AssetError> {
     let tags = color_tags(bytes).unwrap_or_default();
     let space = |profile: Option<&[u8]>| {
         tags.space(profile).map_err(|found| {
             let reason = format!("{found}; expected sRGB: convert the picture to sRGB when exporting it");
-            Error::Image { path: path.into(), reason }
+            AssetError::Image { path: path.into(), reason }
         })
     };
     // The decoder reports some code points as a damaged file, so they are checked first.
@@ -41,8 +41,8 @@ pub fn decode_color_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error
 /// Reads and decodes a PNG file of colors.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_color_png`].
-pub fn read_color_png(path: &Path) -> Result<DynamicImage, Error> {
+/// [`AssetError::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_color_png`].
+pub fn read_color_png(path: &Path) -> Result<DynamicImage, AssetError> {
     decode_color_png(path, &read_file(path)?)
 }
 
@@ -51,7 +51,7 @@ pub fn read_color_png(path: &Path) -> Result<DynamicImage, Error> {
 ///
 /// # Errors
 /// As [`read_color_png`], except that an unsupported color space is a note.
-pub fn color_conversion_notes(path: &Path) -> Result<Vec<String>, Error> {
+pub fn color_conversion_notes(path: &Path) -> Result<Vec<String>, AssetError> {
     let bytes = read_file(path)?;
     let (picture, profile) = decode_with_profile(path, &bytes)?;
     let mut notes = Vec::new();
@@ -133,7 +133,7 @@ impl ColorTags {
 
 /// Returns the matrix from linear light of these primaries to linear sRGB; `None` for sRGB primaries.
 fn from_primaries(primaries: Primaries) -> Result<Option<DMat3>, String> {
-    if differs((&primaries[0], &D65)) {
+    if differs(&primaries[0], &D65) {
         return Err(format!("colors with the white point {}, {}", primaries[0][0], primaries[0][1]));
     }
     if primaries::is_srgb(&primaries) {

@@ -9,7 +9,7 @@ use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 use super::decoder_panic::catch_decoder_panic;
 use super::png_chunks::color_tags;
 use crate::assets::bounded_read;
-use crate::error::Error;
+use crate::error::AssetError;
 
 /// Maximum side of an image, pixels.
 pub const MAX_SIDE: u32 = 4096;
@@ -26,15 +26,15 @@ pub fn is_png(bytes: &[u8]) -> bool {
 /// Decodes a PNG in memory. `path` is used only in errors.
 ///
 /// # Errors
-/// [`Error::Image`] if the data is damaged, not a PNG, larger than 4096 pixels per side, or larger than 64 MiB when
+/// [`AssetError::Image`] if the data is damaged, not a PNG, larger than 4096 pixels per side, or larger than 64 MiB when
 /// decoded.
-pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
+pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, AssetError> {
     decode_with_profile(path, bytes).map(|(picture, _)| picture)
 }
 
 /// Decodes a PNG and returns the image with its ICC profile.
-pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), Error> {
-    let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
+pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), AssetError> {
+    let refuse = |reason: String| Err(AssetError::Image { path: path.into(), reason });
     if !is_png(bytes) {
         return refuse("not a PNG file; export it as PNG".into());
     }
@@ -106,16 +106,16 @@ fn describe_decode_error(error: Option<&ImageError>) -> String {
 /// Reads a PNG file of at most 64 MiB, without decoding it.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read or is larger.
-pub fn read_file(path: &Path) -> Result<Vec<u8>, Error> {
+/// [`AssetError::Io`] if the file cannot be read or is larger.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, AssetError> {
     bounded_read::read(path, "PNG file", MAX_BYTES)
 }
 
 /// Reads and decodes a PNG file.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_png`].
-pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
+/// [`AssetError::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_png`].
+pub fn read_png(path: &Path) -> Result<DynamicImage, AssetError> {
     decode_png(path, &read_file(path)?)
 }
 

@@ -24,13 +24,13 @@ const BRADFORD: DMat3 = DMat3::from_cols_array(&[
 ]);
 
 /// True if two places differ by more than the rounding of files.
-pub(super) fn differs((a, b): (&[f64; 2], &[f64; 2])) -> bool {
+pub(super) fn differs(a: &[f64; 2], b: &[f64; 2]) -> bool {
     (DVec2::from(*a) - DVec2::from(*b)).abs().max_element() > 0.002
 }
 
 /// True for those of sRGB, within the rounding of files.
 pub fn is_srgb(primaries: &Primaries) -> bool {
-    !primaries.iter().zip(&SRGB).any(differs)
+    !primaries.iter().zip(&SRGB).any(|(a, b)| differs(a, b))
 }
 
 /// Returns the matrix from linear light of these primaries to linear sRGB, with the white adapted; `None` if they span no

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 
 use super::bounded_read;
 use super::image::is_png;
-use crate::error::{Error, FieldError};
+use crate::error::{AssetError, FieldError};
 
 /// Size limit of most JSON files, bytes. A preset has a few thousand.
 pub const MAX_BYTES: u64 = 1 << 20;
@@ -16,8 +16,8 @@ pub const MAX_BYTES: u64 = 1 << 20;
 /// Parses `text`. `path` is used only in errors.
 ///
 /// # Errors
-/// [`Error::Json`] with line, column and field, naming what was expected.
-pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
+/// [`AssetError::Text`] with line, column and field, naming what was expected.
+pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, AssetError> {
     let mut json = serde_json::Deserializer::from_str(text);
     let parsed = serde_path_to_error::deserialize(&mut json).map_err(|error| {
         // "." is the whole file, "?" a field that has no name yet.
@@ -31,10 +31,11 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
         // For an unknown field, serde's path includes the unknown name; the error names its parent.
         let unknown = message.strip_prefix("unknown field `").and_then(|rest| rest.rsplit_once("`, expected "));
         let field = field.strip_suffix(unknown.map_or("", |(name, _)| name)).unwrap_or(&field).trim_end_matches('.');
-        let (line, column) = (error.line().max(1), error.column().max(1));
+        let line = error.line().max(1);
+        let column = error.column().max(1);
         let rest = text.split('\n').nth(line - 1).and_then(|text| text.get(column - 1..));
         let reason = serde_messages::translate(message, field, rest.unwrap_or_default());
-        Error::Json { path: path.into(), line, column, reason }
+        AssetError::Text { path: path.into(), line, column, reason }
     })
 }
 
@@ -42,7 +43,7 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
 ///
 /// # Errors
 /// As [`parse`], also for other text.
-pub fn decode<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, Error> {
+pub fn decode<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, AssetError> {
     parse(path, text(path, bytes)?)
 }
 
@@ -60,8 +61,8 @@ pub fn from_value<T: DeserializeOwned>(value: serde_json::Value) -> Result<T, St
 /// Parses a file with a `version` from 1 to `newest`. The version is checked before any other field is parsed.
 ///
 /// # Errors
-/// [`Error::Json`].
-pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32) -> Result<T, Error> {
+/// [`AssetError::Text`].
+pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32) -> Result<T, AssetError> {
     #[derive(serde::Deserialize)]
     #[serde(expecting = "an object with a \"version\"")]
     struct Versioned {
@@ -75,7 +76,7 @@ pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32
         } else {
             format!("version {version} is newer than this program, which reads up to {newest}; update haze")
         };
-        return Err(Error::Json { path: path.into(), line, column, reason });
+        return Err(AssetError::Text { path: path.into(), line, column, reason });
     }
     parse(path, text)
 }
@@ -83,29 +84,34 @@ pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32
 /// Reads, parses and validates a versioned file of at most [`MAX_BYTES`].
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::Json`], or [`Error::JsonField`] if `validate` fails.
+/// [`AssetError::Io`], [`AssetError::Text`], or [`AssetError::JsonField`] if `validate` fails.
 pub fn load<T: DeserializeOwned>(
     path: &Path,
     newest: u32,
     validate: impl FnOnce(&T) -> Result<(), FieldError>,
-) -> Result<T, Error> {
+) -> Result<T, AssetError> {
     let value = parse_versioned(path, &read(path, MAX_BYTES)?, newest)?;
-    validate(&value).map_err(|error| Error::JsonField { path: path.into(), error })?;
+    validate(&value).map_err(|error| AssetError::JsonField { path: path.into(), error })?;
     Ok(value)
 }
 
 /// Reads the text of a file of at most `max_bytes` bytes.
 ///
 /// # Errors
-/// [`Error::Io`], or [`Error::Json`] if the file is not UTF-8 text.
-pub fn read(path: &Path, max_bytes: u64) -> Result<String, Error> {
+/// [`AssetError::Io`], or [`AssetError::Text`] if the file is not UTF-8 text.
+pub fn read(path: &Path, max_bytes: u64) -> Result<String, AssetError> {
     text(path, &bounded_read::read(path, "JSON file", max_bytes)?).map(str::to_owned)
 }
 
 /// Decodes UTF-8. The error names the kind of file if it is a PNG or UTF-16.
-fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, Error> {
+fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, AssetError> {
     let refuse = |(line, column), reason: &str| {
-        Err(Error::Json { path: path.into(), line, column, reason: format!("{reason}; expected JSON as UTF-8 text") })
+        Err(AssetError::Text {
+            path: path.into(),
+            line,
+            column,
+            reason: format!("{reason}; expected JSON as UTF-8 text"),
+        })
     };
     if is_png(bytes) {
         return refuse((1, 1), "a PNG picture");

@@ -7,7 +7,8 @@ use glam::{UVec3, Vec4};
 use image::RgbaImage;
 
 use crate::assets::image::{decode_png, read_file};
-use crate::error::Error;
+use crate::assets::image_number::ImageNumber;
+use crate::error::AssetError;
 use crate::formula::texture::Texture3d;
 
 /// Maximum side in voxels. 64 slices of 64 rows reach the maximum image height of 4096 pixels.
@@ -21,40 +22,47 @@ pub struct NoiseVolume {
     size: u32,
     /// Texels in order of slices, then rows.
     texels: Arc<[[u8; 4]]>,
+    number: ImageNumber,
 }
 
 impl NoiseVolume {
     /// True if both share the same memory.
     pub fn shares_memory(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.texels, &other.texels)
+        self.number() == other.number()
+    }
+
+    /// Returns the number of the image in this process. Clones have the same one, other images another.
+    pub fn number(&self) -> u64 {
+        self.number.0
     }
 
     /// One voxel of density 1/2 without a gradient: noise that changes nothing.
     pub fn even() -> Self {
-        Self { size: 1, texels: Arc::new([[128; 4]]) }
+        Self { size: 1, texels: Arc::new([[128; 4]]), number: ImageNumber::default() }
     }
 
     /// Cuts an image into slices: the image is `size` texels wide and has `size` slices below each other.
     ///
     /// # Errors
-    /// [`Error::Image`] if the image is not `size` by `size`², with `size` 1 to [`MAX_SIZE`].
-    pub fn from_image(path: &Path, picture: &RgbaImage) -> Result<Self, Error> {
+    /// [`AssetError::Image`] if the image is not `size` by `size`², with `size` 1 to [`MAX_SIZE`].
+    pub fn from_image(path: &Path, picture: &RgbaImage) -> Result<Self, AssetError> {
         let (size, height) = picture.dimensions();
         if size == 0 || size > MAX_SIZE || height != size * size {
             let reason = format!(
                 "{size}x{height} pixels are not a cube; expected slices below each other, for example 32x1024 pixels, \
                  and at most {MAX_SIZE} a side"
             );
-            return Err(Error::Image { path: path.into(), reason });
+            return Err(AssetError::Image { path: path.into(), reason });
         }
-        Ok(Self { size, texels: picture.pixels().map(|pixel| pixel.0).collect() })
+        let texels = picture.pixels().map(|pixel| pixel.0).collect();
+        Ok(Self { size, texels, number: ImageNumber::default() })
     }
 
     /// Loads a PNG file.
     ///
     /// # Errors
     /// As [`read_png`](crate::assets::image::read_png) and [`NoiseVolume::from_image`].
-    pub fn load(path: &Path) -> Result<Self, Error> {
+    pub fn load(path: &Path) -> Result<Self, AssetError> {
         Self::decode(path, &read_file(path)?)
     }
 
@@ -62,7 +70,7 @@ impl NoiseVolume {
     ///
     /// # Errors
     /// As [`decode_png`] and [`NoiseVolume::from_image`].
-    pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+    pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self, AssetError> {
         Self::from_image(path, &decode_png(path, bytes)?.to_rgba8())
     }
 

@@ -13,9 +13,10 @@ use half::f16;
 use image::DynamicImage;
 
 use crate::assets::image::{decode_color_png, read_file};
+use crate::assets::image_number::ImageNumber;
 use crate::assets::measured::Measured;
 use crate::assets::ramp_steps::largest_step;
-use crate::error::Error;
+use crate::error::AssetError;
 use crate::formula::color::linear_from_srgb;
 use crate::formula::diffuse_bake::zonal_coefficients;
 use crate::formula::ramp::sample_ramp_2d;
@@ -27,6 +28,7 @@ use crate::settings::RampFilter;
 pub struct Ramp {
     size: UVec2,
     texels: Arc<[[f16; 4]]>,
+    number: ImageNumber,
     largest_step: Measured<f32>,
     zonal: Measured<[Vec3; 3]>,
 }
@@ -44,8 +46,8 @@ impl Ramp {
             .map(|color| [color.x, color.y, color.z, 1.0].map(f16::from_f32))
             .collect();
         texels.resize((size.x * size.y) as usize, [f16::ZERO; 4]);
-        let (largest_step, zonal) = Default::default();
-        Self { size, texels: texels.into(), largest_step, zonal }
+        let (number, largest_step, zonal) = Default::default();
+        Self { size, texels: texels.into(), number, largest_step, zonal }
     }
 
     /// Converts an sRGB image of 8 or 16 bits per channel. Alpha is ignored;
@@ -62,7 +64,7 @@ impl Ramp {
     ///
     /// # Errors
     /// As [`read_color_png`](crate::assets::image::read_color_png).
-    pub fn load(path: &Path) -> Result<Self, Error> {
+    pub fn load(path: &Path) -> Result<Self, AssetError> {
         Self::decode(path, &read_file(path)?)
     }
 
@@ -70,7 +72,7 @@ impl Ramp {
     ///
     /// # Errors
     /// As [`decode_color_png`].
-    pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+    pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self, AssetError> {
         Ok(Self::from_image(&decode_color_png(path, bytes)?))
     }
 
@@ -86,7 +88,12 @@ impl Ramp {
 
     /// True if both share the same memory.
     pub fn shares_memory(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.texels, &other.texels)
+        self.number() == other.number()
+    }
+
+    /// Returns the number of the image in this process. Clones have the same one, other images another.
+    pub fn number(&self) -> u64 {
+        self.number.0
     }
 
     /// Returns the size of the texels, bytes.

@@ -78,7 +78,9 @@ pub(super) fn alpha_bounds_texel(texels: &[[u8; 4]], size: u32) -> AlphaBoundsTe
         let in_row = in_row.fold(0, |all, (_, columns)| all | columns);
         let [top, bottom] = cells(y);
         alpha_bounds.cells |= (top..=bottom).fold(0, |all, row| all | in_row << (8 * row));
-        let ([left, _], [_, right], [top, bottom]) = (found(first as u32), found(last as u32), found(y));
+        let [left, _] = found(first as u32);
+        let [_, right] = found(last as u32);
+        let [top, bottom] = found(y);
         let of_row = [1.0 - 2.0 * left, 2.0 * bottom - 1.0, 2.0 * right - 1.0, 1.0 - 2.0 * top];
         reach.iter_mut().zip(of_row).for_each(|(reach, of_row)| *reach = reach.max(of_row));
     }
@@ -97,7 +99,7 @@ mod tests {
     use super::*;
     use crate::formula::sprite::{sample_sprite, sprite_uv};
 
-    fn sprite(width: u32, columns: u32, (x, y): (u32, u32)) -> Sprite {
+    fn sprite(width: u32, columns: u32, x: u32, y: u32) -> Sprite {
         let mut sheet = RgbaImage::from_pixel(width, width / columns, Rgba([128, 128, 255, 0]));
         sheet.put_pixel(x, y, Rgba([128, 128, 255, 255]));
         Sprite::from_image(Path::new(""), &sheet, SpriteLayout { columns, ..SpriteLayout::default() }).unwrap()
@@ -108,11 +110,11 @@ mod tests {
         let cells = |sprite: &Sprite, level, frame| {
             alpha_bounds_texel(sprite.frame_texels(level, frame), sprite.level_size(level)).cells
         };
-        let one = sprite(64, 2, (32 + 14, 21));
+        let one = sprite(64, 2, 32 + 14, 21);
         assert_eq!(cells(&one, 0, 0), 0);
         // The footprint is texels 13.5 to 15.5 across and 20.5 to 22.5 down; a cell has four texels.
         assert_eq!(cells(&one, 0, 1), 1 << (8 * 5 + 3));
-        let beside = sprite(32, 1, (12, 21));
+        let beside = sprite(32, 1, 12, 21);
         assert_eq!(cells(&beside, 0, 0), 0b1100 << (8 * 5));
         // At level 2 a cell is one texel wide; at level 4 a quarter of a texel.
         assert_eq!(cells(&beside, 2, 0).count_ones(), 3 * 3);
@@ -140,7 +142,7 @@ mod tests {
 
     #[test]
     fn the_extent_includes_the_footprint_of_bilinear_filtering() {
-        let alpha_bounds = sprite(128, 2, (64 + 50, 14)).alpha_bounds(None);
+        let alpha_bounds = sprite(128, 2, 64 + 50, 14).alpha_bounds(None);
         let frames = |first, blend| FlipbookFrames { first, second: 1, blend };
         assert_eq!(alpha_bounds.trimmed_extent(frames(0, 0.0), 0.0), Vec4::ZERO);
         // The footprint is texels 49.45 to 51.55 across and 13.45 to 15.55 down of 64, so right of and above the middle

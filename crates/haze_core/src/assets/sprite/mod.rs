@@ -11,8 +11,9 @@ use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
 
 use crate::assets::image::{Image, decode_png, read_file};
+use crate::assets::image_number::ImageNumber;
 use crate::assets::measured::Measured;
-use crate::error::Error;
+use crate::error::AssetError;
 use crate::formula::texture::Texture2dArray;
 use alpha_bounds::{AlphaBounds, AlphaBoundsTexel, alpha_bounds_texel};
 use sprite_density::SpriteDensity;
@@ -43,6 +44,7 @@ pub struct Sprite {
     frame_count: u32,
     /// Mip levels. Each level holds its frames in order, row by row from the top.
     levels: Vec<Arc<[[u8; 4]]>>,
+    number: ImageNumber,
     alpha_bounds: Measured<Vec<AlphaBoundsTexel>>,
     density: Measured<SpriteDensity>,
     detail: Measured<SpriteDetail>,
@@ -54,17 +56,23 @@ pub const MAX_FRAMES: u32 = 256;
 impl Sprite {
     /// True if both share the same memory.
     pub fn shares_memory(&self, other: &Self) -> bool {
-        self.levels.len() == other.levels.len() && self.levels.iter().zip(&other.levels).all(|(a, b)| Arc::ptr_eq(a, b))
+        self.number() == other.number()
+    }
+
+    /// Returns the number of the image in this process. Clones have the same one, other images another.
+    pub fn number(&self) -> u64 {
+        self.number.0
     }
 
     /// Cuts an image into frames and builds their mip levels.
     ///
     /// # Errors
-    /// [`Error::Image`] if the layout does not fit the image, frames are not square, or a frame is not clear at its
+    /// [`AssetError::Image`] if the layout does not fit the image, frames are not square, or a frame is not clear at its
     /// border (the sprite would be visible as a square).
-    pub fn from_image(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Self, Error> {
-        let error = |reason: String| Err(Error::Image { path: path.into(), reason });
-        let (columns, rows) = (layout.columns, layout.rows);
+    pub fn from_image(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Self, AssetError> {
+        let error = |reason: String| Err(AssetError::Image { path: path.into(), reason });
+        let columns = layout.columns;
+        let rows = layout.rows;
         let (width, height) = picture.dimensions();
         if !columns.checked_mul(rows).is_some_and(|frames| (1..=MAX_FRAMES).contains(&frames)) {
             return error(format!("{columns}x{rows} frames; expected 1 to {MAX_FRAMES} frames"));
@@ -103,7 +111,7 @@ impl Sprite {
     ///
     /// # Errors
     /// As [`read_png`](crate::assets::image::read_png) and [`Sprite::from_image`].
-    pub fn load(path: &Path, layout: SpriteLayout) -> Result<Self, Error> {
+    pub fn load(path: &Path, layout: SpriteLayout) -> Result<Self, AssetError> {
         Self::decode(path, &read_file(path)?, layout)
     }
 
@@ -111,14 +119,15 @@ impl Sprite {
     ///
     /// # Errors
     /// As [`decode_png`] and [`Sprite::from_image`].
-    pub fn decode(path: &Path, bytes: &[u8], layout: SpriteLayout) -> Result<Self, Error> {
+    pub fn decode(path: &Path, bytes: &[u8], layout: SpriteLayout) -> Result<Self, AssetError> {
         Self::from_image(path, &decode_png(path, bytes)?.to_rgba8(), layout)
     }
 
     /// Builds the mip levels of frames below each other, `size` texels a side each.
     pub fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
-        let (alpha_bounds, density, detail) = Default::default();
-        let mut sprite = Self { size, frame_count, levels: vec![texels.into()], alpha_bounds, density, detail };
+        let (number, alpha_bounds, density, detail) = Default::default();
+        let levels = vec![texels.into()];
+        let mut sprite = Self { size, frame_count, levels, number, alpha_bounds, density, detail };
         for level in 1..=size.ilog2() {
             let coarse = sprite.level_size(level);
             let fine = sprite.level_size(level - 1);
@@ -126,7 +135,8 @@ impl Sprite {
             let mut texels = Image::new(UVec2::new(coarse, coarse * frame_count), [0; 4]);
             texels.for_each(|at, texel| {
                 let near = |dx: u32, dy: u32| {
-                    let (x, y) = ((2 * at.x + dx).min(fine - 1), (2 * (at.y % coarse) + dy).min(fine - 1));
+                    let x = (2 * at.x + dx).min(fine - 1);
+                    let y = (2 * (at.y % coarse) + dy).min(fine - 1);
                     sprite.texel(level - 1, at.y / coarse, x, y)
                 };
                 *texel = average([near(0, 0), near(1, 0), near(0, 1), near(1, 1)]);

@@ -39,7 +39,8 @@ impl SpriteDensity {
         let mean_alpha = mean(|alpha| alpha);
         let opaque = mean(|alpha| -(1.0 - alpha.min(MAX_ALPHA)).ln());
         // The depth at amount 1 grows with the peak: bisects.
-        let (mut low, mut high) = (0.0, MAX_ALPHA);
+        let mut low = 0.0;
+        let mut high = MAX_ALPHA;
         for _ in 0..24 {
             let middle = 0.5 * (low + high);
             if mean_optical_depth(1.0, mean_alpha, middle) < opaque {
@@ -55,7 +56,8 @@ impl SpriteDensity {
 
 /// Standard deviation of the optical depth from the sprites' centers, along an axis, over that of a bump of radius 1.
 fn reach(side: u32, texels: &[[u8; 4]]) -> f32 {
-    let (mut total, mut squares) = (0.0_f64, 0.0_f64);
+    let mut total = 0.0_f64;
+    let mut squares = 0.0_f64;
     for (texel, [.., alpha]) in (0..).zip(texels) {
         let depth = -(1.0 - (f32::from(*alpha) / 255.0).min(MAX_ALPHA)).ln();
         let place = [texel % side, texel / side % side].map(|at| (at as f32 + 0.5) / side as f32 * 2.0 - 1.0);
@@ -104,7 +106,8 @@ mod tests {
                 // Any alpha may meet any density.
                 let met = alphas.iter().zip(densities.iter().cycle().step_by(7));
                 let kept: f32 = met.map(|(alpha, density)| eroded(*alpha, density - 0.5, erosion)).sum();
-                let (kept, computed) = (kept / alphas.iter().sum::<f32>(), kept_share(eroded_share, erosion));
+                let kept = kept / alphas.iter().sum::<f32>();
+                let computed = kept_share(eroded_share, erosion);
                 assert!((kept - computed).abs() < 0.03, "{name} at {erosion}: {kept}, computed {computed}");
             }
         }

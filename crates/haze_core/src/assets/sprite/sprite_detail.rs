@@ -70,7 +70,8 @@ impl SpriteDetail {
 /// Mean squares of the difference between a frame and one of its levels, upsampled: of the amount, and of the normal times the
 /// amount.
 fn squared_loss(sprite: &impl Texture2dArray, frame: u32, level: u32) -> [f64; 2] {
-    let (size, coarse) = (sprite.dimensions(0), sprite.dimensions(level));
+    let size = sprite.dimensions(0);
+    let coarse = sprite.dimensions(level);
     let premultiplied = |level, x: u32, y: u32| {
         let texel = sprite.load(UVec2::new(x, y), frame, level);
         ((texel.xyz() * 2.0 - 1.0) * texel.w).extend(texel.w)
@@ -78,7 +79,8 @@ fn squared_loss(sprite: &impl Texture2dArray, frame: u32, level: u32) -> [f64; 2
     let scale = coarse as f32 / size as f32;
     let bilinear = |at: UVec2| {
         let place = ((at.as_vec2() + 0.5) * scale - 0.5).clamp(Vec2::ZERO, Vec2::splat(coarse as f32 - 1.0));
-        let (low, share) = (place.as_uvec2(), place.fract());
+        let low = place.as_uvec2();
+        let share = place.fract();
         let high = (low + 1).min(UVec2::splat(coarse - 1));
         let row = |y| premultiplied(level, low.x, y).lerp(premultiplied(level, high.x, y), share.x);
         row(low.y).lerp(row(high.y), share.y)

@@ -103,7 +103,8 @@ fn extreme_sprites_and_lights_give_finite_depths() {
     for (slot, block, expected) in
         [(0.0, 0.0, 0.0), (1.0, 0.0, 5.0), (2.0, 0.0, 6.0), (3.0, 0.0, 7.0), (4.0, 1.0, 5.0), (15.0, 4.0, 7.0)]
     {
-        let (select_slot, of_block) = (select_slot(slot, vec3(5.0, 6.0, 7.0)), block_of_slot(slot));
+        let select_slot = select_slot(slot, vec3(5.0, 6.0, 7.0));
+        let of_block = block_of_slot(slot);
         assert!((select_slot - expected).abs() < 1e-6 && (of_block - block).abs() < 1e-6, "{slot}");
     }
 }

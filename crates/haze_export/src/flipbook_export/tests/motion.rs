@@ -57,7 +57,8 @@ fn image_after(shot: &Shot, frames: &Frames, count: f32) -> RgbaImage {
 #[test]
 fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() {
     // Eight frames per second: smoke moves by some pixels.
-    let (shot, frames) = (shot("spell"), frames(2, 8.0));
+    let shot = shot("spell");
+    let frames = frames(2, 8.0);
     let between = image_after(&shot, &frames, 0.5);
     for engine in ENGINES {
         let flipbook = Flipbook::new(&shot, &frames, options(engine));
@@ -79,7 +80,8 @@ fn motion_vectors_predict_the_next_frame_and_the_time_between_in_every_engine() 
 
 #[test]
 fn motion_vectors_predict_flames_with_sparks_at_times_to_which_they_are_not_fitted_too() {
-    let (shot, frames) = (shot("campfire"), frames(2, 24.0));
+    let shot = shot("campfire");
+    let frames = frames(2, 24.0);
     let flipbook = Flipbook::new(&shot, &frames, options(Engine::Godot));
     let mixed = MixedFrames::new(&flipbook, Engine::Godot, [0, 1]);
     for share in [0.25, 0.5, 0.75] {
@@ -91,7 +93,8 @@ fn motion_vectors_predict_flames_with_sparks_at_times_to_which_they_are_not_fitt
 
 #[test]
 fn motion_vectors_lead_from_the_last_frame_of_a_loop_to_the_first() {
-    let (shot, frames) = (shot("spell"), frames(4, 8.0));
+    let shot = shot("spell");
+    let frames = frames(4, 8.0);
     let flipbook = Flipbook::new(&shot, &frames, FlipbookOptions { loop_fade: 2, ..options(Engine::Godot) });
     let mixed = MixedFrames::new(&flipbook, Engine::Godot, [3, 0]);
     let expected = image_after(&shot, &frames, 3.5);
@@ -101,13 +104,15 @@ fn motion_vectors_lead_from_the_last_frame_of_a_loop_to_the_first() {
 
 #[test]
 fn motion_vectors_stay_inside_the_frame() {
-    let (mut shot, frames) = (shot("column"), frames(2, 8.0));
+    let mut shot = shot("column");
+    let frames = frames(2, 8.0);
     // Smoke at the borders.
     shot.preset.camera.fov = 20.0;
     let flipbook = Flipbook::new(&shot, &frames, options(Engine::Unreal));
     let scale = flipbook.numbers.motion_scale;
     // Codes are half a step of 8 bits off; rest is between two of them.
-    let (inside, step) = (0.5 / SIDE as f32, scale / 255.0 + 1.0e-6);
+    let inside = 0.5 / SIDE as f32;
+    let step = scale / 255.0 + 1.0e-6;
     let mut longest: f32 = 0.0;
     for index in 0..2 {
         let motion = flipbook.frame(sheets::MOTION, index);

@@ -101,7 +101,8 @@ fn a_drag_is_shown_at_once_and_written_at_its_end() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let before = (folder.recipe(), shown(&mut harness));
-    let (from, width) = (harness.get_by_label("stop 3").rect().center(), strip(&harness).width());
+    let from = harness.get_by_label("stop 3").rect().center();
+    let width = strip(&harness).width();
     harness.drag_at(from);
     for part in 1..=4 {
         harness.hover_at(from - Vec2::new(0.2 * width * part as f32, 0.0));
@@ -135,7 +136,8 @@ fn a_cancelled_drag_is_no_step() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let before = (folder.recipe(), shown(&mut harness));
-    let (from, width) = (harness.get_by_label("stop 3").rect().center(), strip(&harness).width());
+    let from = harness.get_by_label("stop 3").rect().center();
+    let width = strip(&harness).width();
     harness.state_mut().session.view.debug_view = DebugView::Diffuse;
     harness.drag_at(from);
     for part in 1..=4 {

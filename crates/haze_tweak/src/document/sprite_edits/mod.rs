@@ -6,9 +6,10 @@ pub mod sprite_source;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use haze::{Error, MaterialAssets};
+use haze::MaterialAssets;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
 use haze_preset::{AssetFolders, MaterialSources, Preset};
 
 use super::Document;
@@ -84,7 +85,8 @@ impl SpriteEdits {
 
     /// Requests a copy of a built-in sprite for a system. A built-in preset must be saved first.
     pub fn request_copy(&mut self, system: usize, name: &str, is_built_in: bool) {
-        (self.wanted, self.needs_saved_preset) = (Some((system, name.to_owned())), is_built_in);
+        self.wanted = Some((system, name.to_owned()));
+        self.needs_saved_preset = is_built_in;
     }
 
     /// Forgets the requested copy.
@@ -95,7 +97,8 @@ impl SpriteEdits {
     /// Writes the requested copy and names it in the preset, as soon as the preset is a file.
     pub fn write_requested_copy(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, name)) = self.wanted.take_if(|_| !document.is_built_in()) else { return Ok(()) };
-        let (recipe, file) = (recipe_of_built_in(&name)?, copy(&name, document.path())?);
+        let recipe = recipe_of_built_in(&name)?;
+        let file = copy(&name, document.path())?;
         let picture = document.path().with_file_name(&file);
         if let Some(system) = document.preset.systems.get_mut(system) {
             system.material.detail = detail_of(Path::new(&file)).display().to_string();
@@ -167,7 +170,8 @@ impl SpriteEdits {
 
     /// Forgets all sprites, because the document is replaced. Bakes in progress are still written.
     pub fn forget(&mut self) {
-        (self.known, self.wanted) = (BTreeMap::new(), None);
+        self.known = BTreeMap::new();
+        self.wanted = None;
     }
 
     /// Returns true while files do not yet match the recipes.
@@ -227,13 +231,16 @@ impl EditedSprite {
     fn take(&mut self, name: &str, job: u64, what: BakeResult, document: &mut Document) -> Result<(), Error> {
         match what {
             BakeResult::Read(SpriteState { source, findings, broken }, stamps) => {
-                (self.stamps, self.broken) = (stamps, broken);
+                self.stamps = stamps;
+                self.broken = broken;
                 if self.broken.is_some() && matches!(self.source, SpriteOrigin::Recipe(_)) {
                     // The last valid recipe is kept.
                     return Ok(());
                 }
                 self.written = if let SpriteOrigin::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
-                (self.source, self.findings, self.live) = (source, findings, None);
+                self.source = source;
+                self.findings = findings;
+                self.live = None;
                 // A change by another program takes precedence.
                 document.recipes.sprites.forget(name);
             }
@@ -242,7 +249,8 @@ impl EditedSprite {
                 let baked = baked?;
                 let is_better = |live: &Baked| self.live_is_full && live.recipe == baked.recipe;
                 if !self.live.as_ref().is_some_and(is_better) {
-                    (self.live, self.live_is_full) = (Some(baked), false);
+                    self.live = Some(baked);
+                    self.live_is_full = false;
                 }
             }
             BakeResult::Full(full) => {
@@ -251,7 +259,8 @@ impl EditedSprite {
                 // Also set after a write error; the next change tries again.
                 self.written = baked.as_ref().map(|baked| baked.recipe.clone()).or(order.map(|order| order.recipe));
                 self.stamps = stamps;
-                (self.live, self.live_is_full) = (baked, true);
+                self.live = baked;
+                self.live_is_full = true;
                 self.findings = written?;
             }
             BakeResult::GivenUp => {

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_core::assets::image::decode_png;
 use haze_core::assets::sprite::{Sprite, SpriteLayout};
+use haze_core::error::Error;
 use image::DynamicImage;
 
 use super::sprite_source::{BakeSprite, BakedFiles, NotBaked, ReadSprite, SpriteState, Stamps, stamps, write};
@@ -102,7 +103,8 @@ impl SpriteBakeJob {
     pub fn coarse(&mut self, recipe: SpriteRecipe) -> u64 {
         let job = self.number();
         let [size, frames] = COARSE;
-        let (columns, rows) = (recipe.columns.min(frames), recipe.rows.min(frames));
+        let columns = recipe.columns.min(frames);
+        let rows = recipe.rows.min(frames);
         let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
         let layout = small.layout();
         let bake = BakeSprite { recipe: small, picture: "sprite.png".into() };
@@ -126,7 +128,8 @@ impl SpriteBakeJob {
     /// Bakes a recipe in full and writes it, if the files still have the stamps `before`.
     pub fn full(&mut self, recipe: SpriteRecipe, picture: PathBuf, before: Stamps) -> BakeOrder {
         let job = self.number();
-        let (is_stopped, frames) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
+        let is_stopped = Arc::new(AtomicBool::new(false));
+        let frames = Arc::new(AtomicU32::new(0));
         let order =
             BakeOrder { job, recipe: recipe.clone(), is_stopped: Arc::clone(&is_stopped), frames: Arc::clone(&frames) };
         let go_on = move || !is_stopped.load(Ordering::Relaxed);
@@ -163,7 +166,7 @@ impl Baked {
     fn new(recipe: SpriteRecipe, layout: SpriteLayout, path: &Path, files: &BakedFiles) -> Result<Self, Error> {
         let sprite = |bytes: &[u8]| {
             let sheet = decode_png(path, bytes).map(DynamicImage::into_rgba8)?;
-            Sprite::from_image(path, &sheet, layout)
+            Sprite::from_image(path, &sheet, layout).map_err(Error::from)
         };
         Ok(Self { sprite: sprite(&files.picture)?, detail: sprite(&files.detail)?, recipe })
     }

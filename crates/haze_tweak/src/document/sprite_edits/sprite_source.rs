@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::{Error, FieldError};
+use haze::FieldError;
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
 use haze_author::sprite::lint::lint_sprite;
 use haze_core::assets::image::decode_png;
 use haze_core::assets::json;
 use haze_core::assets::sprite::SpriteLayout;
-use haze_core::error::builtin_path;
+use haze_core::error::{Error, builtin_path};
 use haze_preset::builtin::{self, Builtin};
 use haze_preset::encode_baked_png;
 use image::RgbaImage;
@@ -93,7 +93,8 @@ impl PortableJob for ReadSprite {
 type Found = (SpriteOrigin, Vec<String>, Option<String>);
 
 fn built_in(found: &Builtin) -> Result<Found, Error> {
-    let (path, recipe) = (builtin_path(found.name), recipe_of_built_in(found.name)?);
+    let path = builtin_path(found.name);
+    let recipe = recipe_of_built_in(found.name)?;
     let findings = findings(&path, &decode_png(&path, found.bytes)?.to_rgba8(), recipe.layout());
     Ok((SpriteOrigin::BuiltIn(recipe), findings, None))
 }
@@ -205,7 +206,8 @@ pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: &BakedFiles) -> Resul
 
 /// Returns the recipe of a built-in sprite.
 pub fn recipe_of_built_in(name: &str) -> Result<SpriteRecipe, Error> {
-    json::parse(&builtin_path(name), builtin::find(builtin::SPRITES, name).map_or("", |builtin| builtin.recipe))
+    let recipe = builtin::find(builtin::SPRITES, name).map_or("", |builtin| builtin.recipe);
+    Ok(json::parse(&builtin_path(name), recipe)?)
 }
 
 /// Writes a copy of a built-in sprite beside a preset under a free name, and returns the name.

@@ -37,7 +37,8 @@ impl Folder {
         let folder = Self(tempfile::tempdir().unwrap());
         let mut preset = Preset::load("column").unwrap();
         let material = &mut preset.systems[0].material;
-        (material.sprite, material.detail) = ("mine.png".into(), "mine.detail.png".into());
+        material.sprite = "mine.png".into();
+        material.detail = "mine.detail.png".into();
         material.columns = 2;
         folder.write_preset(&preset);
         std::fs::write(folder.path("mine.sprite.json"), small().to_json()).unwrap();
@@ -65,7 +66,8 @@ impl Folder {
 
     /// Returns true if the image equals the one that the recipe makes.
     fn is_baked(&self) -> bool {
-        let (recipe, sprite) = (self.recipe(), self.sprite());
+        let recipe = self.recipe();
+        let sprite = self.sprite();
         sprite == Sprite::from_image("".as_ref(), &baked(&recipe).picture, recipe.layout()).ok()
     }
 
@@ -138,7 +140,8 @@ fn has_error(harness: &Harness<'_, Window>) -> bool {
 fn a_slider_shows_a_coarse_bake_then_the_full_one_which_is_written_and_undone() {
     let folder = Folder::new();
     let mut harness = folder.open();
-    let (before, sprite) = (folder.recipe(), used(&harness));
+    let before = folder.recipe();
+    let sprite = used(&harness);
     let brightness = [shown(&mut harness, "viewport"), shown(&mut harness, "Flipbook")];
     let rect = slider(&harness, "Erosion").rect();
     let at = |share: f32| rect.left_center() + Vec2::new(share * rect.width(), 0.0);
@@ -203,7 +206,8 @@ fn dependent_numbers_are_clamped_to_their_new_ranges() {
 fn a_broken_recipe_is_reported_with_its_line_and_the_last_valid_one_stays() {
     let folder = Folder::new();
     let mut harness = folder.open();
-    let (good, sprite) = (std::fs::read_to_string(folder.path("mine.sprite.json")).unwrap(), used(&harness));
+    let good = std::fs::read_to_string(folder.path("mine.sprite.json")).unwrap();
+    let sprite = used(&harness);
     std::fs::write(folder.path("mine.sprite.json"), good.replace("\"erosion\": ", "\"erosion\": x")).unwrap();
     let is_said = |harness: &Harness<'_, Window>| harness.query_by_label_contains("mine.sprite.json:").is_some();
     until(&mut harness, is_said);

@@ -3,13 +3,14 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Key, Modifiers, PointerButton, Theme, Vec2};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Role, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use haze_preset::{Preset, SceneName};
 use tempfile::TempDir;
 
 use super::*;
+use crate::platform::render_job::Alpha;
 use crate::session::macro_param::THICKNESS;
 use crate::window::{Window, testing};
 
@@ -109,21 +110,38 @@ fn frames_are_written_as_sequence_flipbook_and_gif() {
 }
 
 #[test]
-fn the_alpha_of_a_flipbook_for_an_engine_is_chosen_in_the_dialog() {
+fn alpha_light_of_fire_loop_and_maps_of_a_flipbook_for_an_engine_are_chosen_in_the_dialog() {
     let mut bench = bench();
+    bench.window.state_mut().session.document.preset.systems[0].settings.fire.intensity = 2.0;
     let job = &mut bench.window.state_mut().export_job;
     job.options.frame_size = UVec2::splat(16);
-    job.options.cells = UVec2::ONE;
-    job.options.last = 0;
+    job.options.cells = UVec2::new(1, 2);
+    job.options.last = 1;
     job.product = ExportKind::EngineFlipbook;
     job.is_open = true;
     // The dialog moves until it fits into the window.
     bench.window.run_steps(4);
-    bench.window.get_by_label("Premultiplied").click();
+    for name in ["Premultiplied", "Separate"] {
+        bench.window.get_by_label(name).click();
+        bench.window.run_steps(2);
+    }
+    bench.window.get_by_role_and_label(Role::CheckBox, "Six-way maps").click();
     bench.window.run_steps(2);
+    bench.window.get_by_role_and_label(Role::SpinButton, "Loop").click();
+    bench.window.run_steps(2);
+    bench.window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    bench.window.event(Event::Text("9".into()));
+    bench.window.run_steps(2);
+    bench.window.key_press(Key::Enter);
+    bench.window.run_steps(2);
+    assert_eq!(bench.window.state().export_job.options.engine_flipbook.loop_fade, 1, "less than the number of frames");
     let names = bench.make(ExportKind::EngineFlipbook);
-    let numbers = fs::read_to_string(bench.folder.path().join(&names[0]).join("flipbook.json")).unwrap();
-    assert!(numbers.contains("\"alpha\": \"premultiplied\""), "{numbers}");
+    let folder = bench.folder.path().join(&names[0]);
+    let numbers = fs::read_to_string(folder.join("flipbook.json")).unwrap();
+    for line in ["\"alpha\": \"premultiplied\"", "\"emission\": \"separate\"", "\"loop\": true"] {
+        assert!(numbers.contains(line), "{numbers}");
+    }
+    assert!(folder.join("six_way_2.png").exists());
 }
 
 #[test]
@@ -201,7 +219,8 @@ fn a_long_export_shows_progress_and_stops_and_a_new_sheet_replaces_the_old() {
         let part = bench.window.get_by_label("Image of the sheet").rect();
         testing::brightness(&testing::picture(&mut bench.window), part)
     };
-    let (dark, bright) = (shown(-3.0), shown(2.0));
+    let dark = shown(-3.0);
+    let bright = shown(2.0);
     assert!(bright > dark + 5.0, "{dark} {bright}");
 }
 
@@ -220,7 +239,7 @@ fn sheets_are_shown_and_saved_on_request() {
     bench.window.run_steps(2);
     assert!(bench.names()[0].contains("seeds"), "{:?}", bench.names());
     for (product, count) in
-        [(ExportKind::DebugView, 9), (ExportKind::Values("systems[0].settings.accumulate.scale".into()), 1)]
+        [(ExportKind::DebugView, 9), (ExportKind::Values("systems[0].settings.accumulate.downscale".into()), 1)]
     {
         bench.make(product);
         bench.until(|window| window.export_job.sheet.is_some());
@@ -309,9 +328,9 @@ fn values_of_a_field_cover_its_slider_or_surround_its_value_and_are_valid() {
     assert_eq!(labels("systems[0].emitter.rate"), rates);
     assert_eq!(labels("systems[0].emitter.seed").len(), 5);
     assert!(labels("systems[0].emitter.wind").is_empty());
-    assert_eq!(labels("systems[0].settings.sprite.freeze_animation").len(), 2);
+    assert_eq!(labels("systems[0].settings.debug.freeze_animation").len(), 2);
     assert!(labels("systems[0].settings.path").contains(&"forward".to_owned()));
-    assert!(labels("systems[0].settings.accumulate.scale").iter().all(|label| label.parse::<u32>().unwrap() <= 16));
+    assert!(labels("systems[0].settings.accumulate.downscale").iter().all(|label| label.parse::<u32>().unwrap() <= 16));
     assert!(labels("systems[0].name").is_empty());
     let thicker = variations(&shot, "systems[0].thickness").into_iter().map(|(label, shot)| {
         let of = &shot.preset.systems[0];

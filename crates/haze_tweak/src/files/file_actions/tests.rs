@@ -143,7 +143,8 @@ fn an_unreadable_file_is_reported_once_and_the_document_stays() {
     fs::File::create(&big).unwrap().set_len(10 << 30).unwrap();
     let picture = bench.path("picture.png");
     fs::write(&picture, "no picture").unwrap();
-    let (folder, gone) = (bench.folder.path().to_owned(), bench.path("gone.json"));
+    let folder = bench.folder.path().to_owned();
+    let gone = bench.path("gone.json");
     for (path, expected) in [
         (&folder, "a folder, not a file"),
         (&big, "10737418240 bytes"),
@@ -171,7 +172,9 @@ fn long_and_unusual_names_do_not_change_the_layout() {
     let name = format!("a\nname\t{}", "of many words ".repeat(300));
     let preset = &mut bench.session().document.preset;
     preset.systems.push(preset.systems[0].clone());
-    (preset.name, preset.systems[0].name, preset.systems[1].name) = (name.clone(), name.clone(), name);
+    preset.name = name.clone();
+    preset.systems[0].name = name.clone();
+    preset.systems[1].name = name;
     bench.window.run_steps(3);
     assert_eq!(find(&bench), before);
     let path = bench.path("a\nb.json");

@@ -146,7 +146,8 @@ fn a_saved_ramp_is_shown_and_a_broken_one_is_reported_until_it_is_fixed() {
 #[test]
 fn a_shared_ramp_is_reloaded() {
     let mut bench = Bench::new(SIZE);
-    let (team, own) = (bench.path("team"), bench.pictures());
+    let team = bench.path("team");
+    let own = bench.pictures();
     fs::create_dir(&team).unwrap();
     write_ramp(&team, 90);
     fs::rename(team.join("mine.png"), team.join("theirs.png")).unwrap();
@@ -250,7 +251,7 @@ fn exports_use_the_shaders_of_the_watched_folder() {
     let export = |bench: &mut Bench| {
         let window = bench.window.state_mut();
         window.export_job.options.size = glam::UVec2::new(96, 54);
-        window.export_job.order(ExportKind::Image, &mut window.session);
+        window.export_job.start(ExportKind::Image, &mut window.session);
         let path = window.export_job.take_question();
         window.export_job.answer(path, &mut window.session);
         bench.until(|bench| bench.window.state().export_job.progress().is_none());
@@ -309,7 +310,8 @@ fn particle_files_are_reloaded_and_the_last_valid_ones_stay() {
         let cache = bench.session().particle_frames().remove(0);
         cache.map_or(0, |cache| cache.frames().iter().map(|(_, frame)| frame.particles().len()).sum::<usize>())
     };
-    let set = |bench: &mut Bench, path: &str| bench.session().document.preset.systems[0].cache.path = path.into();
+    let set =
+        |bench: &mut Bench, path: &str| bench.session().document.preset.systems[0].particle_files.path = path.into();
     let without = bench.shown();
     write(1, "x,y,z\n0,1,0\n");
     set(&mut bench, "smoke_####.csv");
@@ -326,7 +328,7 @@ fn particle_files_are_reloaded_and_the_last_valid_ones_stay() {
     bench.until(|bench| bench.said().is_some());
     let said = bench.said().unwrap();
     assert!(
-        said.contains("my.json: systems[0].cache.path: ") && said.contains("smoke_0002.csv:2:3: y: \"one\""),
+        said.contains("my.json: systems[0].particle_files.path: ") && said.contains("smoke_0002.csv:2:3: y: \"one\""),
         "{said}"
     );
     assert_eq!(count(&mut bench), 5);

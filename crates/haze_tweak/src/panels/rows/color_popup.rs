@@ -66,7 +66,8 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>) -> Res
 /// edits.
 fn beside_row<'a>(ui: &Ui, popup: Popup<'a>, button: egui::Rect) -> Popup<'a> {
     let Some(size) = popup.get_expected_size() else { return popup };
-    let (window, gap) = (ui.ctx().content_rect(), ui.spacing().item_spacing.x);
+    let window = ui.ctx().content_rect();
+    let gap = ui.spacing().item_spacing.x;
     let has_room = button.bottom() + gap + size.y <= window.bottom() || button.top() - gap - size.y >= window.top();
     let left = ui.clip_rect().left() - 2.0 * gap - size.x;
     if has_room || left < window.left() {
@@ -154,7 +155,8 @@ fn picker(ui: &mut Ui, value: &mut Vec3) {
 
 /// Draws the sRGB code of the shown color. Typed text is used when the field loses focus; text that is no code is dropped.
 fn hex(ui: &mut Ui, value: &mut Vec3) {
-    let (peak, code) = (shown_peak(*value), shown_code(*value));
+    let peak = shown_peak(*value);
+    let code = shown_code(*value);
     let id = ui.scope_id().with("hex");
     let mut text = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| String::from(code));
     let label = ui.label("Hex");

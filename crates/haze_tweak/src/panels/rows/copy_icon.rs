@@ -21,7 +21,8 @@ fn draw(request: &GlyphRasterizerRequest<'_>) -> Option<RasterizedGlyph> {
     }
     let size = request.font_size_px.max(4.0);
     let side = ((OFFSET + SHEET) * size).ceil() as usize;
-    let (offset, sheet) = ((OFFSET * size).round() as usize, (SHEET * size).floor() as usize);
+    let offset = (OFFSET * size).round() as usize;
+    let sheet = (SHEET * size).floor() as usize;
     let mut image = ColorImage::filled([side, side], Color32::TRANSPARENT);
     for (start, is_upper) in [(0, false), (offset, true)] {
         let end = (start + sheet).min(side);

@@ -97,7 +97,8 @@ impl Plot {
 
 fn paint(ui: &Ui, plot: &Plot, value: &Curve, hover: Option<Pos2>) {
     let visuals = ui.visuals();
-    let (faint, ink) = (visuals.weak_text_color(), visuals.text_color());
+    let faint = visuals.weak_text_color();
+    let ink = visuals.text_color();
     let painter = ui.painter();
     let frame = plot.rect.expand(RADIUS + 1.0);
     painter.rect_filled(frame, 2.0, visuals.extreme_bg_color);

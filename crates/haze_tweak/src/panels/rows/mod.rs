@@ -64,7 +64,8 @@ impl Row<'_> {
         let has_keys = self.key.is_some_and(|key| key.state != KeyState::None);
         let background = ui.painter().add(egui::Shape::Noop);
         let row = ui.horizontal(|ui| {
-            let (width, height) = (name_width(ui), ui.spacing().interact_size.y);
+            let width = name_width(ui);
+            let height = ui.spacing().interact_size.y;
             let tooltip = "Differs from the saved preset. Click to reset.";
             if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("Reset {}", display_name(self.name))) {
                 request = Some(RowRequest::Reset);
@@ -86,7 +87,8 @@ impl Row<'_> {
                     ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
                 },
             );
-            let (place, name) = (place.response.rect, place.inner.on_hover_text(self.hint()));
+            let name = place.inner.on_hover_text(self.hint());
+            let place = place.response.rect;
             if name.double_clicked() {
                 request = Some(RowRequest::Reset);
             }
@@ -168,7 +170,8 @@ fn name_width(ui: &Ui) -> f32 {
 
 /// Draws a note below a control. `marks`: number of marks that rows have before their names.
 pub fn note(ui: &mut Ui, marks: f32, content: impl FnOnce(&mut Ui)) {
-    ui.horizontal(|ui| {
+    // A line that is too long would widen a narrow panel.
+    ui.horizontal_wrapped(|ui| {
         ui.add_space(marks * MARK + name_width(ui) + (marks + 1.0) * ui.spacing().item_spacing.x);
         content(ui);
     });

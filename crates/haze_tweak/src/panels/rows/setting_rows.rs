@@ -7,6 +7,7 @@ use eframe::egui::{self, Ui};
 use glam::Vec3;
 use haze_author::preset::Tooltips;
 use haze_core::settings::{BackdropKind, Choice, Curve, FieldValue, FieldVisitor, Fields, ImageRole, field_path};
+use haze_preset::backdrop_endings;
 
 use super::curve_editor;
 use super::key_mark::KeyMarks;
@@ -105,8 +106,16 @@ pub fn is_at(field: &str, path: &str) -> bool {
     field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// One field of a struct: title that replaces its name, relative path, and usual range of its slider.
-pub type LabelledField<'a> = (&'a str, &'a str, UsualRange);
+/// One field of a struct.
+#[derive(Clone, Copy)]
+pub struct LabelledField<'a> {
+    /// Replaces its name.
+    pub title: &'a str,
+    /// Path relative to the struct.
+    pub path: &'a str,
+    /// Usual range of its slider.
+    pub usual: UsualRange,
+}
 
 /// Draws one field of the struct at `path`.
 pub fn show_named(
@@ -114,10 +123,9 @@ pub fn show_named(
     context: &mut RowContext<'_>,
     path: &[FieldStep],
     fields: &mut dyn Fields,
-    named: LabelledField<'_>,
+    field: LabelledField<'_>,
 ) {
-    let (title, wanted, usual) = named;
-    let only = Some(Only { title, wanted, usual, depth: path.len() });
+    let only = Some(Only { field, depth: path.len() });
     fields.visit(&mut Rows { ui, context, path: path.to_vec(), is_wanted: &|_| true, only });
 }
 
@@ -141,18 +149,33 @@ struct Rows<'a, 'd, 'u> {
 /// Selection of a single field.
 #[derive(Clone, Copy)]
 struct Only<'a> {
-    title: &'a str,
-    /// Path relative to the struct that `depth` steps lead to.
-    wanted: &'a str,
-    usual: UsualRange,
+    field: LabelledField<'a>,
+    /// Number of steps to the struct of the field.
     depth: usize,
+}
+
+/// Properties of a row that depend on the kind of its field.
+#[derive(Clone, Copy)]
+struct RowKind<'a> {
+    unit: &'a str,
+    /// Label of the button that makes a sheet; `None` for no button.
+    sheet: Option<&'static str>,
+    /// True if the field can have keyframes.
+    has_keys: bool,
+}
+
+impl RowKind<'_> {
+    /// Field without a unit that can have keyframes.
+    const ANIMATED: Self = Self { unit: "", sheet: None, has_keys: true };
+    /// Field that stays the same over time.
+    const FIXED: Self = Self { unit: "", sheet: None, has_keys: false };
 }
 
 impl Rows<'_, '_, '_> {
     fn row(
         &mut self,
         name: &'static str,
-        (unit, sheet, has_keys): (&str, Option<&'static str>, bool),
+        RowKind { unit, sheet, has_keys }: RowKind<'_>,
         control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
     ) {
         if !(self.is_wanted)(name) {
@@ -163,12 +186,12 @@ impl Rows<'_, '_, '_> {
         let plain = self.path.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
         let below = self.only.map(|only| field_path(&self.path[only.depth..]));
         self.path.pop();
-        if self.only.zip(below).is_some_and(|(only, path)| path != only.wanted) {
+        if self.only.zip(below).is_some_and(|(only, path)| path != only.field.path) {
             return;
         }
         let context = &mut *self.context;
         let second = context.second(&path, unit);
-        let title = self.only.map_or(name, |only| only.title);
+        let title = self.only.map_or(name, |only| only.field.title);
         let mut tooltip = context.tooltips.field(&plain).unwrap_or_default().to_owned();
         if display_name(title) != display_name(name) && self.only.is_some() {
             tooltip += &format!("\n\nIn files: {path}");
@@ -216,71 +239,71 @@ impl Rows<'_, '_, '_> {
 
 impl FieldVisitor for Rows<'_, '_, '_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
-        let usual = self.only.and_then(|only| only.usual);
-        self.row(name, (unit, FIVE_VALUES, true), |ui, label, refused, _, _| {
-            value_control::number(ui, label, value, (&range, usual), unit, refused);
+        let usual = self.only.and_then(|only| only.field.usual);
+        self.row(name, RowKind { unit, sheet: FIVE_VALUES, has_keys: true }, |ui, label, refused, _, _| {
+            value_control::number(ui, label, value, &range, usual, unit, refused);
         });
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
-        self.row(name, (unit, FIVE_VALUES, true), |ui, label, refused, _, _| {
+        self.row(name, RowKind { unit, sheet: FIVE_VALUES, has_keys: true }, |ui, label, refused, _, _| {
             value_control::integer(ui, label, value, &range, unit, refused);
         });
     }
 
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
-        self.row(name, (unit, None, true), |ui, label, refused, _, _| {
+        self.row(name, RowKind { unit, sheet: None, has_keys: true }, |ui, label, refused, _, _| {
             value_control::vector(ui, value, &range, unit, label, refused);
         });
     }
 
     fn color(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>) {
-        self.row(name, ("", None, true), |ui, label, _, _, _| value_control::color(ui, value, &range, label));
+        self.row(name, RowKind::ANIMATED, |ui, label, _, _, _| value_control::color(ui, value, &range, label));
     }
 
     fn curve(&mut self, name: &'static str, value: &mut Curve, range: RangeInclusive<f32>) {
-        self.row(name, ("", None, false), |ui, label, _, _, _| {
+        self.row(name, RowKind::FIXED, |ui, label, _, _, _| {
             curve_editor::curve(ui, value, &range, label);
         });
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {
-        self.row(name, ("", ALL, true), |ui, label, _, _, _| {
+        self.row(name, RowKind { sheet: ALL, ..RowKind::ANIMATED }, |ui, label, _, _, _| {
             ui.checkbox(value, "").labelled_by(label.id);
         });
     }
 
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
         let plain = self.path.iter().map(|step| step.0).chain([name]).collect::<Vec<_>>().join(".");
-        self.row(name, ("", ALL, true), |ui, label, _, path, tooltips| {
+        self.row(name, RowKind { sheet: ALL, ..RowKind::ANIMATED }, |ui, label, _, path, tooltips| {
             value_control::choice(ui, value, path, |choice| tooltips.choice(&plain, choice)).labelled_by(label.id);
         });
     }
 
     fn text(&mut self, name: &'static str, value: &mut String) {
-        self.row(name, ("", None, false), |ui, label, _, _, _| {
+        self.row(name, RowKind::FIXED, |ui, label, _, _, _| {
             ui.add(egui::TextEdit::singleline(value).desired_width(f32::INFINITY)).labelled_by(label.id);
         });
     }
 
     fn image(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
         let thumbnails = self.context.thumbnails;
-        self.row(name, ("", None, false), |ui, label, _, path, _| {
+        self.row(name, RowKind::FIXED, |ui, label, _, path, _| {
             gallery(ui, thumbnails, role, value, path).labelled_by(label.id);
         });
     }
 
     fn particles(&mut self, name: &'static str, value: &mut String) {
-        self.row(name, ("", None, false), |ui, label, _, path, _| {
+        self.row(name, RowKind::FIXED, |ui, label, _, path, _| {
             value_control::path(ui, value, path, "smoke_####.ply").labelled_by(label.id);
         });
     }
 
     fn backdrop(&mut self, name: &'static str, value: &mut String, kind: BackdropKind) {
         let mut is_asked = false;
-        self.row(name, ("", None, false), |ui, label, _, path, _| {
+        self.row(name, RowKind::FIXED, |ui, label, _, path, _| {
             is_asked = ui.button("Choose…").on_hover_text("Or drop the file on the window").clicked();
-            let hint = format!("none (.{})", kind.endings().join(", ."));
+            let hint = format!("none (.{})", backdrop_endings(kind).join(", ."));
             value_control::path(ui, value, path, &hint).labelled_by(label.id);
         });
         if is_asked {
@@ -289,7 +312,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     }
 
     fn seed(&mut self, name: &'static str, value: &mut u32) {
-        self.row(name, ("", SEEDS, false), |ui, label, _, _, _| {
+        self.row(name, RowKind { sheet: SEEDS, ..RowKind::FIXED }, |ui, label, _, _, _| {
             ui.add(egui::DragValue::new(value)).labelled_by(label.id);
             if ui.button("Next").clicked() {
                 *value = value.wrapping_add(1);

@@ -15,11 +15,13 @@ pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Fade curve"));
     let plot = rect.with_max_y(rect.bottom() - TEXT_SIZE).shrink(2.0);
     let reach = fade.max_distance();
-    let (from, to) = (-0.6 * reach, 1.4 * reach);
+    let from = -0.6 * reach;
+    let to = 1.4 * reach;
     let x = |distance: f32| plot.left() + (distance - from) / (to - from) * plot.width();
     let value = |distance| soft_fade(fade.curve, distance, fade.fade_scale, fade.contrast_power, fade.epsilon);
     let visuals = ui.visuals();
-    let (faint, ink) = (visuals.weak_text_color(), visuals.text_color());
+    let faint = visuals.weak_text_color();
+    let ink = visuals.text_color();
     let painter = ui.painter_at(rect);
     painter.rect_filled(plot, 2.0, visuals.extreme_bg_color);
     // The region behind the surface.

@@ -24,11 +24,13 @@ pub fn number(
     ui: &mut Ui,
     name: &Response,
     value: &mut f32,
-    (range, usual): (&RangeInclusive<f32>, UsualRange),
+    range: &RangeInclusive<f32>,
+    usual: UsualRange,
     unit: &str,
     refused: &mut Refused,
 ) -> bool {
-    let (low, high) = (*range.start(), *range.end());
+    let low = *range.start();
+    let high = *range.end();
     let (shown, needs_log_slider) =
         usual.map_or_else(|| slider_range(range, unit, *value), |(low, high)| (low..=high, false));
     let slider = ValueSlider {
@@ -57,7 +59,8 @@ pub fn integer(
     unit: &str,
     refused: &mut Refused,
 ) -> bool {
-    let (low, high) = (*whole.start(), *whole.end());
+    let low = *whole.start();
+    let high = *whole.end();
     let range = f64::from(low)..=f64::from(high);
     let slider = ValueSlider {
         name,
@@ -148,15 +151,18 @@ pub fn vector(
     name: &Response,
     refused: &mut Refused,
 ) {
-    let (low, high) = (*range.start(), *range.end());
+    let low = *range.start();
+    let high = *range.end();
     let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
     if width < ui.spacing().interact_size.x {
-        (ui.spacing_mut().interact_size.x, ui.spacing_mut().button_padding.x) = (width, 2.0);
+        ui.spacing_mut().interact_size.x = width;
+        ui.spacing_mut().button_padding.x = 2.0;
     }
     let mut axes = value.to_array();
     let decimals = decimals_that_fit(ui, &axes, width);
     for (axis, label) in axes.iter_mut().zip(["x", "y", "z"]) {
-        let (before, typed) = (*axis, std::cell::RefCell::new(None));
+        let before = *axis;
+        let typed = std::cell::RefCell::new(None);
         let drag = egui::DragValue::new(axis)
             .speed(0.02)
             .range(low..=high)

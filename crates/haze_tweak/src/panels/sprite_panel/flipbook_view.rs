@@ -20,7 +20,8 @@ const DRAG: f32 = 0.6;
 /// Draws the flipbook with its controls.
 pub fn panel(
     ui: &mut Ui,
-    (look, painted): (&mut SpriteView, &mut Option<SpritePreview>),
+    look: &mut SpriteView,
+    painted: &mut Option<SpritePreview>,
     material: &MaterialAssets,
     settings: &Settings,
 ) {
@@ -38,7 +39,7 @@ pub fn panel(
     // In a scroll area the available height is unlimited, so the visible part counts.
     let height = ui.available_height().min(ui.clip_rect().height());
     let side = ui.available_width().min(SIDE).min((SHARE * height).max(MIN_SIDE));
-    ui.vertical_centered(|ui| picture(ui, (look, painted), side, material, settings));
+    ui.vertical_centered(|ui| picture(ui, look, painted, side, material, settings));
     time(ui, look, material.sprite.frame_count());
     if look.channel == SpriteChannel::Lit {
         light(ui, look);
@@ -50,7 +51,8 @@ pub fn panel(
 
 fn picture(
     ui: &mut Ui,
-    (look, painted): (&mut SpriteView, &mut Option<SpritePreview>),
+    look: &mut SpriteView,
+    painted: &mut Option<SpritePreview>,
     side: f32,
     material: &MaterialAssets,
     settings: &Settings,

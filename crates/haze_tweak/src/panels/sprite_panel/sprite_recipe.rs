@@ -29,7 +29,8 @@ const MAX_CHARACTERS: usize = 400;
 
 /// Draws the recipe of the selected system's sprite, or the ways to get one.
 pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialSources) {
-    let (folders, wake) = (session.folders(), session.repaint.clone());
+    let folders = session.folders();
+    let wake = session.repaint.clone();
     let Some(known) = session.sprites.ask(names, &folders, move || wake.call()) else { return };
     if let Some(broken) = &known.broken {
         ui.colored_label(ui.visuals().error_fg_color, truncate_middle(broken, MAX_CHARACTERS));
@@ -39,7 +40,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialSources) {
     }
     let file = known.recipe_file();
     let file = truncate_middle(&file.file_name().unwrap_or_default().to_string_lossy(), 60);
-    let (source, is_broken) = (known.source.clone(), known.broken.is_some());
+    let source = known.source.clone();
+    let is_broken = known.broken.is_some();
     let progress = known.full.as_ref().map(|order| (order.frames(), order.recipe.frame_count()));
     let name = &names.sprite;
     match source {
@@ -108,7 +110,8 @@ fn templates(ui: &mut Ui, session: &mut Session) {
 fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
     let mut edited = recipe.clone();
     let reason_without_effect = |_: &str| locked;
-    let (unchanged, requests) = (HashSet::new(), Vec::new());
+    let unchanged = HashSet::new();
+    let requests = Vec::new();
     let mut context = RowContext {
         tooltips: &TOOLTIPS,
         thumbnails: &session.thumbnails,

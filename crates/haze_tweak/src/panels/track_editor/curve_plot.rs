@@ -61,7 +61,7 @@ pub fn curve(ui: &mut Ui, session: &mut Session, setting: &str, axis: &TimeAxis,
                 input.pointer.is_decidedly_dragging() && origin != input.pointer.interact_pos()
             });
             if let Some(at) = begun.filter(|_| is_moved).map(|at| at + dragged.offset) {
-                drag(session, setting, (dragged.key, dragged.component), (axis.time(at.x), plot.value(at.y)));
+                drag(session, setting, &dragged, axis.time(at.x), plot.value(at.y));
             }
             ui.data_mut(|data| data.insert_temp(dragged_id, dragged));
         }
@@ -77,14 +77,15 @@ pub fn curve(ui: &mut Ui, session: &mut Session, setting: &str, axis: &TimeAxis,
 }
 
 /// Moves a keyframe, and sets one component of its value.
-fn drag(session: &mut Session, setting: &str, (index, component): (usize, usize), (time, number): (f32, f32)) {
+fn drag(session: &mut Session, setting: &str, dragged: &Dragged, time: f32, number: f32) {
+    let index = dragged.key;
     let preset = &mut session.document.preset;
     let Some(key) = keyframes::track(preset, setting).and_then(|track| track.keys.get(index)) else { return };
     let wanted = match &key.value {
         KeyValue::Number(_) => Some(KeyValue::Number(number)),
         KeyValue::Vector(vector) => {
             let mut vector = *vector;
-            vector[component.min(2)] = number;
+            vector[dragged.component.min(2)] = number;
             Some(KeyValue::Vector(vector))
         }
         // Switches and choices move in time only.

@@ -73,7 +73,8 @@ fn repeated(ui: &Ui, rect: Rect, track: &Track, axis: &TimeAxis) {
     if track.period <= 0.0 {
         return;
     }
-    let (painter, faint) = (ui.painter_at(rect), color().gamma_multiply(0.4));
+    let painter = ui.painter_at(rect);
+    let faint = color().gamma_multiply(0.4);
     painter.vline(axis.x(track.period), rect.y_range(), Stroke::new(1.0, faint));
     let times =
         (1..MAX_REPEATED).flat_map(|turn| track.keys.iter().map(move |key| key.time + turn as f32 * track.period));
@@ -151,13 +152,16 @@ fn apply(session: &mut Session, setting: &str, change: Change) {
     let preset = &mut session.document.preset;
     match change {
         Change::Move(index, time) => {
-            track_mut(preset, setting).into_iter().for_each(|track| move_key(track, index, time));
+            if let Some(track) = track_mut(preset, setting) {
+                move_key(track, index, time);
+            }
         }
         Change::Delete(index) => remove_key(preset, setting, index),
         Change::DeleteAll => session.remove_track(setting),
         Change::Ease(index, ease) => {
-            let key = track_mut(preset, setting).and_then(|track| track.keys.get_mut(index));
-            key.into_iter().for_each(|key| key.ease = ease);
+            if let Some(key) = track_mut(preset, setting).and_then(|track| track.keys.get_mut(index)) {
+                key.ease = ease;
+            }
         }
         Change::Copy(index) => {
             let key = keyframes::track(preset, setting).and_then(|track| track.keys.get(index));

@@ -7,6 +7,7 @@ mod time_axis;
 mod track_options;
 
 use eframe::egui::{self, Ui};
+use haze_preset::system_list::system_of;
 
 use super::rows::key_mark;
 use crate::document::preset_diff::setting_title;
@@ -60,11 +61,15 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
 /// Draws the name of a track, and the mark that adds and deletes keyframes.
 fn name(ui: &mut Ui, session: &mut Session, setting: &str) {
     ui.spacing_mut().item_spacing.x = 0.0;
-    let (preset, time) = (&session.document.preset, session.playback.key_time());
+    let preset = &session.document.preset;
+    let time = session.playback.key_time();
     let title = setting_title(preset, setting);
     let state = key_mark::KeyMarks::new(preset, time).of(setting).state;
     let is_selected = session.view.tracks.selected.as_deref() == Some(setting);
-    let button = egui::Button::selectable(is_selected, &title).truncate().right_text("");
+    let systems = &session.document.preset.systems;
+    let is_hidden = system_of(setting).is_some_and(|index| !session.view.systems.is_shown(systems, index));
+    let text = if is_hidden { egui::RichText::new(&title).weak().strikethrough() } else { egui::RichText::new(&title) };
+    let button = egui::Button::selectable(is_selected, text).truncate().right_text("");
     let button =
         ui.add_sized([NAMES - ROW - 4.0, ROW], button).on_hover_text(format!("{title}\n\nIn files: {setting}"));
     let button = button.accessible_name(&title);

@@ -20,7 +20,8 @@ pub fn ruler(ui: &mut Ui, session: &mut Session, axis: &TimeAxis) {
         session.playback.time = (f64::from(axis.time(at.x)) * 100.0).round() / 100.0;
         session.playback.is_playing = false;
     }
-    let (painter, faint) = (ui.painter_at(rect), ui.visuals().weak_text_color());
+    let painter = ui.painter_at(rect);
+    let faint = ui.visuals().weak_text_color();
     let font = egui::TextStyle::Small.resolve(ui.style());
     let (times, decimals) = axis.labels(LABEL_GAP);
     for time in times {

@@ -31,7 +31,8 @@ fn rising() -> Harness<'static, Window> {
     }
     session.document.preset.animation[0].keys[0].ease = Ease::Linear;
     session.playback.time = 2.0;
-    (session.view.tab, session.view.lights.selected) = (Tab::Light, Some(0));
+    session.view.tab = Tab::Light;
+    session.view.lights.selected = Some(0);
     harness.run_steps(4);
     harness
 }
@@ -130,7 +131,8 @@ fn the_diamond_of_a_row_adds_and_deletes() {
 #[test]
 fn a_keyframe_is_dragged_in_one_step_and_clicked_to_go_there() {
     let mut harness = rising();
-    let (last, lane) = (keyframe(&harness, 2).center(), harness.get_by_label_contains("Keyframes of Intensity").rect());
+    let last = keyframe(&harness, 2).center();
+    let lane = harness.get_by_label_contains("Keyframes of Intensity").rect();
     let settled = preset(&harness).clone();
     // The axis reaches from 0 s to the end of the playback.
     let second = (lane.width() - 16.0) / *harness.state().session.playback.range.end() as f32;
@@ -262,7 +264,8 @@ fn a_press_on_a_point_of_the_curve_moves_nothing_until_it_is_dragged() {
     harness.state_mut().session.view.tracks.select(INTENSITY);
     harness.run_steps(4);
     let before = preset(&harness).clone();
-    let (key, plot) = (keyframe(&harness, 2).center(), curve(&harness));
+    let key = keyframe(&harness, 2).center();
+    let plot = curve(&harness);
     // A few points beside the mark, and within its reach. The highest value has a margin of 0.08 of the range above it.
     let point = pos2(key.x - 3.0, plot.top() + plot.height() * 0.08 / 1.16 + 2.0);
     harness.hover_at(point);

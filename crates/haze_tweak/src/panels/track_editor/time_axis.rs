@@ -43,7 +43,8 @@ impl TimeAxis {
         let power = 10.0_f32.powf(least.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|times| times * power).into_iter().find(|step| *step >= least * 0.999);
         let step = step.unwrap_or(10.0 * power);
-        let (first, last) = ((self.range.start() / step).ceil() as i64, (self.range.end() / step).floor() as i64);
+        let first = (self.range.start() / step).ceil() as i64;
+        let last = (self.range.end() / step).floor() as i64;
         let decimals = (-step.log10().floor()).max(0.0) as usize;
         ((first..=last.min(first + 1000)).map(|index| index as f32 * step).collect(), decimals)
     }

@@ -50,5 +50,7 @@ pub fn options(ui: &mut Ui, session: &mut Session, setting: &str, size: egui::Ve
         // Without keyframes, the flicker is all that the track has.
         edited.flicker.amount = 0.01;
     }
-    track_mut(&mut session.document.preset, setting).into_iter().for_each(|track| *track = edited.clone());
+    if let Some(track) = track_mut(&mut session.document.preset, setting) {
+        *track = edited;
+    }
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use eframe::egui;
-use haze::Error;
 use haze_core::assets::memory_files;
+use haze_core::error::Error;
 use haze_export::file_kind::files_to_open;
 use wasm_bindgen_futures::spawn_local;
 

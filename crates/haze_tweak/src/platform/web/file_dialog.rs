@@ -34,7 +34,8 @@ impl Dialogs {
     /// Opens a picker that starts with a path. Returns false for a save in a browser without a dialog for it: the user types
     /// a name, and the browser downloads the file.
     pub fn ask(&self, purpose: Purpose, near: &Path) -> bool {
-        let (answer, wake) = (Rc::clone(&self.answer), Rc::clone(&self.wake));
+        let answer = Rc::clone(&self.answer);
+        let wake = Rc::clone(&self.wake);
         let finish = move |chosen: Option<PathBuf>| {
             *answer.borrow_mut() = Some(chosen.map_or(Answer::Cancelled, Answer::Chosen));
             wake();

@@ -57,7 +57,8 @@ fn start_worker<J: PortableJob>(
     let options = WorkerOptions::new();
     options.set_type(WorkerType::Module);
     let worker = web_sys::Worker::new_with_options(SCRIPT, &options)?;
-    let (ended, failed) = (worker.clone(), finish.clone());
+    let ended = worker.clone();
+    let failed = finish.clone();
     let on_message = Closure::new(move |event: MessageEvent| {
         let message = event.data();
         let part = |name| Reflect::get(&message, &JsValue::from_str(name)).unwrap_or_default();

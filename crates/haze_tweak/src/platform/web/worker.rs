@@ -126,7 +126,8 @@ impl<T: 'static> Worker<T> {
         match job {
             Job::Short(job) => Some(Some(job(&ticket))),
             Job::Long(start) => {
-                let (result, wake) = (Rc::new(RefCell::new(None)), Rc::clone(&self.wake));
+                let result = Rc::new(RefCell::new(None));
+                let wake = Rc::clone(&self.wake);
                 let to = Rc::clone(&result);
                 let done = Box::new(move |found| {
                     to.replace(Some(found));
@@ -151,7 +152,9 @@ impl<T> Worker<T> {
     /// Cancels all jobs.
     pub fn cancel_all(&self) {
         self.queue.borrow_mut().clear();
-        self.running.borrow().iter().for_each(|running| running.ticket.cancel());
+        if let Some(running) = self.running.borrow().as_ref() {
+            running.ticket.cancel();
+        }
     }
 }
 

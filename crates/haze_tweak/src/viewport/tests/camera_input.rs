@@ -111,7 +111,8 @@ fn the_right_button_with_wasd_flies() {
     harness.key_up(Key::W);
     harness.event(button(false));
     harness.run();
-    let (after, ahead) = (camera(&harness), (before.target - before.position).normalize());
+    let after = camera(&harness);
+    let ahead = (before.target - before.position).normalize();
     let way = after.position - before.position;
     assert!(way.dot(ahead) > 0.5 && way.normalize().distance(ahead) < 1e-3, "{way}");
     assert_eq!(undo_name(&harness).as_deref(), Some("Camera"));
@@ -121,13 +122,15 @@ fn the_right_button_with_wasd_flies() {
 #[test]
 fn a_drag_within_one_long_frame_moves_as_far_as_a_slow_one() {
     for (button, name) in [(PointerButton::Primary, "orbit"), (PointerButton::Secondary, "look")] {
-        let (mut slow, mut fast) = (lit(Light::default()), lit(Light::default()));
+        let mut slow = lit(Light::default());
+        let mut fast = lit(Light::default());
         let from = viewport(&slow).center() + vec2(-180.0, 60.0);
         let before = camera(&slow);
         let place = |moved: f32| from + vec2(moved, 0.2 * moved);
         drag(&mut slow, button, &[0.0, 20.0, 46.0, 100.0, 186.0].map(place));
         flick(&mut fast, button, &[0.0, 46.0, 186.0].map(place));
-        let (slow, fast) = (camera(&slow), camera(&fast));
+        let slow = camera(&slow);
+        let fast = camera(&fast);
         assert!(
             slow.position.distance(fast.position) + slow.target.distance(fast.target) < 1e-3,
             "{name}: {slow:?} {fast:?}"

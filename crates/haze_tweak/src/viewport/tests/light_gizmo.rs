@@ -16,7 +16,8 @@ use crate::window::Window;
 fn an_axis_drag_moves_the_light_along_the_axis_in_one_step() {
     for axis in 0..2 {
         let mut harness = lit(Light::default());
-        let (before, seen) = (light(&harness).position, projection(&harness));
+        let before = light(&harness).position;
+        let seen = projection(&harness);
         let from = handle(&harness, Handle::Axis(axis));
         let along = seen.project(before + Vec3::AXES[axis]).unwrap() - seen.project(before).unwrap();
         let to = from + along * 0.6;
@@ -59,7 +60,8 @@ fn shown_center(harness: &Harness<'_, Window>) -> Pos2 {
 #[test]
 fn a_drag_of_a_light_with_keyframes_is_one_keyframe_and_one_step() {
     let mut harness = moving();
-    let (own, seen) = (light(&harness).position, projection(&harness));
+    let own = light(&harness).position;
+    let seen = projection(&harness);
     let from = shown_center(&harness);
     let to = from + vec2(60.0, -40.0);
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(20.0, -10.0), to]);
@@ -106,7 +108,8 @@ fn a_center_drag_follows_the_pointer_and_escape_cancels_it() {
 #[test]
 fn ctrl_snaps_to_a_tenth_of_a_metre_and_shift_slows_the_drag() {
     let mut harness = lit(Light::default());
-    let (from, before) = (handle(&harness, Handle::Center), light(&harness).position);
+    let from = handle(&harness, Handle::Center);
+    let before = light(&harness).position;
     harness.event(Event::ModifiersChanged(Modifiers::COMMAND));
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(31.0, 17.0)]);
     let snapped = light(&harness).position;
@@ -137,11 +140,13 @@ fn radius_cone_and_direction_can_be_dragged() {
     assert_eq!((way.outer_angle, way.position), (before.outer_angle, before.position));
     // Seen from below the cone's center, one handle is to the left and the other to the right.
     let at = |harness: &Harness<'_, Window>, what| handle(harness, what);
-    let (middle, rim) = (at(&harness, Handle::Aim), at(&harness, Handle::OuterAngle));
+    let middle = at(&harness, Handle::Aim);
+    let rim = at(&harness, Handle::OuterAngle);
     drag(&mut harness, PointerButton::Primary, &[rim, rim + (rim - middle) * 0.3]);
     let outer = light(&harness).outer_angle;
     assert!(outer > before.outer_angle + 5.0, "{outer}");
-    let (middle, rim) = (at(&harness, Handle::Aim), at(&harness, Handle::InnerAngle));
+    let middle = at(&harness, Handle::Aim);
+    let rim = at(&harness, Handle::InnerAngle);
     drag(&mut harness, PointerButton::Primary, &[rim, rim + (middle - rim) * 0.5]);
     assert!(light(&harness).inner_angle < before.inner_angle - 5.0);
     assert!((light(&harness).outer_angle - outer).abs() < 1e-5);

@@ -126,7 +126,8 @@ fn all_values_fit_on_the_image() {
             for node in
                 said.into_iter().chain(["Pixel", "Displayed, sRGB", "% left", "None"].into_iter().flat_map(of_text))
             {
-                let (rect, label) = (node.rect(), node.accesskit_node().value());
+                let rect = node.rect();
+                let label = node.accesskit_node().value();
                 assert!(viewport.contains_rect(rect), "{label:?} at {rect} of {viewport}");
             }
             look(&mut harness, &format!("inspector_{}_{side}", size.x));
@@ -199,7 +200,8 @@ fn the_highlight_is_painted_below_the_toolbar() {
     harness.get_by_label("Ramps").click();
     wait_for(&mut harness, |harness| shows(harness, "Point 1"));
     let ramp = harness.get_by_label("Diffuse ramp").rect();
-    let (viewport, tool) = (harness.get_by_label("viewport").rect(), harness.get_by_label("Lit plane").rect());
+    let viewport = harness.get_by_label("viewport").rect();
+    let tool = harness.get_by_label("Lit plane").rect();
     let beside = egui::Rect::from_min_size(tool.left_bottom() + Vec2::new(0.0, 12.0), tool.size());
     let mut parts = |share: f32| {
         harness.hover_at(egui::pos2(ramp.left() + share * ramp.width(), ramp.center().y));

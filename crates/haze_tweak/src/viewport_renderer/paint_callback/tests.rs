@@ -20,7 +20,8 @@ use crate::window::{Start, Window};
 /// Opens a window, and returns the render state of its egui.
 fn window() -> (Harness<'static, Window>, RenderState) {
     let session = Session::open(Path::new("column"), None).unwrap();
-    let (shaders, layout) = (ShaderFolder::None, Layout::default());
+    let shaders = ShaderFolder::None;
+    let layout = Layout::default();
     let start = Start { session, shaders, persistence: None, layout, has_dialogs: false };
     let state = Rc::new(RefCell::new(None));
     let its = Rc::clone(&state);
@@ -46,7 +47,8 @@ fn a_frame_dropped_by_egui_is_drawn_in_the_next() {
     let session = harness.state_mut().session_mut();
     session.document.preset.lights.iter_mut().for_each(|light| light.intensity *= 4.0);
     harness.step();
-    let (renderer, session) = (harness.state().renderer().clone(), &harness.state().session);
+    let renderer = harness.state().renderer().clone();
+    let session = &harness.state().session;
     let frame = ViewportFrame { shot: session.shot(session.view.size), other: None, split: 0.5, difference: 0.0 };
     let rect = harness.get_by_label("viewport").rect();
     renderer.want_capture(Some(ComparedSide::First));

@@ -36,11 +36,13 @@ fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
     let rect = slider(harness, "thickness");
     let at = |frame: usize| Pos2::new(rect.left() + 8.0 + (frame * 7 % 90) as f32, rect.center().y);
     harness.drag_at(at(0));
-    let (mut start, mut before) = (Instant::now(), worked());
+    let mut start = Instant::now();
+    let mut before = worked();
     let mut coarsest = 1;
     for frame in 0..frames + 10 {
         if frame == 10 {
-            (start, before) = (Instant::now(), worked());
+            start = Instant::now();
+            before = worked();
         }
         harness.hover_at(at(frame));
         picture(harness);

@@ -68,11 +68,13 @@ impl Script {
         harness.run_steps(2);
         harness.event(button(from, true));
         harness.run_steps(2);
-        let (mut at, mut step) = (from, 0);
+        let mut at = from;
+        let mut step = 0;
         while let Some(to) = next(harness, step) {
             harness.hover_at(to);
             harness.run_steps(2);
-            (at, step) = (to, step + 1);
+            at = to;
+            step += 1;
         }
         harness.event(button(at, false));
         harness.event(Event::ModifiersChanged(Modifiers::NONE));
@@ -184,12 +186,28 @@ fn the_brightness_of_a_pixel_is_matched_by_one_drag_on_the_smoke() {
 }
 
 #[test]
+fn sparks_are_added_to_a_campfire_in_at_most_4_actions() {
+    let mut script = Script::open("campfire", Vec2::new(1000.0, 640.0));
+    script.click("Add system");
+    script.click("Sparks");
+    assert!(script.actions <= 4, "{}", script.actions);
+    let [fire, _, added] = &script.preset().systems[..] else { panic!("three systems") };
+    assert_eq!(added.name, "sparks 2");
+    // They rise from the fire.
+    let above = added.emitter.position - fire.emitter.position;
+    assert!(above.with_y(0.0).length() < 1e-6 && (0.0..0.3).contains(&above.y), "{above}");
+    assert_eq!(script.harness.state().session.view.system, 2);
+}
+
+#[test]
 fn a_flipbook_with_normals_takes_at_most_3_actions() {
     let folder = tempfile::tempdir().unwrap();
     let mut script = Script::open("fence", Vec2::new(1000.0, 640.0));
     let job = &mut script.harness.state_mut().export_job;
     job.folder = Some(folder.path().to_owned());
-    (job.options.frame_size, job.options.cells, job.options.last) = (glam::UVec2::splat(16), glam::UVec2::new(1, 2), 1);
+    job.options.frame_size = glam::UVec2::splat(16);
+    job.options.cells = glam::UVec2::new(1, 2);
+    job.options.last = 1;
     script.key(Key::E, Modifiers::COMMAND.plus(Modifiers::ALT));
     // Accepts the suggested folder.
     script.key(Key::Enter, Modifiers::NONE);

@@ -62,7 +62,8 @@ fn the_recipe_can_be_scrolled_to_in_the_smallest_window() {
     until(&mut harness, |harness| harness.query_by_label("Reading the sprite…").is_none());
     slider(&harness, "Upright").scroll_to_me();
     harness.run_steps(8);
-    let (row, page) = (slider(&harness, "Upright").rect(), harness.get_by_label("viewport").rect());
+    let row = slider(&harness, "Upright").rect();
+    let page = harness.get_by_label("viewport").rect();
     assert!(row.top() > page.top() && row.bottom() < page.bottom(), "{row} beside {page}");
 }
 

@@ -92,7 +92,8 @@ fn write_sheet(folder: &Path, alpha: u8) {
 /// Saves broken and valid files of every kind alternately.
 fn reload(bench: &mut Bench, count: u32) {
     let folder = bench.folder.path().to_owned();
-    let (path, shader) = (bench.path("my.json"), bench.path("shaders/lib/color.wgsl"));
+    let path = bench.path("my.json");
+    let shader = bench.path("shaders/lib/color.wgsl");
     let before = fs::read_to_string(&path).unwrap();
     write_sheet(&folder, 90);
     let mut preset = Preset::load(&path).unwrap();

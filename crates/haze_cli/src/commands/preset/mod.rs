@@ -1,16 +1,18 @@
-//! `haze preset`: list, check, show, new, schema, settings.
+//! `haze preset`: list, check, show, new, layers, add-system, schema, settings.
 
-use std::collections::BTreeMap;
+mod add_system;
+mod preset_copy;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use glam::UVec2;
-use haze::{Error, FieldError, Light};
+use haze::{FieldError, Light};
 use haze_author::preset::{check_files, no_effect_reason};
-use haze_author::ramp::RampRecipe;
+use haze_core::error::Error;
 use haze_core::settings::{FieldValue, field_values};
-use haze_preset::directory::is_taken;
-use haze_preset::{Preset, PresetSystem, Track, builtin, write_baked_png, write_file};
+use haze_preset::layers::layers;
+use haze_preset::{Preset, PresetSystem, Track, builtin};
 
 use haze_export::file_kind::explain_wrong_kind;
 use haze_export::named_preset::NamedPreset;
@@ -18,7 +20,8 @@ use haze_export::options::AssetsArguments;
 use haze_export::output::{Failures, print_line, write_text};
 use haze_export::recipe_files::has_extension;
 use haze_export::share_link::fragment_of_name;
-use haze_tweak::copy_assets;
+
+use preset_copy::write_preset;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -58,6 +61,10 @@ enum Command {
         #[arg(long, value_name = "PRESET")]
         from: Option<PathBuf>,
     },
+    /// List the layers that `add-system` adds.
+    Layers,
+    /// Add a particle system from the shelf of layers, such as sparks, to a preset.
+    AddSystem(add_system::Arguments),
     /// Print the JSON schema of preset files.
     Schema,
     /// Print every setting with its range and default, as Markdown.
@@ -67,11 +74,12 @@ enum Command {
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     match &arguments.command {
         Command::List => {
-            let width = builtin::PRESETS.iter().map(|builtin| builtin.name.len()).max().unwrap_or_default();
+            let mut lines = Vec::new();
             for builtin in builtin::PRESETS {
-                let preset = Preset::load(builtin.name)?;
-                print_line!("{:<width$}  {}", builtin.name, preset.description)?;
+                let preset = Preset::load(builtin.name).map_err(Error::from)?;
+                lines.push((builtin.name, preset.description));
             }
+            print_descriptions(&lines)?;
         }
         Command::Check { presets, assets } => {
             let mut failures = Vec::new();
@@ -87,10 +95,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         }
         Command::Show { preset, changed } => show(&NamedPreset::load(preset, None)?.preset, *changed)?,
         Command::New { file, from } => new(file, from.as_deref())?,
+        Command::Layers => {
+            let lines: Vec<_> = layers().iter().map(|layer| (layer.name, layer.description.clone())).collect();
+            print_descriptions(&lines)?;
+        }
+        Command::AddSystem(arguments) => add_system::run(arguments)?,
         Command::Schema => write_text(haze_author::preset::schema())?,
         Command::Settings => write_text(haze_author::preset::settings_page().trim_end())?,
     }
     Ok(())
+}
+
+/// Prints names, each with its description.
+fn print_descriptions(lines: &[(&str, String)]) -> Result<(), Error> {
+    let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
+    lines.iter().try_for_each(|(name, description)| print_line!("{name:<width$}  {description}"))
 }
 
 /// Loads a preset and its files as rendering does. Returns all errors, and notes on values that may be unintended.
@@ -103,7 +122,7 @@ fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<Strin
     let changed = settings.iter().filter(|setting| !setting.is_default() || setting.track.is_some());
     let note = |setting: &Setting| Some(format!("{} has no effect: {}", setting.path, setting.no_effect_reason?));
     notes.extend(changed.filter_map(note));
-    Ok((wrong, notes))
+    Ok((wrong.into_iter().map(Error::from).collect(), notes))
 }
 
 /// A setting of a preset.
@@ -128,7 +147,8 @@ fn settings(preset: &Preset) -> Vec<Setting> {
         systems: vec![PresetSystem::default(); preset.systems.len()],
         ..Preset::default()
     };
-    let (moments, size) = (moments(preset), SIZE);
+    let moments = moments(preset);
+    let size = SIZE;
     let pairs = field_values(preset).into_iter().zip(field_values(&plain));
     let setting = |((path, value), (_, default)): ((String, FieldValue), (String, FieldValue))| {
         let reasons = moments.iter().map(|moment| no_effect_reason(moment, &path, size));
@@ -191,28 +211,10 @@ fn new(file: &Path, from: Option<&Path>) -> Result<(), Error> {
     }
     let more = if from.is_none() { "; --from copies another" } else { "" };
     let from = from.unwrap_or(Path::new("column"));
-    let NamedPreset { mut preset, path: from, ramps, .. } = NamedPreset::load(from, None)?;
+    let mut named = NamedPreset::load(from, None)?;
     if let Some(name) = path.file_stem() {
-        preset.name = name.to_string_lossy().into_owned();
+        named.preset.name = name.to_string_lossy().into_owned();
     }
-    let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
-    write_ramps(&ramps, &folder(&path))?;
-    copy_assets(&preset, &folder(&from), &folder(&path))?;
-    write_file(&path, preset.to_json("").as_bytes())?;
-    print_line!("{}: a copy of {}{more}; open it with `haze {0}`", path.display(), from.display())
-}
-
-/// Writes the ramps of a link with their recipes. No file is replaced.
-fn write_ramps(ramps: &BTreeMap<String, RampRecipe>, folder: &Path) -> Result<(), Error> {
-    let files = |name: &String| [folder.join(name), folder.join(name).with_extension("ramp.json")];
-    if let Some(taken) = ramps.keys().flat_map(files).find(|file| is_taken(file)) {
-        let problem = format!("{} exists already", taken.display());
-        return Err(FieldError::from_problem("FILE", problem, "a folder without the ramps of the link").into());
-    }
-    for (name, recipe) in ramps {
-        let [picture, file] = files(name);
-        write_file(&file, recipe.to_json().as_bytes())?;
-        write_baked_png(&picture, &recipe.bake()?)?;
-    }
-    Ok(())
+    write_preset(&path, &named.preset.to_json(""), &named)?;
+    print_line!("{}: a copy of {}{more}; open it with `haze {0}`", path.display(), named.path.display())
 }

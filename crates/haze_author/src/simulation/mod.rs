@@ -1,0 +1,25 @@
+//! Simulated smoke and fire: a fluid solver on a grid, its recipes, and bakes of its frames to sprites.
+//!
+//! Stam, "Stable fluids" (1999), with vorticity confinement (Fedkiw, Stam and Jensen, "Visual simulation of smoke",
+//! 2001) and MacCormack advection (Selle et al., "An unconditionally stable MacCormack method", 2008). Uses only plain
+//! arithmetic in a fixed order, so that bakes are bit-identical on every machine and with any number of threads.
+
+mod advection;
+mod bake;
+mod domain;
+mod fluid;
+mod forces;
+mod framing;
+mod grid;
+mod pressure;
+mod recorded_frame;
+mod sim_recipe;
+mod source;
+mod sources;
+
+pub use bake::{BakedSimulation, Simulation};
+pub use sim_recipe::{FrameLoop, Framing, GridSize, Obstacle, Physics, RECIPE_VERSION, SimRecipe, TimeSpan, View};
+pub use source::{Source, SourceShape};
+
+#[cfg(test)]
+mod tests;
